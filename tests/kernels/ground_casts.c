@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "chains.h"
+#include "everywhere.h"
 #include "expect.h"
 #include "narc_chains.h"
 #include "narc_scene.h"
@@ -367,36 +368,43 @@ static struct body move_body(const struct body *body, const struct flight *by, d
     return out;
 }
 
-/* Casts of the mover with all entries, A or B; the first hit, or a miss, or what is not finished before that. */
-static narc_impact cast(const struct setting *s, const struct flight *flight, float target, bool ground_first) {
+struct cast_question {
+    const struct setting *setting;
+    const struct flight *flight;
+    float target;
+    bool ground_first;
+};
+
+static void ask_casts(const void *question, const narc_workers *workers, void *out_rows) {
+    const struct cast_question *const q = question;
+    const struct setting *const s = q->setting;
     const uint32_t zero = 0;
     const narc_bodies mover = bodies_of(&s->mover, 1), entries = bodies_of(s->bodies, s->count);
-    const narc_motions motion = {.x = {&flight->x, 0}, .y = {&flight->y, 0}, .angle = {&flight->angle, 0}};
+    const narc_motions motion = {.x = {&q->flight->x, 0}, .y = {&q->flight->y, 0}, .angle = {&q->flight->angle, 0}};
     uint32_t *entry = malloc(s->count * sizeof *entry);
-    narc_impact *rows = malloc(s->count * sizeof *rows), *others = malloc(s->count * sizeof *others);
-    narc_impact first = {.fraction = 2};
     for (size_t k = 0; k < s->count; k++)
         entry[k] = (uint32_t)k;
     const narc_index_column all = NARC_ARRAY(entry), one = {&zero, 0};
     const narc_pairs pairs = {.count = s->count,
-                              .a = ground_first ? all : one,
-                              .b = ground_first ? one : all,
-                              .other_bodies = ground_first ? &mover : &entries};
-    const narc_cast_options options = {.target = target};
+                              .a = q->ground_first ? all : one,
+                              .b = q->ground_first ? one : all,
+                              .other_bodies = q->ground_first ? &mover : &entries};
+    const narc_cast_options options = {.target = q->target, .workers = workers};
     narc_error error = {0};
-    for (int scalar = 0; scalar < 2; scalar++) {
-        test_use_isa(scalar ? "scalar" : test_isa());
-        expect_ok(narc_cast_pairs(s->store, ground_first ? &entries : &mover, ground_first ? NULL : &motion, &pairs,
-                                  ground_first ? &motion : NULL, &options, scalar ? others : rows, s->count, &error),
-                  &error);
-    }
-    test_use_isa(test_isa());
-    assert_memory_equal(rows, others, s->count * sizeof *rows);
-    free(others);
+    expect_ok(narc_cast_pairs(s->store, q->ground_first ? &entries : &mover, q->ground_first ? NULL : &motion, &pairs,
+                              q->ground_first ? &motion : NULL, &options, out_rows, s->count, &error),
+              &error);
+    free(entry);
+}
+
+/* Casts of the mover with all entries, A or B, on every instruction set; the first hit, or a miss, or what is not finished
+ * before that. */
+static narc_impact cast(const struct setting *s, const struct flight *flight, float target, bool ground_first) {
+    const struct cast_question question = {s, flight, target, ground_first};
+    narc_impact *rows = ask_everywhere(ask_casts, &question, s->count * sizeof *rows, NULL), first = {.fraction = 2};
     for (size_t k = 0; k < s->count; k++)
         if (rows[k].count != NARC_CAST_MISS && rows[k].fraction < first.fraction)
             first = rows[k];
-    free(entry);
     free(rows);
     return first;
 }
