@@ -12,6 +12,7 @@
 
 #include "boxes.h"
 #include "broad_phase.h"
+#include "expect.h"
 #include "families.h"
 #include "guard.h"
 #include "ledger.h"
@@ -1060,10 +1061,11 @@ TEST(refuses_bad_arguments) {
     narc_shapes *shapes = empty_store();
     const narc_pair_list *const before = update_boxes(broad, boxes, 3, &options);
     assert_int_equal(before->pairs.count, 3);
-    assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, (size_t)UINT32_MAX, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
+    expect_error(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, &error), NARC_ERROR_ARGUMENT, &error, "broad");
+    expect_error(narc_update_box_pairs(broad, NULL, 3, NULL, &list, &error), NARC_ERROR_ARGUMENT, &error, "boxes");
+    expect_error(narc_update_box_pairs(broad, boxes, 3, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_list");
+    expect_error(narc_update_box_pairs(broad, boxes, (size_t)UINT32_MAX, NULL, &list, &error), NARC_ERROR_ARGUMENT,
+                 &error, "4294967295 bodies");
     const struct {
         narc_pair_options options;
         narc_status status;
