@@ -56,7 +56,7 @@ static void read_register(unsigned number, unsigned *out_low, unsigned *out_high
 #define NARC_BUILT_wasm128                               0
 #define narc_detect_cpu                                  detect
 #define narc_cpu_feature                                 name_feature
-#include "cpu.c"
+#include "cpu.c" /* NOLINT(bugprone-suspicious-include) */
 
 static void set_processor(unsigned leaf1_ecx, unsigned leaf7_ebx, unsigned saved) {
     processor.most_leaf = 7;
