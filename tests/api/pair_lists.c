@@ -55,10 +55,16 @@ typedef struct reference {
 } reference;
 
 /* The calls where nothing fails. */
+/* No more strays than there is room for. */
+static void check_strays(const narc_broad_phase *broad) {
+    assert_true(broad->stray_count <= narc_most_strays(broad->box_capacity));
+}
+
 static const narc_pair_list *update_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                                           const narc_pair_options *options) {
     const narc_pair_list *list = NULL;
     assert_int_equal(narc_update_box_pairs(broad, boxes, count, options, &list, NULL), NARC_OK);
+    check_strays(broad);
     return list;
 }
 
@@ -66,6 +72,7 @@ static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *
                                     const narc_pair_options *options) {
     const narc_pair_list *list = NULL;
     assert_int_equal(narc_update_pairs(broad, shapes, bodies, options, &list, NULL), NARC_OK);
+    check_strays(broad);
     return list;
 }
 
@@ -880,6 +887,23 @@ TEST(notices_another_store_in_the_same_place) {
         assert_int_equal(update(broad, shapes, &bodies, &options)->pairs.count, step % 2);
         narc_destroy_shapes(shapes);
         narc_forget_pairs(broad); /* or larger boxes are kept */
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+/* Nearly all boxes of a row move a little, again and again: they are all sorted again, though searching for the pairs of
+ * each alone would not take long. */
+TEST(sorts_again_what_moves) {
+    enum { COUNT = 1000 };
+    narc_box boxes[COUNT];
+    const narc_pair_options options = {.skin = 0.02f};
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    for (size_t step = 0; step < 8; step++) {
+        for (size_t k = 0; k < COUNT; k++) {
+            const float x = (float)k * 0.9f + (float)(k % 2 * step) * 0.01f, y = (float)step * 0.3f;
+            boxes[k] = (narc_box){x, y, x + 1, y + 1};
+        }
+        assert_int_equal(update_boxes(broad, boxes, COUNT, &options)->pairs.count, COUNT - 1);
     }
     narc_destroy_broad_phase(broad);
 }
