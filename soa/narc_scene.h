@@ -250,9 +250,9 @@ typedef struct narc_impact {
  * no further than the target at the start hit at fraction 0, parting or not. Without turning, the time is exact up to
  * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
- * and none below the target earlier; a miss has none below the target (up to the same rounding). Where the least
- * separation lies within target .. target + tolerance both are lawful. Turning counts for what it moves: not for a circle
- * about its position.
+ * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
+ * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
+ * counts for what it moves: not for a circle about its position.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.

@@ -246,13 +246,15 @@ TEST(test_names) {
     assert_true(narc_isa_supported("scalar"));
     assert_false(narc_isa_supported("sse9"));
     assert_false(narc_isa_supported(NULL));
-    bool overlap = false, contact = false, pose = false;
-    for (size_t k = 0; narc_kernel_name(k); k++) {
-        overlap = overlap || strcmp(narc_kernel_name(k), "overlap") == 0;
-        contact = contact || strcmp(narc_kernel_name(k), "contact") == 0;
-        pose = pose || strcmp(narc_kernel_name(k), "pose") == 0;
-    }
-    assert_true(overlap && contact && pose);
+    static const char *const kernels[] = {
+#define NARC_SMALL                          0
+#define NARC_KERNEL(type, name, parameters) #name,
+#include "kernels.def"
+    };
+    const size_t kernel_count = sizeof kernels / sizeof *kernels;
+    for (size_t k = 0; k < kernel_count; k++)
+        assert_string_equal(narc_kernel_name(k), kernels[k]);
+    assert_null(narc_kernel_name(kernel_count));
     assert_null(narc_kernel_name(SIZE_MAX));
     assert_true(narc_openmp_workers(0).count >= 1);
     assert_string_equal(narc_status_name(NARC_OK), "NARC_OK");

@@ -235,17 +235,30 @@ TEST(test_null_arguments) {
     destroy_scene(&f.scene);
 }
 
-/* A pair that names a body there is not; the first such pair is the one that is told. */
+/* A pair that names a body there is not, whichever of those that are looked at at once, in plain arrays and in rows of
+ * three; of two such pairs the first one is told. */
 TEST(test_body_index) {
     static const uint32_t wrong[] = {BODIES, 99991, 0x80000000u, UINT32_MAX};
-    for (int k = 0; k < 8; k++) {
+    uint32_t rows[PAIRS][3];
+    for (size_t k = 0; k < 64; k++) {
         struct fixture f;
         set_up(&f);
-        *(k % 2 ? &f.scene.pairs[137].a : &f.scene.pairs[137].b) = wrong[k / 2];
-        f.scene.pairs[188].a = 77777;
-        char body[16];
-        snprintf(body, sizeof(body), "%lu", (unsigned long)wrong[k / 2]);
-        check_batch(f.call, NARC_ERROR_INDEX, NAMES("137", body));
+        const size_t pair = 134 + k / 16;
+        *(k % 2 ? &f.scene.pairs[pair].a : &f.scene.pairs[pair].b) = wrong[k % 8 / 2];
+        if (k < 16)
+            f.scene.pairs[188].a = 77777;
+        for (size_t i = 0; i < PAIRS; i++) {
+            rows[i][0] = f.scene.pairs[i].a;
+            rows[i][2] = f.scene.pairs[i].b;
+        }
+        if (k & 8) {
+            f.pairs.a = (narc_index_column){&rows[0][0], sizeof *rows};
+            f.pairs.b = (narc_index_column){&rows[0][2], sizeof *rows};
+        }
+        char body[16], number[16];
+        snprintf(body, sizeof(body), "%lu", (unsigned long)wrong[k % 8 / 2]);
+        snprintf(number, sizeof(number), "%zu", pair);
+        check_batch(f.call, NARC_ERROR_INDEX, NAMES(number, body));
         destroy_scene(&f.scene);
     }
 }

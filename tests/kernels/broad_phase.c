@@ -10,6 +10,7 @@
 
 #include "boxes.h"
 #include "broad_phase.h"
+#include "expect.h"
 #include "guard.h"
 #include "ledger.h"
 
@@ -400,18 +401,20 @@ TEST(refuses_bad_arguments) {
     size_t found = 9;
     const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
     const narc_pairs broken = {.count = 1, .b = {&b, 4}};
-#define REFUSED(call) assert_int_equal(call, NARC_ERROR_ARGUMENT)
-    REFUSED(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL));
-    REFUSED(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL));
-    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL));
-    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL));
-    REFUSED(narc_find_pairs(broad, &box, UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL));
-    REFUSED(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL));
-    REFUSED(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL));
-    REFUSED(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL));
-    REFUSED(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL));
-    REFUSED(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL));
-    REFUSED(narc_create_broad_phase(NULL, NULL));
+    narc_error error;
+#define REFUSED(function, words, ...) expect_error(function(__VA_ARGS__, &error), NARC_ERROR_ARGUMENT, &error, words)
+    REFUSED(narc_find_pairs, "broad", NULL, &box, 1, NULL, NULL, &a, &b, 1, &found);
+    REFUSED(narc_find_pairs, "boxes", broad, NULL, 1, NULL, NULL, &a, &b, 1, &found);
+    REFUSED(narc_find_pairs, "out_a", broad, &box, 1, NULL, NULL, NULL, &b, 1, &found);
+    REFUSED(narc_find_pairs, "out_b", broad, &box, 1, NULL, NULL, &a, NULL, 1, &found);
+    REFUSED(narc_find_pairs, "out_count", broad, &box, 1, NULL, NULL, &a, &b, 1, NULL);
+    REFUSED(narc_find_pairs, "4294967295 boxes", broad, &box, UINT32_MAX, NULL, NULL, &a, &b, 1, &found);
+    REFUSED(narc_match_pairs, "broad", NULL, &none, &none, NULL, NULL);
+    REFUSED(narc_match_pairs, "NULL", broad, NULL, &none, NULL, NULL);
+    REFUSED(narc_match_pairs, "NULL", broad, &none, NULL, NULL, NULL);
+    REFUSED(narc_match_pairs, "NULL", broad, &none, &broken, NULL, &match);
+    REFUSED(narc_match_pairs, "NULL", broad, &none, &one, NULL, NULL);
+    assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
 #undef REFUSED
     assert_int_equal(found, 9);
     assert_int_equal(narc_match_pairs(broad, &none, &none, NULL, NULL, NULL), NARC_OK);

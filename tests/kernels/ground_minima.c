@@ -176,6 +176,9 @@ static size_t find_rows(const struct setting *setting, struct pair *pairs, narc_
     size_t skipped = 0;
     const narc_query query = {.margin = (float)setting->margin, .out_skipped = &skipped};
     expect_ok(narc_find_manifolds(setting->store, &bodies, &list, &query, rows, ROWS, &found, &error), &error);
+    for (size_t k = 1; k < found; k++) /* a pair's rows are in the order of their normals */
+        assert_true(rows[k].pair != rows[k - 1].pair ||
+                    rows[k - 1].normal_x * rows[k].normal_y - rows[k - 1].normal_y * rows[k].normal_x >= 0);
     assert_int_equal(skipped, 0);
     const uint32_t *runs = setting->runs;
     return narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows, found);

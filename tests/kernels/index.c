@@ -237,6 +237,7 @@ TEST(has_tight_nodes) {
         assert_int_equal(narc_build_index(index, boxes, COUNT, &(narc_index_options){.fast = fast}, NULL), NARC_OK);
         const double leaves = COUNT / 8.0 * 6, above = COUNT / 64.0 * 16 + COUNT / 512.0 * 48 + 128;
         assert_true(index->perimeter <= (leaves + above) * 1.001);
+        assert_true(index->perimeter >= COUNT / 8.0 * 2 * sqrt(8)); /* of leaves that were squares, alone */
     }
     assert_int_equal(narc_refit_index(index, boxes, COUNT, NULL, &slack, NULL), NARC_OK);
     assert_true(slack == 1);

@@ -465,6 +465,32 @@ TEST(test_doubled_corner) {
     assert_true(two > test_trials(400) / 4 && near_joint > test_trials(400) / 4);
 }
 
+/* A wedge that stands on its edge: with two points from the length on that is an edge for a shape of its size class, of
+ * extents from 2^(5 class - 32) on. (In the upper part of a class a pair's own rounding is more than that.) */
+TEST(test_least_edge) {
+    for (int step = 0; step < 60; step++) {
+        const int size_class = 1 + step / 6; /* of 2^-27 and more */
+        const double extent = exp2(5 * size_class - 32 + step % 6 * 0.5 + 0.1), h = extent / sqrt(2);
+        for (unsigned longer = 0; longer < 2; longer++) {
+            const double half = (longer ? 0.505 : 0.495) * exp2(5 * size_class - 47), right = atan2(half - h, h);
+            const struct shape wedge = {{{-half, 0, 0, PI - right, 1.5 * PI},
+                                         {half, 0, 0, -0.5 * PI, right},
+                                         {h, h, 0, right, 0.5 * PI},
+                                         {-h, h, 0, 0.5 * PI, PI - right}},
+                                        4};
+            const struct shape ground = box_of(8 * h, 2 * h, 0);
+            struct scene scene = make_duo(&ground, &wedge);
+            put(&scene, 0, 0, -h, 0);
+            put(&scene, 1, 0, 0.25 * h, 0);
+            struct manifolds list = scene_manifolds(&scene, INFINITY);
+            assert_int_equal(list.count, 1);
+            assert_int_equal(list.rows[0].count, 1 + longer);
+            free(list.rows);
+            destroy_scene(&scene);
+        }
+    }
+}
+
 /* A corner that is cut off by little more than rounding, far from its shape's origin: as many points for (A, B) as for
  * (B, A), but where roundings decide. */
 TEST(test_short_edges_swapped) {

@@ -181,6 +181,7 @@ TEST(refuses_bad_arguments) {
 #define WRONG_RAYS(change, status, words)                                                                              \
     do {                                                                                                               \
         narc_rays wrong = rays;                                                                                        \
+        wrong.count = 1;                                                                                               \
         wrong.change;                                                                                                  \
         EXPECT(room.index, shapes, &bodies, &wrong, NULL, hits, RAYS, status, words);                                  \
     } while (0)

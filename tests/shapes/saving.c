@@ -159,6 +159,7 @@ TEST(refuses_bad_arguments) {
     struct ledger ledger = {.limited = true};
     const narc_allocator allocator = ledger_allocator(&ledger);
     expect_error(narc_load_shapes(&allocator, bytes, size, &loaded, &error), NARC_ERROR_MEMORY, &error, "no store");
+    assert_true(error.value == 0);
     bytes[AT_VERSION] = 1;
     expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 1");
     assert_null(loaded);

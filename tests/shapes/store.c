@@ -390,6 +390,7 @@ TEST(survives_failing_allocations) {
         while ((status = narc_add_shape_at(shapes, (uint32_t)k, added[k].arcs, added[k].count, &error)) != NARC_OK) {
             failures++;
             expect_error(status, NARC_ERROR_MEMORY, &error, "shape ");
+            assert_true(error.value == 0);
             assert_int_equal(narc_count_shapes(shapes), k);
             assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), 0);
             for (size_t j = 0; j < k; j++) {
