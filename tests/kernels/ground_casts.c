@@ -36,7 +36,7 @@ static bool add_chain(struct setting *s) {
     const narc_chain_options options = {.closed = s->chain.closed};
     const narc_status status =
         narc_add_chain(s->store, s->arcs, s->chain.count, &options, s->entries, ENTRIES, &s->count, &error);
-    if (status == NARC_ERROR_RADIUS || status == NARC_ERROR_NOT_SIMPLE)
+    if (status == NARC_ERROR_RADIUS || status == NARC_ERROR_NOT_SIMPLE || status == NARC_ERROR_SIZE)
         return false;
     expect_ok(status, &error);
     for (size_t k = 0; k < s->count; k++)
@@ -235,6 +235,64 @@ static void choose_body(struct test_random *random, struct setting *s, double la
     s->mover.shape = store_shape(s->store, s->shape);
 }
 
+/* To an end of an arc. */
+static void put_near_end(struct test_random *random, struct setting *s) {
+    const narc_arc *arc = &s->arcs[random_below(random, s->chain.count)];
+    const double size = (double)s->mover.scale, angle = random_below(random, 2) ? arc->start : arc->end;
+    s->mover.x = arc->center_x + arc->radius * cos(angle) + size * random_between(random, -2, 2);
+    s->mover.y = arc->center_y + arc->radius * sin(angle) + size * random_between(random, -2, 2);
+}
+
+static void scale_arcs(narc_arc *arcs, size_t count, double factor) {
+    for (size_t k = 0; k < count; k++) {
+        arcs[k].center_x *= factor;
+        arcs[k].center_y *= factor;
+        arcs[k].radius *= factor;
+    }
+}
+
+/* Ground and body 2^10 times as large: the same rows, but for their lengths, to the bit. */
+TEST(test_scaled) {
+    static narc_contact rows[ROWS], others[ROWS];
+    struct test_random random = test_random_named("scaled ground");
+    size_t seen = 0;
+    for (size_t round = 0; round < test_trials(10 * KINDS); round++) {
+        struct setting *s = make_setting(&random, (int)(round % KINDS)), *other = calloc(1, sizeof *other);
+        const double factor = 0x1p10;
+        other->store = empty_store();
+        memcpy(other->arcs, s->arcs, sizeof s->arcs);
+        other->chain = (struct chain){other->arcs, s->chain.count, s->chain.closed};
+        scale_arcs(other->arcs, other->chain.count, factor);
+        assert_true(add_chain(other) && other->count == s->count);
+        other->ground = make_ground(&other->chain);
+        for (int k = 0; k < 40; k++) {
+            choose_body(&random, s, 1);
+            put_near_end(&random, s);
+            struct shape shape = s->shape;
+            scale_arcs(shape.arcs, shape.count, factor);
+            other->mover = s->mover;
+            other->mover.x *= factor;
+            other->mover.y *= factor;
+            other->mover.shape = store_shape(other->store, shape);
+            const size_t count = ask(s, &s->mover, 0.01, rows);
+            assert_int_equal(ask(other, &other->mover, 0.01 * factor, others), count);
+            for (size_t i = 0; i < count; i++) {
+                others[i].point_x /= (float)factor;
+                others[i].point_y /= (float)factor;
+                others[i].separation /= (float)factor;
+                others[i].radius_a /= (float)factor;
+                others[i].radius_b /= (float)factor;
+            }
+            assert_memory_equal(others, rows, count * sizeof *rows);
+            seen += count;
+        }
+        end_setting(other);
+        end_setting(s);
+    }
+    print_message("  %zu rows\n", seen);
+    assert_true(seen > test_trials(100 * KINDS) || test_trials(100) < 10);
+}
+
 /* Nothing is told of a body in the air, but of one in 500 at most, which lean round an end of what is thin. */
 TEST(test_air) {
     struct test_random random = test_random_named("air");
@@ -245,6 +303,8 @@ TEST(test_air) {
         struct setting *s = make_setting(&random, kind);
         for (int k = 0; k < 12; k++) {
             choose_body(&random, s, 1);
+            if (k % 2)
+                put_near_end(&random, s);
             const struct reference_body body = pose_shape(&s->shape, &s->mover);
             if (!s->chain.closed || !(find_clearance(s, &body, step) > margin + step))
                 continue;
