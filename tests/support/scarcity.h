@@ -26,7 +26,7 @@
 
 struct scarcity {
     bool counts, forever;
-    size_t count, denied; /* allocations while it counts; the first that fails, from 1; 0: none */
+    size_t count, denied;  /* allocations while it counts; the first that fails, from 1; 0: none */
     bool (*ignores)(void); /* one that does not count; NULL: all do */
     bool (*spares)(void);  /* one that would fail does not; NULL: none is spared */
 };
