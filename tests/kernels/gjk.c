@@ -296,7 +296,7 @@ TEST(test_warm_start) {
         assert_int_equal(count_limits(&corpora[c], 0, hints), 0);
         const size_t warm = count_limits(&corpora[c], 3, hints);
         printf("  three steps are too few for %zu pairs, with hints for %zu\n", cold, warm);
-        assert_true(warm < cold / 2 || cold < 100); /* few are few trials, and chance */
+        assert_true(warm < cold / 2 || cold < 100); /* of fewer pairs it is chance */
         free(hints);
     }
 }
