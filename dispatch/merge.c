@@ -38,6 +38,7 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .count = c->count,
                            .normal_x = c->normal_x,
                            .normal_y = c->normal_y,
+                           .radius_a = c->radius_a,
                            .radius_b = c->radius_b,
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
@@ -181,6 +182,25 @@ static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
     return x * a->normal_x + y * a->normal_y >= -room && x * b->normal_x + y * b->normal_y <= room;
 }
 
+/* Does an edge of a body lie along a line, row a, that goes over into a concave arc, row b, on which the same edge ends? As
+ * the line is level there, both tell of one stretch. */
+static bool goes_over(const narc_manifold *a, const narc_manifold *b) {
+    const narc_manifold_point *p = &a->point[0], *q = &b->point[0], *last = &a->point[a->count - 1];
+    const float room = SAME_POINT * find_reach(p, q), half_a = p->separation / 2, half_b = q->separation / 2;
+    if (!((a->count == 2 || (a->radius_a >= INFINITY && a->radius_b >= INFINITY)) && b->radius_b < 0 && b->count == 1 &&
+          fabsf(p->separation - last->separation) <= SAME_SEPARATION * find_reach(p, last) &&
+          has_same_normal(a, b, SAME_SEAM_NORMAL)))
+        return false;
+    /* The place of the arc's circle that has the line's normal. */
+    const float turn_x = b->radius_b * (b->normal_x - a->normal_x), turn_y = b->radius_b * (b->normal_y - a->normal_y);
+    const float x = q->x + half_b * b->normal_x - half_a * a->normal_x + turn_x;
+    const float y = q->y + half_b * b->normal_y - half_a * a->normal_y + turn_y;
+    const float first = (y - p->y) * a->normal_x - (x - p->x) * a->normal_y,
+                second = (y - last->y) * a->normal_x - (x - last->x) * a->normal_y;
+    return fabsf((x - p->x) * a->normal_x + (y - p->y) * a->normal_y) <= room &&
+           (a->count == 1 || (first >= -room && second <= room));
+}
+
 /* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
 static void drop_seam(row_list *list, size_t from, size_t to) {
     const narc_manifold gone = get_row(list, from), left = get_row(list, to);
@@ -202,8 +222,10 @@ static bool compare_rows(row_list *list, size_t j, size_t k) {
         drop_row(list, find_separation(&a) < find_separation(&b) ? j : k);
         return false;
     }
-    if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
-        const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
+    const bool is_one_run = run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b);
+    const bool is_flush =
+        is_one_run ? has_same_normal(&a, &b, SAME_RUN_NORMAL) : goes_over(&a, &b) || goes_over(&b, &a);
+    if (is_one_run || is_flush) {
         const float one = find_separation(&a), other = find_separation(&b);
         if (is_flush && list->manifolds)
             join_rows(&list->manifolds[j], &b);

@@ -32,6 +32,9 @@ typedef struct narc_chain {
     size_t count;
     bool closed;
     double weld;
+    double thickness;      /* none of its solid is thicker */
+    ptrdiff_t number, way; /* the caller's number of arc 0 that was read, and what is added for each after it */
+    size_t most;           /* no number is greater */
 } narc_chain;
 
 static inline double narc_find_seam(const narc_chain_arc *convex) {

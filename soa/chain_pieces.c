@@ -62,6 +62,7 @@
  * found. */
 #define KNOWN      2.0
 #define KNOWN_PART 0.99
+#define DEPTH_ROOM 1.001 /* for rounding */
 
 /* A corner that turns by more has nothing behind it along some of its normals. */
 #define RIGHT_ANGLE (NARC_PI / 2 + 1e-6)
@@ -152,18 +153,34 @@ static bool ends_in_sharp(const narc_chain *chain, const narc_chain_arc *arc) {
 
 static float keep_part(double length) { return (float)(KNOWN_PART * length); }
 
-/* Of a front with so many arcs. Nothing is known before there is a store. */
-static narc_solid measure_solid(const divider *d, const narc_arc *arcs, size_t count, const narc_point ends[2],
-                                const narc_chain_place places[2], narc_point origin, double size, bool holds_sharp) {
-    const double most = KNOWN * size;
-    narc_solid solid = {.thickness = 0};
-    if (!d->out->shapes)
+/* An end of a front: from the origin, with its normal there, and where it is on the chain. */
+typedef struct front_end {
+    narc_point at;
+    double angle;
+    narc_chain_place place;
+} front_end;
+
+/* What is known of the solid around a front of so many arcs. Nothing is before there is a store. */
+static narc_solid measure_solid(const divider *d, const narc_arc *arcs, size_t count, const front_end ends[2],
+                                narc_point origin, double size, bool holds_sharp) {
+    const double most = fmin(KNOWN * size, d->chain->thickness);
+    narc_solid solid = {.thickness = most > 0 ? 0 : -0.0f};
+    if (!d->out->shapes || !(most > 0))
         return solid;
     if (!holds_sharp)
-        solid.thickness = keep_part(narc_find_thickness(d->curves, arcs, count, ends[0], ends[1], origin, most));
-    for (int k = 0; k < 2; k++)
-        solid.clearance[k] = keep_part(
-            narc_find_clearance(d->curves, (narc_point){origin.x + ends[k].x, origin.y + ends[k].y}, places[k], most));
+        solid.thickness = keep_part(narc_find_thickness(d->curves, arcs, count, ends[0].at, ends[1].at, origin, most));
+    double depth = (double)solid.thickness;
+    for (int k = 0; k < 2; k++) {
+        const front_end *end = &ends[k], *other = &ends[1 - k];
+        const narc_point at = {origin.x + end->at.x, origin.y + end->at.y};
+        solid.clearance[k] = keep_part(narc_find_clearance(d->curves, at, end->place, most));
+        /* Near an end, behind a place of the front that lies the higher, the further it is from there. */
+        narc_point n;
+        narc_find_normal(other->angle, &n.x, &n.y);
+        const double rise = (other->at.x - end->at.x) * n.x + (other->at.y - end->at.y) * n.y;
+        depth = fmax(depth, (double)solid.clearance[k] + fmax(0, rise));
+    }
+    solid.depth = (float)(DEPTH_ROOM * depth);
     return solid;
 }
 
@@ -249,8 +266,8 @@ static void end_piece(divider *d, narc_point end, narc_chain_place after) {
     double size = measure_front(p, begin);
     if (size <= POINT * d->reach)
         size = d->reach / 8;
-    const narc_solid solid = measure_solid(d, p->arcs + 1, p->count, (narc_point[]){begin, stop},
-                                           (narc_chain_place[]){p->before, after}, middle, 2 * size, p->is_sharp);
+    const front_end ends[2] = {{begin, p->begin_angle, p->before}, {stop, p->end_angle, after}};
+    const narc_solid solid = measure_solid(d, p->arcs + 1, p->count, ends, middle, 2 * size, p->is_sharp);
     if (p->begins_in_corner)
         begin = move(begin, p->begin_angle - NARC_PI / 2, FIN * size);
     if (p->ends_in_corner) {
@@ -412,10 +429,10 @@ static void divide_concave(divider *d, size_t k) {
         const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};
         narc_encoded_shape encoded;
         narc_error reason = {.status = NARC_OK};
-        const narc_solid solid = measure_solid(
-            d, &own, 1, (narc_point[]){{start.x - middle.x, start.y - middle.y}, {end.x - middle.x, end.y - middle.y}},
-            (narc_chain_place[]){{arc, low}, {arc, high}}, middle, fmax(find_distance(start, end), near),
-            ends_in_sharp(chain, arc));
+        const front_end ends[2] = {{{start.x - middle.x, start.y - middle.y}, own.start, {arc, low}},
+                                   {{end.x - middle.x, end.y - middle.y}, own.end, {arc, high}}};
+        const narc_solid solid =
+            measure_solid(d, &own, 1, ends, middle, fmax(find_distance(start, end), near), ends_in_sharp(chain, arc));
         const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &solid, &encoded, &reason);
         if (status != NARC_OK)
             fail_piece(d, status, arc->number, &reason);

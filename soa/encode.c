@@ -431,7 +431,7 @@ static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, d
 }
 
 static bool is_solid(const narc_solid *solid) {
-    const float lengths[] = {solid->thickness, solid->clearance[0], solid->clearance[1]};
+    const float lengths[] = {solid->thickness, solid->clearance[0], solid->clearance[1], solid->depth};
     bool is = true;
     for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++)
         is = is && lengths[k] >= 0 && isfinite(lengths[k]);

@@ -111,7 +111,9 @@ typedef struct narc_pairs {
  *                     row; below 0 they go backwards, from the one at out_rows; 0: no gaps
  *   workers           threads to use; NULL: the calling one. Lists are made by several only as far as they have room
  *                     for a row for each pair
- *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are */
+ *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are
+ *   front_only        not 0: a body deeper in a piece of a chain than the centre of its bounding circle, which is then
+ *                     behind the piece, has no contact with it: so it jumps up through a platform, and lands on it */
 typedef struct narc_query {
     float margin;
     float second_margin;
@@ -125,7 +127,8 @@ typedef struct narc_query {
     ptrdiff_t row_stride;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    uint32_t front_only;
+    void *reserved[3]; /* NULL */
 } narc_query;
 
 /* ------------------------------------------------------------------------------------------------ rows */

@@ -32,8 +32,8 @@ static double find_reach(const narc_toucher *a, const narc_toucher *b) {
     const narc_toucher *const body = narc_is_piece(a->header) ? b : a;
     double size;
     if (!narc_is_piece(body->header))
-        return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, &size) +
-                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size) +
+        return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, 0, &size) +
+                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, 0, &size) +
                               WIDTH_ROOM * (double)body->header->bound_radius);
     const double size_a = find_piece_size(a), size_b = find_piece_size(b);
     const double least = size_a < size_b ? size_a : size_b, most = 0.125 * (size_a < size_b ? size_b : size_a);
@@ -115,7 +115,7 @@ static bool lies_near_end(const view *v, spot w) {
     const seen_arc first = see_arc(v, 0), last = hollow ? first : see_arc(v, header->count - 5u);
     const spot along = {-w.y, w.x}, end[2] = {hollow ? first.first : first.last, hollow ? last.last : last.first};
     double size, low = INFINITY, high = -INFINITY;
-    const double height = narc_find_front_height(v->body->header, v->body->arcs, w.x, w.y, &size);
+    const double height = narc_find_front_height(v->body->header, v->body->arcs, w.x, w.y, 0, &size);
     const double flat = height - v->room - 0x1p-20 * size;
     for (size_t k = 0; k < v->body->header->count; k++) {
         const seen_arc arc = see_own(&v->body->arcs[k].arc);
@@ -166,8 +166,8 @@ static bool meets_line(const view *v, spot p, spot q) {
     if (length > 0) {
         const spot n = {way.y / length, -way.x / length};
         const double height = dot(p, n);
-        if (height > narc_find_front_height(header, v->body->arcs, n.x, n.y, &size) + v->room ||
-            -height > narc_find_front_height(header, v->body->arcs, -n.x, -n.y, &size) + v->room)
+        if (height > narc_find_front_height(header, v->body->arcs, n.x, n.y, 0, &size) + v->room ||
+            -height > narc_find_front_height(header, v->body->arcs, -n.x, -n.y, 0, &size) + v->room)
             return false;
     }
     for (size_t k = 0; k < header->count; k++) {
@@ -246,16 +246,30 @@ static bool meets_front(const view *v) {
     return false;
 }
 
-bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation) {
+/* Is the middle of a body, `depth` deep along its outward normal w, behind the front? */
+static bool is_behind(const narc_toucher *body, spot w, double depth) {
+    double size;
+    const double height = narc_find_front_height(body->header, body->arcs, w.x, w.y, 0, &size);
+    return depth > body->scale * (height - (double)body->header->bound_x * w.x - (double)body->header->bound_y * w.y);
+}
+
+bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation, bool front_only) {
     const bool of_a = narc_is_piece(a->header);
     const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
     const double depth = -separation, sign = of_a ? -1 : 1; /* normals point from A to B */
-    if (narc_is_shallow(a->header, a->arcs, a->scale, b->header, b->arcs, b->scale, separation))
+    const spot w = {sign * body->x, sign * body->y};
+    if (depth <= 0)
         return true;
-    if (depth <= 0 || depth > find_reach(a, b))
-        return depth <= 0;
-    if (narc_is_piece(body->header))
+    const double reach = find_reach(a, b);
+    if (depth > reach || narc_is_piece(body->header))
+        return depth <= reach;
+    if (front_only && is_behind(body, w, depth))
+        return false;
+    const double thickness = (double)piece->arcs[piece->header->count].solid.thickness;
+    if (narc_is_shallow(body->header, body->scale, piece->scale * thickness, separation))
         return true;
     const view seen = make_view(piece, body);
-    return lies_near_end(&seen, (spot){sign * body->x, sign * body->y}) || meets_front(&seen);
+    if (signbit(thickness)) /* of a line in the air that side tells of a body on which there is less of it */
+        return depth <= reach / 2 && meets_front(&seen);
+    return lies_near_end(&seen, w) || meets_front(&seen);
 }

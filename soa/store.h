@@ -115,12 +115,13 @@ typedef struct narc_stored_arc {
 
 /* Behind the arcs of a piece of a chain, what is known of the solid there, in the unit of the shape (soa/piece.h):
  *   thickness   So far, at least, the solid goes on behind every place of the front, against its normals there; 0 if
- *               it does not along some, as at a corner that turns by more than a right angle.
+ *               it does not along some, as at a corner that turns by more than a right angle; -0 of a line in the air.
  *   clearance   Of both ends of the front, in the order of the arcs: so far, at least, all is that is not the surface
- *               around them. */
+ *               around them.
+ *   depth       No contact that reaches the front is deeper behind it. Boxes hold all of that. */
 typedef struct narc_solid {
-    float thickness, clearance[2];
-    float unused[5]; /* 0 */
+    float thickness, clearance[2], depth;
+    float unused[4]; /* 0 */
 } narc_solid;
 
 typedef union narc_record {

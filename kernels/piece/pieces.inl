@@ -55,41 +55,50 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
 }
 
 /* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
- * (soa/piece.h). `n`: in A's frame. */
+ * (soa/piece.h). `n`: in A's frame. Most are shallow: of them no more is looked at than that. */
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
     const narc_batch *const batch = call->batch;
-    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
-    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
+    const bool front_only = batch->query->front_only != 0;
+    const narc_shape_header *header[V_WIDTH][2];
     int32_t pair[V_WIDTH];
-    float field[2][5][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
-    for (int side = 0; side < 2; side++) {
-        const vf fields[5] = {get(queue, side ? SCALE_B : SCALE_A, k), normal[side].x, normal[side].y, way[side].x,
-                              way[side].y};
-        for (int f = 0; f < 5; f++)
-            v_store(field[side][f], fields[f]);
-    }
+    float scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
+    uint32_t left = 0;
     get_pairs(queue, k, pair);
+    v_store(scale[0], get(queue, SCALE_A, k));
+    v_store(scale[1], get(queue, SCALE_B, k));
     v_store(depth, separation);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes);
         const size_t number = find_number(call, pair[l]);
-        const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
-                                                    find_header(batch, batch->b, batch->pairs->b, number)};
-        const narc_record *const arcs[2] = {narc_arcs_of(batch->shapes, header[0]),
-                                            narc_arcs_of(batch->shapes, header[1])};
+        header[l][0] = find_header(batch, batch->a, batch->pairs->a, number);
+        header[l][1] = find_header(batch, batch->b, batch->pairs->b, number);
+        const int side = narc_is_piece(header[l][0]) ? 0 : 1;
+        const narc_shape_header *const piece = header[l][side], *const body = header[l][1 - side];
+        const narc_record *const last = &batch->shapes->records[piece->first_record + narc_count_records(piece) - 1];
+        if (front_only || narc_is_piece(body) ||
+            !narc_is_shallow(body, (double)scale[1 - side][l], (double)scale[side][l] * (double)last->solid.thickness,
+                             (double)depth[l]))
+            left |= lanes & (0 - lanes);
+    }
+    if (!left)
+        return vm_front(0);
+    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
+    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
+    float field[2][4][V_WIDTH];
+    for (int side = 0; side < 2; side++) {
+        const vf fields[4] = {normal[side].x, normal[side].y, way[side].x, way[side].y};
+        for (int f = 0; f < 4; f++)
+            v_store(field[side][f], fields[f]);
+    }
+    for (; left; left &= left - 1) {
+        const int l = FIND_LOWEST(left);
         narc_toucher touching[2];
-        if (narc_is_shallow(header[0], arcs[0], (double)field[0][0][l], header[1], arcs[1], (double)field[1][0][l],
-                            (double)depth[l]))
-            continue;
         for (int side = 0; side < 2; side++)
-            touching[side] = (narc_toucher){header[side],
-                                            arcs[side],
-                                            (double)field[side][0][l],
-                                            (double)field[side][1][l],
-                                            (double)field[side][2][l],
-                                            (double)field[side][3][l],
-                                            (double)field[side][4][l]};
-        unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l]) ? 0 : 1;
+            touching[side] = (narc_toucher){header[l][side],           narc_arcs_of(batch->shapes, header[l][side]),
+                                            (double)scale[side][l],    (double)field[side][0][l],
+                                            (double)field[side][1][l], (double)field[side][2][l],
+                                            (double)field[side][3][l]};
+        unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));
 }
