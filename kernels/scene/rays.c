@@ -4,7 +4,7 @@
  *
  * The lanes are a node's eight slots. A slot's box is met from `near` to `far` along the ray, which are computed in
  * single precision with room, so that nothing is lost that ray_entry.inl would find; then it makes no difference which
- * boxes are met besides, or in which order. Rays that start outside of all boxes are moved to where they meet them
+ * boxes are met besides, in which order, and how large they are. Rays that start outside of all boxes are moved to where they meet them
  * first: so the room is in proportion to the scene. A near, a far err by three roundings in proportion, and by the
  * rounding of the start, up to 2^-24 of it.
  */
@@ -133,23 +133,38 @@ static bool read_ray(const narc_rays *rays, size_t k, struct ray *out, float *ou
            out->length <= DBL_MAX && fraction >= 0;
 }
 
-/* Sets a ray out from where it meets the scene. False if it never does. */
-static bool begin_walk(const narc_box *scene, struct walk *w) {
-    const struct stretch stretch = find_box_stretch(&w->ray, scene);
-    if (!(stretch.to >= 0)) /* it is behind, or empty */
-        return false;
-    w->base = find_least(find_most(stretch.from, 0), DBL_MAX);
-    const place start = {w->ray.origin.x + w->base * w->ray.direction.x,
-                         w->ray.origin.y + w->base * w->ray.direction.y};
+/* A ray meets a body that it passes by TOUCH, and what rounding adds, perhaps beside its box. For each unit of the
+ * extent's ratio to the bounding radius, which is less than 1.42 times the scene's largest coordinate. */
+#define TOUCH_ROOM 0x1p-19
+
+/* Cuts from .. to down to where a line lies between two sides. NaN on a side that it lies in. */
+INLINE void cut_stretch(double low, double high, double origin, double inverse, double *from, double *to) {
+    const double a = (low - origin) * inverse, b = (high - origin) * inverse;
+    const double first = inverse < 0 ? b : a, last = inverse < 0 ? a : b;
+    *from = first > *from ? first : *from;
+    *to = last < *to ? last : *to;
+}
+
+/* Sets a ray out from where it meets the scene, with room. False if it never does. */
+static bool begin_walk(const narc_box *scene, const narc_shapes *shapes, struct walk *w) {
+    const place origin = w->ray.origin, inverse = w->ray.inverse;
     const double size = find_most(find_most(-(double)scene->min_x, (double)scene->max_x),
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
-    const double far = fabs(w->ray.origin.x) + fabs(w->ray.origin.y);
-    const double room = (fabs(start.x) + fabs(start.y) + size) * (double)ROOM + far * 0x1p-48;
+    const double touch = size * ((double)ROOM + (double)shapes->largest_ratio * TOUCH_ROOM) +
+                         (fabs(origin.x) + fabs(origin.y)) * 0x1p-48;
+    double from = 0, to = INFINITY;
+    cut_stretch((double)scene->min_x - touch, (double)scene->max_x + touch, origin.x, inverse.x, &from, &to);
+    cut_stretch((double)scene->min_y - touch, (double)scene->max_y + touch, origin.y, inverse.y, &from, &to);
+    if (!(to >= 0)) /* it is behind, or empty */
+        return false;
+    w->base = find_least(from, DBL_MAX);
+    const place start = {origin.x + w->base * w->ray.direction.x, origin.y + w->base * w->ray.direction.y};
+    const double room = (fabs(start.x) + fabs(start.y)) * (double)ROOM + touch;
     w->room = clip_to_float(room);
     w->x = set_axis(offsetof(narc_index_node, min_x) / sizeof(float), offsetof(narc_index_node, max_x) / sizeof(float),
-                    start.x, room, w->ray.inverse.x);
+                    start.x, room, inverse.x);
     w->y = set_axis(offsetof(narc_index_node, min_y) / sizeof(float), offsetof(narc_index_node, max_y) / sizeof(float),
-                    start.y, room, w->ray.inverse.y);
+                    start.y, room, inverse.y);
     return true;
 }
 
@@ -200,10 +215,8 @@ INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
 /* Casts a ray at the body in a leaf's slot. Is it done? */
 INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
                          unsigned slot) {
-    const narc_index_node *const node = &batch->index->nodes[leaf];
-    const narc_box box = {node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
     narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
-    if (hit.body == w->ignored || !cast_at_body(frame, &w->ray, batch->options->inside, &box, w->limit_fraction, &hit))
+    if (hit.body == w->ignored || !cast_at_body(frame, &w->ray, batch->options->inside, w->limit_fraction, &hit))
         return false;
     keep_hit(w, batch->most, &hit);
     return batch->options->any;
@@ -442,7 +455,7 @@ static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k,
     struct walk *const w = &b->walks[b->count];
     w->ray = ray;
     if (!joins) {
-        if (!begin_walk(scene, w))
+        if (!begin_walk(scene, batch->shapes, w))
             return true;
         b->open = is_open(scene, w) && !batch->options->any; /* which hit is found of any depends on the way */
     }
