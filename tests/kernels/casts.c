@@ -362,6 +362,49 @@ TEST(test_quarter_turn) {
     }
 }
 
+/* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
+ * beside its position turns with it. */
+TEST(test_circles_that_turn) {
+    enum { PAIRS = 64 };
+    struct test_random random = test_random_named("circles that turn");
+    size_t hits = 0, beside = 0;
+    for (size_t k = 0; k < test_trials(60); k++) {
+        struct scene scene = create_scene((narc_precision)(k % 2), 2, 2 * PAIRS, PAIRS);
+        const double radius = random_log_between(&random, 0.3, 3);
+        struct shape circle = circle_of(radius);
+        const struct shape other =
+            k % 3 ? make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT)) : circle;
+        if (k % 5 == 4)
+            circle.arcs[0].center_x = 0.25 * radius;
+        scene_add_shape(&scene, k % 4 < 2 ? &circle : &other);
+        scene_add_shape(&scene, k % 4 < 2 ? &other : &circle);
+        for (int pair = 0; pair < PAIRS; pair++)
+            scene_add_placed(&random, &scene, (enum placement)random_below(&random, PLACE_COUNT), 0, 1);
+        struct moving m = set_in_motion(&random, scene, k % 2 ? 2 : 0);
+        const int of = k % 4 < 2 ? 0 : 1;
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = (float)random_between(&random, -7, 7);
+        narc_impact *const turning = cast_all(&m, 1, NULL);
+        struct tally tally = {.at_start = 0};
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            check_row(&m, pair, &turning[pair], &tally);
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = 0;
+        narc_impact *const straight = cast_all(&m, 1, NULL);
+        for (size_t pair = 0; pair < scene.pair_count; pair++) {
+            const bool same = memcmp(&turning[pair], &straight[pair], sizeof *straight) == 0;
+            hits += same && straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
+            beside += !same;
+            assert_true(same || k % 5 == 4);
+        }
+        guard_release(turning);
+        guard_release(straight);
+        destroy_moving(&m);
+    }
+    print_message("%zu hits of circles about their positions, %zu others of those beside\n", hits, beside);
+    assert_true(hits > 0 && beside > 0);
+}
+
 /* Rotations are as long as they may be, or by a float longer. */
 TEST(test_longest_rotations) {
     const float sine = sqrtf((float)NARC_ROTATION_TOLERANCE);
