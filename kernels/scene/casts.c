@@ -106,11 +106,10 @@ INLINE vd find_moved(const struct narc_cast_side *side, size_t k) {
 }
 
 /* What a hit may be away from the target by default, as far as it is up to one of the bodies: a small part of its size,
- * and of its thickness if it has one. */
+ * and of its thickness. */
 INLINE vd find_tolerance(const struct narc_cast_side *side, size_t k, const struct outline *outline, int h) {
-    const vd inner = d_of_floats(outline->inner + h),
-             by_size = d_set(NARC_TURNING_TOLERANCE) * d_of_floats(outline->bound + h),
-             by_thickness = d_select(d_lt(d_set(0), inner), d_set(THICKNESS_PART) * inner, by_size);
+    const vd by_size = d_set(NARC_TURNING_TOLERANCE) * d_of_floats(outline->bound + h),
+             by_thickness = d_set(THICKNESS_PART) * d_of_floats(outline->inner + h);
     return d_of_floats(side->scale + k) * d_min(by_size, by_thickness);
 }
 
