@@ -228,66 +228,80 @@ struct ray {
     double inverse_length;
 };
 
-/* The ray starts in the body. */
-INLINE void stop_inside(place way, narc_ray_hit *out) {
-    out->fraction = 0;
-    out->feature = 0;
-    out->normal_x = out->normal_y = out->radius = 0;
-    out->point_x = (float)-way.x;
-    out->point_y = (float)-way.y;
-}
-
-/* Fills a row, but for the ray and the body, if the ray meets the body at no more than `limit` of its motion. A ray that
- * starts in the ground does not meet it. */
-INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, narc_inside inside, float limit,
-                         narc_ray_hit *out) {
+/* Where a ray meets a body. */
+struct meeting {
+    struct line line;
     struct entry entry;
+    double ahead;    /* the middle, along the line, from the start */
+    double distance; /* in the world's unit */
+    bool is_within;  /* the ray starts in the body */
+    bool is_start;   /* and stops there */
+};
+
+/* False if it does not. A ray that starts in the ground does not meet it. `passes`: where it leaves counts, wherever it
+ * starts. */
+INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
+                         struct meeting *out) {
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
     const place v = turn_to_shape(frame, ray->direction), turned = turn_to_shape(frame, way);
     const place middle = {(double)header->bound_x, (double)header->bound_y};
     const place center = {turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y};
     const double beside = find_cross(v, center), ahead = find_dot(v, center);
-    const double radius = (double)header->bound_radius, touch = find_touch(header);
+    const double radius = (double)header->bound_radius;
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    struct line line = {foot, v, beside, touch};
-    if (!find_first_entry(frame, &line, &entry))
+    out->line = (struct line){foot, v, beside, find_touch(header)};
+    out->ahead = ahead;
+    out->is_within = out->is_start = false;
+    if (!find_first_entry(frame, &out->line, &out->entry))
         return false;
-    double distance = (ahead + entry.along) * frame->scale;
-    if (distance <= 0) {
-        if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
-            return false;
-        struct entry exit;
-        line.direction = (place){-v.x, -v.y};
-        line.beside = -beside;
-        const bool leaves = find_entry(frame, &line, &exit);
-        distance = leaves ? (ahead - exit.along) * frame->scale : distance;
-        if (!(distance >= 0))
-            return false;
-        if (inside == NARC_INSIDE_STOPS) {
-            stop_inside(way, out);
-            return true;
-        }
-        if (leaves)
-            entry = exit;
+    out->distance = (ahead + out->entry.along) * frame->scale;
+    if (out->distance > 0 && !passes)
+        return true;
+    if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
+        return false;
+    struct entry exit;
+    const struct line back = {foot, {-v.x, -v.y}, -beside, out->line.touch};
+    const bool leaves = find_entry(frame, &back, &exit);
+    out->distance = leaves ? (ahead - exit.along) * frame->scale : out->distance;
+    if (leaves)
+        out->entry = exit;
+    out->is_within = true;
+    out->is_start = inside == NARC_INSIDE_STOPS;
+    return out->distance >= 0;
+}
+
+/* Fills a row, but for the ray and the body. False if the meeting is beyond `limit` of the ray's motion. */
+INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
+                        narc_ray_hit *out) {
+    const struct entry *const entry = &met->entry;
+    const place foot = met->line.foot, v = met->line.direction;
+    if (met->is_start) {
+        out->fraction = 0;
+        out->feature = 0;
+        out->normal_x = out->normal_y = out->radius = 0;
+        out->point_x = (float)(ray->origin.x - frame->position.x);
+        out->point_y = (float)(ray->origin.y - frame->position.y);
+        return true;
     }
-    const double fraction = distance * ray->inverse_length, along = distance * frame->inverse_scale - ahead;
+    const double fraction = met->distance * ray->inverse_length;
+    const double along = met->distance * frame->inverse_scale - met->ahead;
     if (!(fraction <= (double)FLT_MAX))
         return false;
     out->fraction = (float)fraction;
     if (out->fraction > limit)
         return false;
-    const bool is_edge = entry.on_edge && is_edge_before(frame, entry.arc);
+    const bool is_edge = entry->on_edge && is_edge_before(frame, entry->arc);
     const place point = turn_to_world(frame, (place){foot.x + along * v.x, foot.y + along * v.y});
-    const place normal = turn_to_world(frame, entry.normal);
-    out->feature = (uint16_t)find_feature_number(header, entry.arc, is_edge);
+    const place normal = turn_to_world(frame, entry->normal);
+    out->feature = (uint16_t)find_feature_number(frame->header, entry->arc, is_edge);
     out->normal_x = (float)normal.x;
     out->normal_y = (float)normal.y;
     out->point_x = (float)(point.x * frame->scale);
     out->point_y = (float)(point.y * frame->scale);
-    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry.arc].arc.radius * frame->scale);
+    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry->arc].arc.radius * frame->scale);
     return true;
 }
 
