@@ -520,7 +520,7 @@ static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k,
     }
     w->rows = rows;
     w->found = 0;
-    w->chosen = choose(&batch->options->search, k);
+    w->chosen = read_chosen(&batch->options->search, k);
     set_limit(w, fraction);
     if (++b->count == MOST_TOGETHER)
         walk(batch, b);

@@ -124,7 +124,7 @@ void NARC_NAMED(regions)(const narc_region_batch *batch, size_t first, size_t co
     const bool ignores = batch->query->ignored.base || (owners && owners->ignored.base);
     for (size_t k = first; k < first + count; k++) {
         const narc_box *const box = &batch->boxes[k];
-        const struct chosen chosen = choose(batch->query, k);
+        const struct chosen chosen = read_chosen(batch->query, k);
         if (narc_is_full_box(box) && chosen.mask != 0) {
             const struct region region = {v_set(box->min_x), v_set(box->min_y), v_set(box->max_x), v_set(box->max_y),
                                           chosen};

@@ -19,7 +19,7 @@ struct chosen {
     uint32_t ignored, ignored_owner; /* UINT32_MAX: none */
 };
 
-INLINE struct chosen choose(const narc_index_query *query, size_t k) {
+INLINE struct chosen read_chosen(const narc_index_query *query, size_t k) {
     const narc_owners *const owners = query->owners;
     return (struct chosen){owners, query->mask.base ? narc_word_at(query->mask, k) : UINT64_MAX,
                            query->ignored.base ? narc_index_at(query->ignored, k) : UINT32_MAX,

@@ -299,7 +299,12 @@ TEST(same_bits_however_asked) {
         struct room room = create_room(&random, (narc_precision)precision, COUNT, 40);
         struct test_ray *const rays = make_rays(&random, &room, RAYS, 40), *const mixed = calloc(RAYS, sizeof *mixed);
         const narc_rays view = view_rays(rays, RAYS);
+        uint32_t owner[COUNT];
+        for (size_t k = 0; k < COUNT; k++)
+            owner[k] = (uint32_t)k / 4;
+        const narc_owners owners = {.owner = NARC_ARRAY(owner)};
         narc_ray_options options = {.most = MOST, .inside = (narc_inside)precision};
+        options.search.owners = precision ? &owners : NULL;
         test_use_isa("scalar");
         narc_ray_hit *const right = cast_in_room(&room, &view, &options);
         test_use_isa(test_isa());

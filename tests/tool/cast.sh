@@ -55,6 +55,20 @@ works "no bodies" cast --shapes shapes.json --bodies none.csv --rays rays.csv --
 check "only the header" lines none.txt 1
 works "pictures" cast $known --rays rays.csv --picture rays.png
 check "PNG" begins_with rays.png "XPNG"
+# A bar of three tiles is one body: seams are not met.
+cat > bar.json <<'END'
+{"shapes": [{"name": "bar/1", "box": {"width": 1, "height": 1}, "origin": [0, 0]},
+            {"name": "bar/2", "box": {"width": 1, "height": 1}, "origin": [1, 0]},
+            {"name": "bar/3", "box": {"width": 1, "height": 1}, "origin": [2, 0]}]}
+END
+printf 'shape,x,y,angle\nbar,1,0,0\n' > bar.csv
+printf 'x,y,motion_x,motion_y\n0,0,10,0\n-5,0,10,0\n' > bar_rays.csv
+bar="--shapes bar.json --bodies bar.csv --rays bar_rays.csv"
+works "leaves a whole" cast $bar --inside leaves --most 3 --out bar_hits.csv
+check "by its end" hit bar_hits.csv 2 "0 0 0.25 1 0 2.5 0"
+check "and enters it once" hit bar_hits.csv 3 "1 0 0.45 -1 0 -0.5 0"
+works "ignores a whole" cast $bar --inside ignores --out bar_hits.csv
+check "not from inside" hit bar_hits.csv 2 "1 0 0.45 -1 0 -0.5 0"
 works "SVG" cast $known --rays rays.csv --most 2 --picture rays.svg
 check "SVG" begins_with rays.svg "<?xml"
 
