@@ -251,7 +251,7 @@ TEST(reads_columns_with_any_stride) {
         asked[k].word = mask[k] = (uint64_t)random_below(&random, 2) << 42 | random_below(&random, 2) << 21;
         asked[k].index = ignored[k] = (uint32_t)random_below(&random, COUNT);
     }
-    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored};
+    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored, NULL, NULL};
     const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
     const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
     struct pair_list expected = find_all(&q);
@@ -280,8 +280,8 @@ TEST(refuses_bad_arguments) {
     REFUSED(narc_query_index(index, NULL, 1, NULL, &pairs, &error), "boxes is NULL");
     REFUSED(narc_query_index(index, &box, 1, NULL, NULL, &error), "out_pairs is NULL");
     REFUSED(narc_query_index(index, &box, UINT32_MAX, NULL, &pairs, &error), "queries in one call");
-    query.reserved[3] = &query;
-    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[3]");
+    query.reserved[2] = &query;
+    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[2]");
 #undef REFUSED
     assert_int_equal(pairs.count, 7);
     assert_int_equal(narc_query_index(index, &box, 1, NULL, &pairs, NULL), NARC_OK);

@@ -18,7 +18,8 @@ header="ray,body,fraction,normal_x,normal_y,point_x,point_y,arc"
 # hit FILE LINE VALUES: the first seven columns of a row are these numbers, within 2e-7.
 hit() {
     awk -F, -v line="$2" -v want="$3" 'BEGIN { n = split(want, w, " "); bad = 1 }
-        NR == line { bad = NF != 8; for (i = 1; i <= n; i++) { d = $i - w[i]; if (d > 2e-7 || d < -2e-7) bad = 1 } }
+        NR == 1 { columns = NF }
+        NR == line { bad = NF != columns; for (i = 1; i <= n; i++) { d = $i - w[i]; if (d > 2e-7 || d < -2e-7) bad = 1 } }
         END { exit bad }' "$1"
 }
 
