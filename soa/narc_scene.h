@@ -213,7 +213,8 @@ typedef struct narc_cast_options {
     float tolerance;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    narc_float_column targets;
+    void *reserved[2]; /* NULL */
 } narc_cast_options;
 
 /* What became of a cast. */
