@@ -2,12 +2,11 @@
  *
  * loops.c - contours that cross or touch themselves as loops that do not, and the area of contours that cross.
  *
- * A contour is walked, and where it comes to a point again, what lies between is a loop of its own: of two lines that
- * cross each is followed by the other one's rest, so loops touch there. What is walked there and back is a loop without
- * an area.
+ * Where two lines of a contour cross each is followed by the other one's rest: so they no longer cross, but touch, and
+ * what was one contour is loops. The same is done where a contour comes to a point again, if that makes two loops of one.
+ * What is walked there and back is a loop without an area.
  */
 #include <stdlib.h>
-#include <string.h>
 
 #include "error.h"
 #include "outline/crossings.h"
@@ -15,73 +14,81 @@
 #include "outline/vector.h"
 #include "parts/region.h"
 
-/* The points of all contours, with those where a contour crosses itself, and the number of the place of each. */
-typedef struct walk {
-    narc_point *points;
-    size_t *places, *ends;
-    size_t count;
-} walk;
+/* A point of a contour, or one where it crosses itself, and which follows. */
+typedef struct step {
+    narc_point at;
+    size_t contour, next;
+    bool crosses, taken;
+} step;
 
 static bool is_own(const narc_contours *contours, const narc_crossing *at) {
     return narc_find_contour(contours->ends, contours->count, at->line) ==
            narc_find_contour(contours->ends, contours->count, at->other);
 }
 
-static void list_points(const narc_contours *contours, const narc_crossings *crossings, walk *out) {
-    size_t next = 0;
-    for (size_t k = 0, i = 0; k < contours->count; k++) {
-        const size_t begin = out->count;
+static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
+
+static size_t add_step(step *steps, size_t count, narc_point at, size_t contour, bool crosses) {
+    steps[count] = (step){at, contour, count + 1, crosses, false};
+    return count + 1;
+}
+
+static size_t list_steps(const narc_contours *contours, const narc_crossings *crossings, step *out) {
+    size_t count = 0;
+    for (size_t k = 0, i = 0, next = 0; k < contours->count; k++) {
+        const size_t begin = count;
         for (; i < contours->ends[k]; i++) {
-            out->points[out->count++] = contours->points[i];
+            if (count == begin || !is_same(contours->points[i], out[count - 1].at))
+                count = add_step(out, count, contours->points[i], k, false);
             for (; next < crossings->count && crossings->items[next].line == i; next++) {
                 const narc_crossing *at = &crossings->items[next];
-                if (at->part > 0 && is_own(contours, at))
-                    out->points[out->count++] = at->at;
+                if (at->part > 0 && is_own(contours, at) && !is_same(at->at, out[count - 1].at))
+                    count = add_step(out, count, at->at, k, at->crosses);
             }
         }
-        size_t kept = begin;
-        for (size_t j = begin; j < out->count; j++)
-            if (j == begin || memcmp(&out->points[j], &out->points[kept - 1], sizeof *out->points) != 0)
-                out->points[kept++] = out->points[j];
-        out->count = out->ends[k] = kept;
+        out[count - 1].next = begin;
+    }
+    return count;
+}
+
+static int compare_steps(const void *left, const void *right) {
+    const step *a = *(step *const *)left, *b = *(step *const *)right;
+    return a->at.x != b->at.x   ? (a->at.x > b->at.x) - (a->at.x < b->at.x)
+           : a->at.y != b->at.y ? (a->at.y > b->at.y) - (a->at.y < b->at.y)
+                                : (a > b) - (a < b);
+}
+
+static bool is_in_loop(const step *steps, size_t a, size_t b) {
+    size_t k = steps[a].next;
+    while (k != a && k != b)
+        k = steps[k].next;
+    return k == b;
+}
+
+/* Where a contour comes again to a point, the ways on from there change places. */
+static void link_steps(step *steps, size_t count, step **sorted) {
+    for (size_t k = 0; k < count; k++)
+        sorted[k] = &steps[k];
+    qsort(sorted, count, sizeof *sorted, compare_steps);
+    for (size_t k = 1; k < count; k++) {
+        step *a = sorted[k - 1], *b = sorted[k];
+        if (is_same(a->at, b->at) && a->contour == b->contour &&
+            ((a->crosses && b->crosses) || is_in_loop(steps, (size_t)(a - steps), (size_t)(b - steps)))) {
+            const size_t next = a->next;
+            a->next = b->next;
+            b->next = next;
+        }
     }
 }
 
-static int compare_points(const void *left, const void *right) {
-    const narc_point *a = *(const narc_point *const *)left, *b = *(const narc_point *const *)right;
-    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->y > b->y) - (a->y < b->y);
-}
-
-static void number_places(walk *w, const narc_point **sorted) {
-    for (size_t k = 0; k < w->count; k++)
-        sorted[k] = &w->points[k];
-    qsort(sorted, w->count, sizeof *sorted, compare_points);
-    for (size_t k = 0, place = 0; k < w->count; k++) {
-        place += k > 0 && compare_points(&sorted[k - 1], &sorted[k]) != 0;
-        w->places[sorted[k] - w->points] = place;
-    }
-}
-
-/* Walks all contours. `stack` has points of the loops that are open, `heights` of each place where it stands there, from
- * 1. The loops' points, in their order, come to `out_points`. */
-static void take_loops(const walk *w, size_t *stack, size_t *heights, narc_contours *out) {
-    for (size_t i = 0, k = 0; i < w->count; k++) {
-        size_t height = 0;
-        for (; i <= w->ends[k]; i++) {
-            const bool is_end = i == w->ends[k];
-            const size_t from = is_end ? 1 : heights[w->places[i]], begin = out->point_count;
-            for (size_t j = from; from && j <= height; j++) {
-                out->points[out->point_count++] = w->points[stack[j - 1]];
-                heights[w->places[stack[j - 1]]] = 0;
-            }
-            if (out->point_count > begin)
-                out->ends[out->count++] = out->point_count;
-            height = from ? from - 1 : height;
-            if (is_end)
-                break;
-            stack[height++] = i;
-            heights[w->places[i]] = height;
+static void take_loops(step *steps, size_t count, narc_contours *out) {
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = k; !steps[i].taken; i = steps[i].next) {
+            steps[i].taken = true;
+            out->points[out->point_count++] = steps[i].at;
         }
+        if (out->point_count > (out->count ? out->ends[out->count - 1] : 0))
+            out->ends[out->count++] = out->point_count;
     }
 }
 
@@ -92,31 +99,23 @@ narc_status narc_split_contours(const narc_contours *contours, narc_contours *ou
     if (status)
         return status;
     const size_t most = contours->point_count + crossings.count + 1;
-    walk w = {.points = malloc(most * sizeof *w.points),
-              .places = malloc(most * sizeof *w.places),
-              .ends = malloc((contours->count + 1) * sizeof *w.ends)};
-    const narc_point **sorted = malloc(most * sizeof *sorted);
-    size_t *stack = malloc(most * sizeof *stack), *heights = calloc(most, sizeof *heights);
+    step *steps = malloc(most * sizeof *steps), **sorted = malloc(most * sizeof *sorted);
     narc_contours loops = {.points = malloc(most * sizeof *loops.points),
                            .ends = malloc(most * sizeof *loops.ends),
                            .flatness = contours->flatness};
-    const bool done = w.points && w.places && w.ends && sorted && stack && heights && loops.points && loops.ends;
+    const bool done = steps && sorted && loops.points && loops.ends;
     if (done) {
-        list_points(contours, &crossings, &w);
-        number_places(&w, sorted);
-        take_loops(&w, stack, heights, &loops);
+        const size_t count = list_steps(contours, &crossings, steps);
+        link_steps(steps, count, sorted);
+        take_loops(steps, count, &loops);
         *out_crosses = crossings.count > 0;
         *out_loops = loops;
     } else {
         narc_release_contours(&loops);
     }
     free(crossings.items);
-    free(w.points);
-    free(w.places);
-    free(w.ends);
+    free(steps);
     free(sorted);
-    free(stack);
-    free(heights);
     return done ? NARC_OK
                 : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for an outline of %zu points",
                             contours->point_count);
