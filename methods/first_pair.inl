@@ -23,6 +23,7 @@
 #include "methods/arc_lists.inl"
 #include "methods/boxes.inl"
 #include "methods/outcomes.inl"
+#include "sat/faces.inl"
 #include "simd/simd.h"
 
 INLINE vm in_closed_cone(vec2 start, vec2 end, vec2 u) {
@@ -94,7 +95,7 @@ INLINE void store_first_gap(const struct call *call, const struct queue *queue, 
     if (!vm_any(keep))
         return;
     struct feature on_a, on_b;
-    const vec2 n = find_gap_features(call, queue, k, gap, &on_a, &on_b);
+    const vec2 n = find_gap_features(call, queue, k, keep, gap, &on_a, &on_b);
     store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 
