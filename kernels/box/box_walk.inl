@@ -84,7 +84,7 @@ INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
          .end = find_side_normal(pair, edge[3], true)},
     };
     const vm all = vm_front(V_WIDTH), none = vm_front(0), faces[JUNCTIONS] = {all, all, all, all};
-    const vm loose = is_loose(&arcs, pose.position, best->normal);
+    const vm loose = is_loose(&arcs, pose.position);
     best->normal = v2_divide(best->normal, best->length);
     if (vm_any(loose))
         best->normal = choose_face(&arcs, pose.position, loose, faces, none, none, best->normal);

@@ -43,12 +43,12 @@ INLINE vm are_equal(vec2 p, vec2 q) {
     return vm_and(vm_and(v_le(p.x, q.x), v_le(q.x, p.x)), vm_and(v_le(p.y, q.y), v_le(q.y, p.y)));
 }
 
-/* Is a normal along u of these arcs, or along none that means more, because u is too short or is of rounding's size? */
-INLINE vm is_loose(const struct arc_pair *arcs, vec2 position_b, vec2 normal) {
+/* Are the centres in one place up to rounding? Then a normal that is no face's is made of rounding: along u, or at a
+ * junction where signs have made a kink. */
+INLINE vm is_loose(const struct arc_pair *arcs, vec2 position_b) {
     const vec2 u = find_center_difference(arcs);
-    const vf square = v2_dot(u, u), most = v_mul(v_set(LOOSE_ROOMS), find_gap_room(arcs, position_b));
-    const vm along_u = vm_or(are_equal(normal, u), v_lt(square, v_set(LEAST_SQUARE)));
-    return vm_and(along_u, v_le(square, v_mul(most, most)));
+    const vf most = v_mul(v_set(LOOSE_ROOMS), find_gap_room(arcs, position_b));
+    return v_le(v2_dot(u, u), v_mul(most, most));
 }
 
 /* Does an arc hold the normal of a junction, at an end as well? */
@@ -116,7 +116,7 @@ INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue
     const narc_record *records = call->batch->shapes->records;
     const struct pose pose = get_pose(queue, k);
     const struct arc_pair arcs = load_arc_pair(records, gap->record_a, gap->record_b, &pose);
-    const vm loose = vm_and(which, is_loose(&arcs, pose.position, gap->normal));
+    const vm loose = vm_and(which, is_loose(&arcs, pose.position));
     vec2 n = v2_divide(gap->normal, gap->length);
     if (vm_any(loose))
         tell_faces(call, queue, k, gap, &arcs, loose, &n);
