@@ -8,7 +8,9 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/bodies.inl"
 #include "base/shape.inl"
+#include "base/vec2.inl"
 #include "elementary.h"
 #include "kernels.h"
 #include "narc_scene.h"
@@ -55,15 +57,11 @@ INLINE void load_outline(const narc_shapes *shapes, const struct narc_cast_side 
     v_store(out->round, v_select(round, v_set(1), v_set(0)));
 }
 
-/* Which bodies have no broken numbers, by the kernels' rules (base/pair_setup.inl)? */
+/* Which bodies have no broken numbers? */
 INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct outline *outline) {
-    const vf c = v_load(side->cosine + k), s = v_load(side->sine + k), one = v_set(1);
-    const vf error = v_sub(v_add(v_mul(c, c), v_mul(s, s)), one);
-    const vf size = v_mul(v_load(side->scale + k), v_load(outline->bound));
-    const vm in_range =
-        vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_BOUND_RADIUS)));
-    return vm_and(vm_and(in_range, v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE))),
-                  v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
+    const vm turned = is_rotation((vec2){v_load(side->cosine + k), v_load(side->sine + k)});
+    const vm sized = is_size_in_range(v_mul(v_load(side->scale + k), v_load(outline->bound)));
+    return vm_and(vm_and(sized, turned), v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
 }
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape

@@ -68,15 +68,14 @@ static bool reach_each_other(const struct body_frame *a, const struct body_frame
 static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
                        struct body_frame *out) {
     const struct narc_cast_side *const of = &casts->side[side];
-    const double cosine = (double)of->cosine[slot], sine = (double)of->sine[slot];
-    const double factor = find_inverse_length(cosine * cosine + sine * sine - 1);
-    double turn_x = 1, turn_y = 0;
+    const place rotation = find_rotation(of->cosine[slot], of->sine[slot]);
+    place turn = {1, 0};
     if (of->angle[slot] != 0)
-        narc_find_cosine((double)of->angle[slot] * time, &turn_x, &turn_y);
+        narc_find_cosine((double)of->angle[slot] * time, &turn.x, &turn.y);
     out->position = side == 0 ? (place){0, 0}
                               : (place){casts->x[slot] + time * casts->motion_x[slot],
                                         casts->y[slot] + time * casts->motion_y[slot]};
-    out->rotation = (place){factor * (turn_x * cosine - turn_y * sine), factor * (turn_y * cosine + turn_x * sine)};
+    out->rotation = (place){turn.x * rotation.x - turn.y * rotation.y, turn.y * rotation.x + turn.x * rotation.y};
     out->scale = (double)of->scale[slot];
     out->header = &shapes->headers[of->shape[slot]];
     out->arcs = narc_arcs_of(shapes, out->header);
