@@ -8,9 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "calls.h"
 #include "elementary.h"
 #include "fail.h"
 #include "narc.h"
+#include "narc_broad_phase.h"
 #include "table.h"
 #include "text.h"
 #include "turn.h"
@@ -250,6 +252,21 @@ narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies) {
                                nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
     }
     return boxes;
+}
+
+size_t count_unboxed(const narc_shapes *store, const body_list *bodies) {
+    const narc_bodies view = view_bodies(bodies);
+    narc_box *boxes = allocate(bodies->count, sizeof *boxes);
+    size_t count = 0;
+    narc_error error;
+    check_call(narc_compute_boxes(store, &view, &(narc_box_options){.out_skipped = &count}, boxes, &error), &error);
+    free(boxes);
+    return count;
+}
+
+void print_unboxed(FILE *file, size_t count) {
+    if (count)
+        fprintf(file, "without a box       %zu bodies, beyond the range of single precision\n", count);
 }
 
 narc_bodies view_bodies(const body_list *bodies) {
