@@ -282,8 +282,8 @@ INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, c
         out->fraction = 0;
         out->feature = 0;
         out->normal_x = out->normal_y = out->radius = 0;
-        out->point_x = (float)(ray->origin.x - frame->position.x);
-        out->point_y = (float)(ray->origin.y - frame->position.y);
+        out->point_x = (float)-(frame->position.x - ray->origin.x);
+        out->point_y = (float)-(frame->position.y - ray->origin.y);
         return true;
     }
     const double fraction = met->distance * ray->inverse_length;
