@@ -325,8 +325,9 @@ NARC_API void narc_release_chains(narc_arc_chains *chains);
 
 /* One chain, `pieces[0 .. count-1]`, as arcs in the form of shapes, for ground: with the inside on its left, normals that
  * point to the right, and radii below 0 where it is concave (narc_files.h has it exactly). Straight pieces are the edges
- * between arcs; where pieces meet with an angle above 1e-6 there is an arc of radius 0, or -0 in a valley, and plain
- * points at the ends of an open chain that are ends of lines. `out_arcs` has room for 2 count + 1. NARC_ERROR_ARGUMENT
+ * between arcs; where they meet with an angle above half of NARC_TOLERANCE there is an arc of radius 0, or -0.0 in a valley,
+ * and plain points at the ends of an open chain that are ends of lines. Arcs of more than half a turn become two.
+ * `out_arcs` has room for 3 count + 1. NARC_ERROR_ARGUMENT
  * (NULL), NARC_ERROR_COUNT (no pieces). */
 NARC_API narc_status narc_describe_chain(const narc_curve_arc *pieces, size_t count, bool closed, narc_arc *out_arcs,
                                          size_t *out_count, narc_error *error);

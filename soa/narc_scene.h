@@ -213,7 +213,8 @@ typedef struct narc_cast_options {
     float tolerance;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    narc_float_column targets;
+    void *reserved[2]; /* NULL */
 } narc_cast_options;
 
 /* What became of a cast. */
@@ -313,7 +314,8 @@ typedef struct narc_distance {
  *   out_rows   room for points->count rows
  * With D the distance between point and position, E the body's extent: the separation is within
  * NARC_ERROR_BOUND * (D + E) of the exact one, the place so near to the outline, and no other is nearer by more than
- * that. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
+ * that. Where arcs were given NARC_TOLERANCE apart, the place is within that of the outline, and another may be nearer by
+ * some 1e-3 of the bounding radius. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
  * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 14. */

@@ -17,18 +17,6 @@ static const double LONGEST_LINE = 1.0 / 32;
 
 static size_t begin_of(const size_t *ends, size_t k) { return k ? ends[k - 1] : 0; }
 
-size_t narc_find_contour(const narc_region *region, size_t point) {
-    size_t low = 0, high = region->count;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (region->ends[middle] <= point)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* ---------------------------------------------------------------------------- contours */
 
 static void find_extent(narc_region *region, const narc_contours *contours) {

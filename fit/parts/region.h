@@ -38,9 +38,6 @@ typedef struct narc_region {
     double limit;                                                /* what the sums are for */
 } narc_region;
 
-/* The contour that a point belongs to. */
-size_t narc_find_contour(const narc_region *region, size_t point);
-
 /* Makes the contours; `slack` > 0. NARC_ERROR_COUNT: no points; NARC_ERROR_SIZE: all in one place; NARC_ERROR_MEMORY. */
 narc_status narc_make_region(const narc_contours *contours, double slack, narc_region *out_region, narc_error *error);
 
