@@ -141,7 +141,8 @@ typedef struct narc_query {
  *   count       1; 0: none, and all else but `pair` 0 (see narc_query.dense); or with a margin of +INFINITY no answer,
  *               and separation +INFINITY
  *   separation  signed distance between the bodies, negative: penetration depth
- *   normal      unit, from A to B, world axes
+ *   normal      unit, from A to B, world axes. Where corners, or the centres of round ones, lie in one place up to
+ *               rounding, the normal of an edge beside them, if one's gap is as large but for the error bound
  *   point       halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
  *               position of body A, so that it is precise in a large world; where two edges touch along a stretch,
  *               the middle of that stretch. The point less half the separation along the normal lies on A, and plus

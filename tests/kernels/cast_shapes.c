@@ -49,6 +49,8 @@ static struct stage make_stage(struct test_random *random, narc_precision precis
         body->y = random_between(random, 0, width);
         body->scale *= 0.4f;
         round_position(body, precision);
+        if (k % 40 == 7)
+            *body = fly_away(*body, k / 40, precision);
         s.category[k] = (uint64_t)1 << random_below(random, 64);
     }
     for (size_t k = 0; k < MOVERS; k++) {

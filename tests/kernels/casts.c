@@ -428,6 +428,44 @@ TEST(test_small_turns) {
     assert_true(hits > 0 && 20 * others <= hits);
 }
 
+/* A box that slides along a row of tiles, on them up to rounding, against the next one: it is hit, or not, but never
+ * between two faces. */
+TEST(test_along_tiles) {
+    enum { PAIRS = 400 };
+    struct test_random random = test_random_named("along tiles");
+    struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+    const struct shape tile = box_of(2, 1, 0), box = box_of(0.75, 0.5, 0);
+    struct tally tally = {.at_start = 0};
+    scene_add_shape(&scene, &tile);
+    scene_add_shape(&scene, &box);
+    struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+    double angle[PAIRS];
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        angle[pair] = pair % 4 ? random_between(&random, -4, 4) : 0;
+        const double c = cos(angle[pair]), s = sin(angle[pair]), way = random_between(&random, 0.5, 8);
+        const double x = -1.375 - random_between(&random, 0.01, 0.4), y = 0.75 + random_between(&random, -2e-7, 2e-7);
+        struct body on = turned_body(angle[pair], 1), next = on;
+        next.x = random_between(&random, -20, 20);
+        next.y = random_between(&random, -20, 20);
+        on.x = next.x + c * x - s * y;
+        on.y = next.y + s * x + c * y;
+        on.shape = 1;
+        m.motion[2 * pair] = (struct motion){(float)(c * way), (float)(s * way), 0};
+        scene_add_two(&m.scene, on, next);
+    }
+    narc_impact *const rows = cast_all(&m, 1, NULL);
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        const double c = cos(angle[pair]), s = sin(angle[pair]);
+        const double n_x = (double)rows[pair].normal_x, n_y = (double)rows[pair].normal_y;
+        check_row(&m, pair, &rows[pair], &tally);
+        assert_true(rows[pair].count != NARC_CAST_HIT || fmin(fabs(c * n_x + s * n_y), fabs(c * n_y - s * n_x)) < 1e-6);
+    }
+    print_tally("along tiles", &tally);
+    assert_true(tally.outcomes[NARC_CAST_HIT] > PAIRS / 3);
+    guard_release(rows);
+    destroy_moving(&m);
+}
+
 /* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
  * beside its position turns with it. */
 TEST(test_circles_that_turn) {

@@ -58,6 +58,10 @@ check "PNG" begins_with rays.png "XPNG"
 works "SVG" cast $known --rays rays.csv --most 2 --picture rays.svg
 check "SVG" begins_with rays.svg "<?xml"
 
+printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,1e39,0,0\n' >far.csv
+works "a body without a box" cast --shapes shapes.json --bodies far.csv --rays rays.csv --out far.txt
+check "it is told of" says "without a box 1 bodies, beyond the range of single precision"
+
 fails "rays are missing" "narc: --rays is missing" cast $known --out new.csv
 fails "inside" "narc: --inside must be stops, leaves or ignores 'out'" cast $known --rays rays.csv --inside out --out new.csv
 printf 'x,y,motion_x\n0,0,1\n' >short.csv
