@@ -247,12 +247,16 @@ NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request
 /* Most parts of an outline. */
 #define NARC_MAX_PARTS 256
 
+/* No part reaches further into its neighbours than this many times the lap. */
+#define NARC_LAP_REACH 1.04
+
 typedef struct narc_parts_request {
     size_t most;      /* at most so many parts, 1 .. NARC_MAX_PARTS */
     double tolerance; /* as few parts as are found that no point of is further than this from the outline; 0: the
                          nearest that are found, at most `most` */
     double lap;       /* 0, or how far each part goes on into its neighbours, a length, so that shapes which only
-                         approximate parts leave no seam between them: twice their tolerance is enough */
+                         approximate parts leave no seam between them: twice their tolerance is enough. The tolerance
+                         holds with laps: they take NARC_LAP_REACH times this of it */
     double flatness;  /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
     void *reserved[2];
 } narc_parts_request;
@@ -274,7 +278,8 @@ typedef struct narc_parts {
  * Takes some hundredths of a second with a tolerance, ten times as long without. Free the result with
  * narc_release_parts(). Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (`most`; an outline without points),
  * NARC_ERROR_SIZE (no length; all points in one place), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with so many
- * parts, or is below a 1024th of the extent), NARC_ERROR_MEMORY. */
+ * parts, or without laps and flatness is below a 1024th of the extent: error->value is the least possible one then, or the
+ * distance of the parts that were found), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_cut_path(const narc_path *path, const narc_parts_request *request, narc_parts *out_parts,
                                    narc_error *error);
 NARC_API void narc_release_parts(narc_parts *parts);
@@ -325,8 +330,9 @@ NARC_API void narc_release_chains(narc_arc_chains *chains);
 
 /* One chain, `pieces[0 .. count-1]`, as arcs in the form of shapes, for ground: with the inside on its left, normals that
  * point to the right, and radii below 0 where it is concave (narc_files.h has it exactly). Straight pieces are the edges
- * between arcs; where pieces meet with an angle above 1e-6 there is an arc of radius 0, or -0 in a valley, and plain
- * points at the ends of an open chain that are ends of lines. `out_arcs` has room for 2 count + 1. NARC_ERROR_ARGUMENT
+ * between arcs; where they meet with an angle above half of NARC_TOLERANCE there is an arc of radius 0, or -0.0 in a valley,
+ * and plain points at the ends of an open chain that are ends of lines. Arcs of more than half a turn become two.
+ * `out_arcs` has room for 3 count + 1. NARC_ERROR_ARGUMENT
  * (NULL), NARC_ERROR_COUNT (no pieces). */
 NARC_API narc_status narc_describe_chain(const narc_curve_arc *pieces, size_t count, bool closed, narc_arc *out_arcs,
                                          size_t *out_count, narc_error *error);

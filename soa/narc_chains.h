@@ -12,7 +12,7 @@
  *       radius > 0     convex: normals turn counter-clockwise from `start` to `end`, by at most half a turn
  *       radius 0       a convex corner; or with `start` and `end` equal a plain point: an end of an edge
  *       radius < 0     concave, solid outside the circle: normals turn clockwise from `start` to `end`
- *       radius -0.0    the bottom of a valley, a concave corner
+ *       radius -0.0    the bottom of a valley, a concave corner; so is 0 where normals turn clockwise
  *
  *   A level ground from x = 0 to x = 9 with the solid below is walked from its right end:
  *

@@ -202,18 +202,22 @@ typedef struct narc_motions {
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   target        the separation that is looked for: 0: touch; above 0: closer than that; below 0: so deep
- *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
- *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
+ *   tolerance     where turning moves a body's outline, a hit has a separation within target .. target + tolerance; 0:
+ *                 the least of 1/1024 of the smaller body's bounding radius, 1/64 of the thinner one's inscribed radius,
+ *                 and 1/16 of what turning moves the outlines, but no less than rounding: so a turn of next to nothing
+ *                 is as none. Bodies that do not turn need none: they meet up to rounding
  *   workers       threads to use; NULL: the calling one
  *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
  *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
- *                 finite, and such pairs on the way of the others. NULL: nobody asks */
+ *                 finite, and such pairs on the way of the others. NULL: nobody asks
+ *   targets       a target for each pair instead, of narc_cast_shapes() for each mover; `target` then means nothing */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    narc_float_column targets;
+    void *reserved[2]; /* NULL */
 } narc_cast_options;
 
 /* What became of a cast. */
@@ -247,16 +251,19 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not. Without turning, the time is exact up to
+ * no further than the target at the start hit at fraction 0, parting or not: what touches, or overlaps a little, can't be
+ * cast away from the other body, or along it, but with a target below the separation that it has, such as the contact's
+ * less a little (`targets`). Without turning, the time is exact up to
  * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
  * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
- * counts for what it moves: not for a circle about its position.
+ * counts for what it moves: a circle about its position is cast as if it did not turn, to the bit.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_NOT_FINITE (target, tolerance, or
+ * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                                      const narc_pairs *pairs, const narc_motions *other_motions,
@@ -313,7 +320,8 @@ typedef struct narc_distance {
  *   out_rows   room for points->count rows
  * With D the distance between point and position, E the body's extent: the separation is within
  * NARC_ERROR_BOUND * (D + E) of the exact one, the place so near to the outline, and no other is nearer by more than
- * that. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
+ * that. Where arcs were given NARC_TOLERANCE apart, the place is within that of the outline, and another may be nearer by
+ * some 1e-3 of the bounding radius. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
  * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 14. */

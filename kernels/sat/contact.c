@@ -30,6 +30,7 @@
 #include "polygon/polygon_rows.inl"
 #include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
+#include "sat/faces.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/normal_fan.inl"
 #include "sat/search.inl"
@@ -273,7 +274,7 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
         if (vm_any(keep)) {
             struct feature on_a, on_b;
-            const vec2 n = find_gap_features(call, queue, k, &gap, &on_a, &on_b);
+            const vec2 n = find_gap_features(call, queue, k, keep, &gap, &on_a, &on_b);
             const vm kept = store_rows(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
             collect_edges(call, queue, k, kept, gap.separation, n, &on_a, &on_b);
         }

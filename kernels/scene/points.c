@@ -309,8 +309,12 @@ INLINE float find_limit_key(float separation) {
     return key + fabsf(key) * KEY_ROOM + 0x1p-120f;
 }
 
+/* Below the key of any separation, and still finite with a slot's number in its lowest bits. */
+#define LEAST_KEY (-0x1p126f)
+
 /* Lower bounds of the separations in a node's slots, as keys: within a box the distance to its nearest side, negative,
- * outside the distance to the box. Infinite, or NaN where the point is too far away, for empty slots. */
+ * outside the distance to the box; infinite, or NaN, for empty slots and those that are too far away. Of a box that a
+ * body far away has made large the square may be more than any float. */
 INLINE vf find_keys(const struct search *search, const narc_index_node *node, int k) {
     const vf zero = v_set(0), at_x = v_set(search->x), at_y = v_set(search->y);
     const vf min_x = v_load(node->min_x + k), max_x = v_load(node->max_x + k);
@@ -321,7 +325,7 @@ INLINE vf find_keys(const struct search *search, const narc_index_node *node, in
     const vf y = v_sub(v_max(v_sub(min_y, at_y), v_sub(at_y, max_y)), room);
     const vf depth = v_max(x, y);
     const vec2 outside = {v_max(x, zero), v_max(y, zero)};
-    return v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth)));
+    return v_max(v_set(LEAST_KEY), v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth))));
 }
 
 INLINE void enter_node(const struct search *search, unsigned level, uint32_t node, struct step *step) {
@@ -448,9 +452,10 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
         if (query->ignored.base)
             search.ignored = narc_index_at(query->ignored, k);
         search.rows = batch->out + k * batch->most;
-        search.limit = batch->distance < FARTHEST ? batch->distance : FARTHEST;
+        search.limit = -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance));
         search.limit_key = find_limit_key(search.limit);
-        if (batch->index->level_count > 0 && search.mask != 0)
+        const bool has_answer = fabsf(search.x) <= FLT_MAX && fabsf(search.y) <= FLT_MAX; /* or all boxes are too far */
+        if (batch->index->level_count > 0 && search.mask != 0 && has_answer)
             find_nearest(&search);
         ask_nearest(&search, k, &waiting);
     }

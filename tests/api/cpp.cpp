@@ -588,6 +588,11 @@ void test_casts() {
     narc_impact impact[2];
     CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, options, impact));
     CHECK(same(impact[0], hits[0]) && same(impact[1], hits[1]));
+    const std::vector<float> targets = {0.5f, 0};
+    const auto each = narc::cast_options().target(9).targets(narc::column(targets));
+    CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, each, impact));
+    CHECK(impact[0].fraction < hits[0].fraction && impact[0].separation == 0.5f);
+    CHECK(impact[1].fraction == hits[1].fraction);
 }
 
 void test_poses_and_sets() {

@@ -59,6 +59,8 @@ static struct scene make_scene(struct test_random *random, narc_precision precis
             *(random_below(random, 2) ? &body.x : &body.y) = NAN;
         else if (random_below(random, 20) == 0 && scene.body_count > 0) /* one more of the same: ties */
             body = scene.bodies[random_below(random, scene.body_count)];
+        else if (random_below(random, 50) == 0)
+            body = fly_away(body, random_below(random, 24), precision);
         scene_add_body(&scene, body);
     }
     return scene;

@@ -118,6 +118,8 @@ TEST(finds_what_all_pairs_find) {
                 boxes[k] = random_box(&random, side, 0, size);
             else if (kind == HUGE_ONES && random_below(&random, 3) == 0)
                 boxes[k] = (narc_box){-FLT_MAX, (float)x, random_below(&random, 2) ? FLT_MAX : 1, FLT_MAX};
+            if (random_below(&random, 100) == 0)
+                boxes[k] = far_box(&random);
             category[k] = (uint64_t)random_below(&random, 8) << 31;
         }
         for (size_t k = 0; k < QUERIES; k++) {

@@ -161,6 +161,9 @@ works "ground" collide --shapes ground.json --bodies ground.csv --out on_ground.
 check "ground: three contacts" test "$(tail -n +2 on_ground.csv | cut -d, -f1,2,10,11 | tr '\n' ' ')" = "0,1,0,0 0,2,1,0 0,2,1,0 "
 check "ground: the ball's" grep -q "^0,1,-0.0099.*,0,1,4,-0.005" on_ground.csv
 check "ground: a picture" grep -q "</svg>" ground.svg
+printf 'shape,x,y,angle,scale\nhill,0,0,0,1e8\nball,4,0,0,1\n' >large.csv
+fails "ground that is too large: what lies behind it counts" "large.csv:2: scale .*'1e8'" \
+    collide --shapes ground.json --bodies large.csv
 printf 'x,y,motion_x,motion_y\n5,3,0,-6\n-3,3,0,-6\n5,-3,0,6\n' >down.csv
 works "rays on ground" cast --shapes ground.json --bodies ground.csv --rays down.csv --out hits.csv
 check "rays on ground: two from the air hit" test "$(tail -n +2 hits.csv | cut -d, -f1,2 | tr '\n' ' ')" = "0,0 1,2 "
