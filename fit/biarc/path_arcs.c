@@ -374,12 +374,18 @@ static narc_status add_moves(struct builder *builder, const narc_path *path) {
     return status;
 }
 
+/* Contours that cross by so little, in parts of the largest coordinate, or by half of the tolerance, only touch. */
+static const double CROSSING = 1e-6;
+
 /* All that contours are compared with. */
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
+    double largest = 0;
+    for (size_t k = 0; k < builder->drawn.point_count; k++)
+        largest = fmax(largest, fmax(fabs(builder->drawn.points[k].x), fabs(builder->drawn.points[k].y)));
     if (!status)
-        status = narc_find_crossings(&builder->drawn, !builder->open, builder->tolerance / 2, &builder->crossings,
-                                     builder->error);
+        status = narc_find_crossings(&builder->drawn, !builder->open, fmin(builder->tolerance / 2, CROSSING * largest),
+                                     &builder->crossings, builder->error);
     if (!status && narc_create_shapes(NULL, &builder->store))
         status = fail_memory(builder);
     return status;
