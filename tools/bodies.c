@@ -23,13 +23,13 @@ static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle
 /* The scale of the current row, for this shape. The kernels ignore a body that is too small or too large; a file must not
  * have one. */
 static float read_scale(table *rows, const narc_shapes *store, uint32_t shape) {
-    const narc_body body = {.cosine = 1, .scale = (float)row_number(rows, SCALE), .shape = shape};
-    const narc_bodies one = narc_view_bodies(&body, 1);
+    const narc_body sized = {.cosine = 1, .scale = (float)row_number(rows, SCALE), .shape = shape};
+    const narc_bodies one = narc_view_bodies(&sized, 1);
     if (!(row_number(rows, SCALE) > 0))
         fail_field(rows, SCALE, "must be more than 0");
     if (narc_validate_bodies(store, &one, NULL) != NARC_OK)
         fail_field(rows, SCALE, "makes the body's radius less than %g or more than %g,", NARC_MIN_SIZE, NARC_MAX_SIZE);
-    return body.scale;
+    return sized.scale;
 }
 
 /* Turns angles into cosines and sines. They were reduced to half a turn either way in double precision, so that large

@@ -66,6 +66,11 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
 
 /* What is told of the largest gap: a normal of unit length (sat/faces.inl). */
 INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
+    const vf radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B)),
+             slack = get_box_field(pair, BOX_SLACK);
+    best->normal = v2_divide(best->normal, best->length);
+    if (!vm_any(v_lt(v_add(best->separation, radii), v_add(slack, slack)))) /* |u| is no less */
+        return;
     const struct pose pose = get_box_pose(pair);
     const vi one = vi_set(1), own_a = best->record_a, own_b = best->record_b;
     vi edge[JUNCTIONS] = {own_a, own_b, vi_add(own_a, one), vi_add(own_b, one)};
@@ -85,7 +90,6 @@ INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
     };
     const vm all = vm_front(V_WIDTH), none = vm_front(0), faces[JUNCTIONS] = {all, all, all, all};
     const vm loose = is_loose(&arcs, pose.position);
-    best->normal = v2_divide(best->normal, best->length);
     if (vm_any(loose))
         best->normal = choose_face(&arcs, pose.position, loose, faces, none, none, best->normal);
 }

@@ -140,14 +140,16 @@ INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outlin
     const vl meet = d_le(zero, reach) & meet_circles(apart, motion, reach, &start, &end);
     const vd moved = find_moved(&casts->side[0], k) + find_moved(&casts->side[1], k);
     const vl turns = d_lt(zero, moved);
-    const vd rounding = d_set(ROUNDING) * (radius_a + radius_b + d_abs(target)),
-             given = d_set((double)casts->tolerance),
-             sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
-                           find_tolerance(&casts->side[1], k, &outline[1], h)),
-             usual = d_min(d_set(MOVED_PART) * moved, sizes), named = d_select(d_lt(zero, given), given, usual),
-             enough = d_select(turns, named, zero);
+    vd enough = d_set(ROUNDING) * (radius_a + radius_b + d_abs(target));
+    if (d_any(turns)) {
+        const vd given = d_set((double)casts->tolerance),
+                 sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
+                               find_tolerance(&casts->side[1], k, &outline[1], h)),
+                 usual = d_min(d_set(MOVED_PART) * moved, sizes), named = d_select(d_lt(zero, given), given, usual);
+        enough = d_select(turns & d_lt(enough, named), named, enough);
+    }
     d_store(casts->end + k, end);
-    d_store(casts->enough + k, d_select(d_lt(rounding, enough), enough, rounding));
+    d_store(casts->enough + k, enough);
     d_put_floats(casts->time + k, round_down(start));
     d_put_floats(casts->turning + k, d_select(turns, d_set(1), zero));
     const vd longest = d_set(INFINITY);

@@ -285,14 +285,13 @@ static struct body place_corner(struct test_random *random, const struct shape *
  * corners that are further apart keep the normal between them. */
 TEST(test_corners_within_rounding) {
     enum { PAIRS = 60 };
-    static const enum family families[] = {FAMILY_BOX,     FAMILY_BOX,  FAMILY_POLYGON, FAMILY_CAPSULE,
-                                           FAMILY_ROUNDED, FAMILY_HALF, FAMILY_MIXED,   FAMILY_SEGMENT};
+    static const enum family families[] = {FAMILY_BOX, FAMILY_POLYGON, FAMILY_CAPSULE, FAMILY_ROUNDED, FAMILY_SEGMENT};
     struct test_random random = test_random_named("corners within rounding");
     size_t faces = 0, corners = 0;
     for (size_t k = 0; k < test_trials(300); k++) {
         const bool apart = k % 4 == 3;
-        const struct shape a = make_shape(&random, families[random_below(&random, 8)]),
-                           b = make_shape(&random, families[random_below(&random, 8)]);
+        const struct shape a = make_shape(&random, families[random_below(&random, 5)]),
+                           b = make_shape(&random, families[random_below(&random, 5)]);
         struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
         scene_add_shape(&scene, &a);
         scene_add_shape(&scene, &b);
@@ -326,9 +325,7 @@ TEST(test_corners_within_rounding) {
                     assert_true(sine > 1e-5);
                     corners++;
                 }
-            } else if (gap + radii[pair] < bound / 2 && gap - best < bound / 8) {
-                if (sine > 1e-6)
-                    print_pair(&at_a, &at_b);
+            } else if (gap - best < bound / 8 && fabs(gap + radii[pair]) < bound / 2) {
                 if (sine > 1e-6)
                     fail_msg(
                         "pair %zu of %zu: normal (%.9g, %.9g), %.3g off the nearest face's, of which one has a gap "
