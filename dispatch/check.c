@@ -312,6 +312,17 @@ narc_status narc_check_indexed(const narc_index *index, const narc_bodies *bodie
     return narc_check_set(bodies, error);
 }
 
+narc_status narc_check_search(const narc_index *index, const narc_index_query *query, const char *name,
+                              narc_error *error) {
+    const narc_owners *const owners = query->owners;
+    if (owners && !owners->owner.base && index->count > 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s.owners->owner is NULL", name);
+    for (size_t k = 0; owners && k < sizeof owners->reserved / sizeof(void *); k++)
+        if (owners->reserved[k])
+            return narc_fail(error, NARC_ERROR_ARGUMENT, k, 0, "%s.owners->reserved[%zu] is not NULL", name, k);
+    return CHECK_RESERVED(*query, name, error);
+}
+
 narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                               const narc_workers *workers, narc_error *error) {
     narc_status status = narc_check_set(bodies, error);

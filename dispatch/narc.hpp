@@ -455,6 +455,8 @@ struct index_options : detail::options<index_options, narc_index_options> {
 struct index_query : detail::options<index_query, narc_index_query> {
     index_query &mask(narc_word_column value) noexcept { return set(&narc_index_query::mask, value); }
     index_query &ignored(narc_index_column value) noexcept { return set(&narc_index_query::ignored, value); }
+    index_query &owners(const narc_owners &value) noexcept { return set(&narc_index_query::owners, &value); }
+    index_query &owners(const narc_owners &&) = delete;
 };
 
 class index : public detail::owner<narc_index, narc_create_index, narc_destroy_index> {

@@ -101,8 +101,7 @@ typedef struct narc_ray_batch {
 typedef struct narc_region_batch {
     const narc_index *index;
     const narc_box *boxes;
-    narc_word_column mask;     /* base NULL: none */
-    narc_index_column ignored; /* base NULL: none */
+    const narc_index_query *query;
 } narc_region_batch;
 
 /* Where that kernel puts what it finds: the bodies of each query, in any order, behind those of the query before it. */

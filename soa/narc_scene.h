@@ -91,15 +91,27 @@ NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, 
 NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, float *out_slack, narc_error *error);
 
+/* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
+ * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
+ *   owner     of each body of the index, any number; UINT32_MAX: the body is a thing by itself
+ *   ignored   for each query an owner whose bodies are not found; UINT32_MAX: none; left out: none */
+typedef struct narc_owners {
+    narc_index_column owner;
+    narc_index_column ignored;
+    void *reserved[4]; /* NULL */
+} narc_owners;
+
 /* How a question goes through an index; NULL or {0}: all bodies, in the calling thread.
  *   mask      64 bits for each query: only bodies with category & mask not 0 are found; left out: all bits set
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
- *   workers   threads to use; NULL: the calling one */
+ *   workers   threads to use; NULL: the calling one
+ *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;
     const narc_workers *workers;
-    void *reserved[4]; /* NULL */
+    const narc_owners *owners;
+    void *reserved[3]; /* NULL */
 } narc_index_query;
 
 /* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).
@@ -126,15 +138,17 @@ typedef struct narc_rays {
     void *reserved[2];                    /* NULL */
 } narc_rays;
 
-/* What a ray meets that starts within a body, or on its outline. */
+/* What a ray meets that starts within a body, or on its outline. With owners: within any part of a thing. */
 typedef enum narc_inside {
     NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
-    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards */
-    NARC_INSIDE_IGNORES = 2, /* not that body */
+    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
+                                last of the parts that follow each other without a gap; the row names that part. Parts
+                                are connected where they come within twice NARC_ERROR_BOUND * (the latter's extent) */
+    NARC_INSIDE_IGNORES = 2, /* not that body; no part of that thing */
 } narc_inside;
 
 /* What is 0 or NULL has its default, as all has for {0}.
- *   search        mask, ignored, workers
+ *   search        mask, ignored, workers, owners: of each thing the first row counts
  *   inside        see narc_inside
  *   any           1: whether anything is hit is all that matters. A row with count 1 tells of some body that is hit
  *                 (the same one for the same index)
@@ -176,8 +190,12 @@ typedef struct narc_ray_hit {
  *   options    NULL: defaults
  *   out_rows   room for `capacity` rows, at least rays->count * most
  * The point is within NARC_ERROR_BOUND * (the body's extent) of the outline and of the ray, however far the ray has come
- * (from more than 1e9 extents away, the digits of doubles are lost too); a ray that passes a body by no more than that
- * may hit or miss it. A corner is hit as the end of an edge. Pieces of chains (narc_chains.h) are hit from the air: a
+ * (from more than 1e9 extents away, the digits of doubles are lost too). A ray that passes a body by no more than that
+ * may hit or miss it, but one that touches it on its way, if only at a corner or along a side, hits it. So through a point that
+ * two bodies hold, such as tiles' common corner, no ray passes unless it hits both (of shapes less than 250 of their radii
+ * from their own origin). A touch has a fraction and a normal as any hit; at most, the normal is across the ray. A corner is
+ * hit as the end of an edge, a segment along the ray at its end, against the normal. Boxes only have to hold their bodies:
+ * larger ones change no bit. Pieces of chains (narc_chains.h) are hit from the air: a
  * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
  * bodies, and those whose shape does not exist, are not hit: so that a single ray takes no longer where there are many
  * bodies, they are not looked at beforehand. Rays that start at the same place and follow each other in the order of
@@ -273,7 +291,7 @@ NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodie
 /* What each mover hits first: the least (fraction, body).
  *   index, bodies    what stands still while movers move, as in narc_cast_rays()
  *   movers, motions  any bodies, and how each moves
- *   search           mask and ignored by mover, workers (those of `options` are not used); NULL: defaults
+ *   search           mask, ignored and the owner ignored by mover, workers (those of `options` are not used); NULL: defaults
  *   out_rows         room for `capacity` rows, at least movers->count; A is the mover
  * Otherwise as narc_cast_pairs(), but the index allocates: NARC_ERROR_MEMORY, NARC_ERROR_COUNT (2^32 pairs of a mover and
  * a box on its way). That bodies' shapes exist is only looked at where a mover comes near. One call at a time for each
@@ -330,7 +348,9 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
                                          narc_distance *out_rows, narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
- *   search     mask, ignored, workers
+ *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which
+ *              the point is deepest in, and the thing's outside is at least so far; it is further where that part's place
+ *              lies within another part. A point is within a thing (`inside`) if it is within a part
  *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
  *   inside     1: only bodies that the point is within
  *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows

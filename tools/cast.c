@@ -38,8 +38,9 @@ static const char HELP[] =
     "                  points are in world coordinates, normals point out of the body\n"
     "                  -: standard output, and the report goes to standard error\n"
     "  --inside NAME   a ray that begins within a body: stops there (the default; fraction 0, normal 0),\n"
-    "                  leaves (is hit from inside where it leaves), or ignores that body\n"
-    "  --most N        so many hits of each ray, the nearest first; default 1\n"
+    "                  leaves (is hit from inside where it leaves), or ignores that body;\n"
+    "                  a body of several parts is one body\n"
+    "  --most N        so many hits of each ray, one of each body, the nearest first; default 1\n"
     "  --picture FILE  a .png or .svg picture of bodies, rays, hits and normals\n"
     "  --isa NAME      the instruction set, one of those that narc info lists\n"
     "  --threads N     1 to 1024; left out: one for each processor\n"
@@ -142,7 +143,9 @@ static void cast_rays(const settings *chosen, job *work) {
                             .y = NARC_POSITION_COLUMN(items, y),
                             .motion_x = NARC_COLUMN(items, motion_x),
                             .motion_y = NARC_COLUMN(items, motion_y)};
+    const narc_owners owners = {.owner = NARC_COLUMN(work->bodies.items, row)};
     narc_ray_options options = chosen->cast;
+    options.search.owners = &owners;
     options.search.workers = &chosen->workers;
     options.out_skipped = &work->skipped;
     if (rays.count > SIZE_MAX / options.most)

@@ -97,7 +97,7 @@ static narc_status check_arguments(const narc_index *index, const narc_shapes *s
     size_t all_movers = 0;
     if (!index || !shapes || !bodies || !movers)
         return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "movers");
-    narc_status status = narc_check_reserved(search->reserved, 4, "search", error);
+    narc_status status = narc_check_search(index, search, "search", error);
     if (status == NARC_OK)
         status = narc_check_indexed(index, bodies, error);
     if (status == NARC_OK)

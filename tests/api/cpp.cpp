@@ -522,6 +522,9 @@ void test_rays_and_points() {
     const std::vector<uint32_t> ignored = {0, 0};
     const std::vector<Vector> from = {{-5, 0.1}, {3.1, 0.1}};
     const std::vector<float> along = {20, 20}, none = {0, 0};
+    const narc_owners owners = {narc::column(ignored), {}, {}};
+    const narc_index_query of_owners = narc::index_query().owners(owners);
+    CHECK(of_owners.owners == &owners && owners.owner.base == ignored.data());
     const auto search = narc::index_query().ignored(narc::column(ignored));
 
     size_t skipped = 9;

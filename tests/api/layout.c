@@ -95,7 +95,9 @@ static void check_pointers(void) {
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
                AT(out_skipped, 64) && AT(reserved, 72));
     LAYOUT(narc_index_options, 64, AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(reserved, 32));
-    LAYOUT(narc_index_query, 72, AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(reserved, 40));
+    LAYOUT(narc_owners, 64, AT(owner, 0) && AT(ignored, 16) && AT(reserved, 32));
+    LAYOUT(narc_index_query, 72,
+           AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(owners, 40) && AT(reserved, 48));
     LAYOUT(narc_rays, 120,
            AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(motion_x, 56) && AT(motion_y, 72) && AT(fraction, 88) &&
                AT(reserved, 104));
