@@ -170,11 +170,18 @@ static void drop_seam(row_list *list, size_t from, size_t to) {
     drop_row(list, from);
 }
 
+/* Is it of an entry of a chain? What is concave has its radius below 0, or -0, and nothing else has. */
+static bool is_ground(const row_list *list, const narc_manifold *row) {
+    return find_run(list, row->pair) != NARC_NO_RUN || signbit(row->radius_b);
+}
+
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
  * has two sides that face each other. Returns whether row j has grown. */
 static bool compare_rows(row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
+    if (!is_ground(list, &a) || !is_ground(list, &b))
+        return false;
     if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
         const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
         const float one = find_separation(&a), other = find_separation(&b);

@@ -18,6 +18,7 @@ struct builder {
     double tolerance;
     bool open;
     narc_contours drawn; /* flattened */
+    narc_aabb *boxes;    /* of its contours */
     narc_crossings crossings;
     narc_shapes *store; /* that is asked what it takes */
     narc_error *error;
@@ -176,15 +177,20 @@ static void reverse_chain(narc_arc_chains *chains, size_t begin) {
 static size_t begin_of(const narc_contours *drawn, size_t contour) { return contour ? drawn->ends[contour - 1] : 0; }
 
 /* Is a contour inside an odd number of others? */
-static bool is_hole(const narc_contours *drawn, size_t contour) {
+static bool is_hole(const struct builder *builder, size_t contour) {
+    const narc_contours *drawn = &builder->drawn;
     const narc_point p = drawn->points[begin_of(drawn, contour)];
     bool inside = false;
-    for (size_t k = 0, begin = 0; k < drawn->count; begin = drawn->ends[k++])
-        for (size_t i = begin; i < drawn->ends[k] && k != contour; i++) {
+    for (size_t k = 0, begin = 0; k < drawn->count; begin = drawn->ends[k++]) {
+        const narc_aabb *box = &builder->boxes[k];
+        if (k == contour || p.x < box->min_x || p.x > box->max_x || p.y < box->min_y || p.y > box->max_y)
+            continue;
+        for (size_t i = begin; i < drawn->ends[k]; i++) {
             const narc_point a = drawn->points[i], b = drawn->points[i + 1 < drawn->ends[k] ? i + 1 : begin];
             if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
                 inside = !inside;
         }
+    }
     return inside;
 }
 
@@ -306,7 +312,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     narc_arc_chains *chains = &builder->chains;
     const size_t begin = chains->arc_count;
     const double whole = builder->tolerance, before = chains->distance;
-    const bool hole = !builder->open && is_hole(&builder->drawn, contour);
+    const bool hole = !builder->open && is_hole(builder, contour);
     double flat = FLAT;
     narc_status status = check_contour(builder, path, contour);
     narc_error *const error = builder->error, reason;
@@ -374,12 +380,29 @@ static narc_status add_moves(struct builder *builder, const narc_path *path) {
     return status;
 }
 
+/* Contours that cross by so little, in parts of the largest coordinate, or by half of the tolerance, only touch. */
+static const double CROSSING = 1e-6;
+
 /* All that contours are compared with. */
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
+    const narc_contours *drawn = &builder->drawn;
+    double largest = 0;
+    builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
+    for (size_t k = 0, i = 0; builder->boxes && k < drawn->count; k++) {
+        narc_aabb *box = &builder->boxes[k];
+        for (*box = (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY}; i < drawn->ends[k]; i++) {
+            const narc_point p = drawn->points[i];
+            *box =
+                (narc_aabb){fmin(box->min_x, p.x), fmin(box->min_y, p.y), fmax(box->max_x, p.x), fmax(box->max_y, p.y)};
+            largest = fmax(largest, fmax(fabs(p.x), fabs(p.y)));
+        }
+    }
+    if (!status && !builder->boxes)
+        status = fail_memory(builder);
     if (!status)
-        status = narc_find_crossings(&builder->drawn, !builder->open, builder->tolerance / 2, &builder->crossings,
-                                     builder->error);
+        status = narc_find_crossings(&builder->drawn, !builder->open, fmin(builder->tolerance / 2, CROSSING * largest),
+                                     &builder->crossings, builder->error);
     if (!status && narc_create_shapes(NULL, &builder->store))
         status = fail_memory(builder);
     return status;
@@ -397,6 +420,7 @@ narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, 
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
     narc_release_contours(&builder.drawn);
     free(builder.crossings.items);
+    free(builder.boxes);
     narc_destroy_shapes(builder.store);
     if (status)
         narc_release_chains(&builder.chains);

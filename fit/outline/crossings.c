@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * crossings.c - where the lines of contours cross, touch or lie on each other: a sweep over their boxes, from left to
- * right.
+ * crossings.c - where the lines of contours cross, touch or lie on each other: sweeps over their boxes, from left to
+ * right, in strips that have as many lines as there are strips, but for long ones.
  */
 #include "outline/crossings.h"
 
@@ -18,13 +18,15 @@ enum { MOST_CROSSINGS = 1 << 22 };
 
 typedef struct line {
     narc_point from, to;
-    double low, high; /* in x */
+    double low, high;   /* in x */
+    size_t first, last; /* strips */
     size_t number;
 } line;
 
 typedef struct sweep {
     line *lines;
-    size_t count;
+    size_t count, strips;
+    size_t *ends, *items; /* strip k has the lines items[ends[k - 1] .. ends[k] - 1], in their order */
     double near;
     narc_crossings found;
     narc_status status;
@@ -100,39 +102,77 @@ static int compare_crossings(const void *left, const void *right) {
 
 /* Lines without a length are none. */
 static void list_lines(sweep *s, const narc_contours *contours, bool closed) {
-    double extent = 0;
+    double low = INFINITY, high = -INFINITY, extent = 0;
     for (size_t k = 0, begin = 0; k < contours->count; begin = contours->ends[k++])
         for (size_t i = begin; i < contours->ends[k]; i++) {
             const bool is_last = i + 1 == contours->ends[k];
             const narc_point p = contours->points[i], q = contours->points[is_last ? begin : i + 1];
             extent = fmax(extent, fmax(fabs(p.x), fabs(p.y)));
+            low = fmin(low, p.y);
+            high = fmax(high, p.y);
             if (!is_same(p, q) && (closed || !is_last))
-                s->lines[s->count++] = (line){p, q, fmin(p.x, q.x), fmax(p.x, q.x), i};
+                s->lines[s->count++] = (line){p, q, fmin(p.x, q.x), fmax(p.x, q.x), 0, 0, i};
         }
     s->near = fmax(s->near, ON_LINE * extent);
     qsort(s->lines, s->count, sizeof *s->lines, compare_lines);
+    s->strips = 1 + (size_t)sqrt((double)s->count);
+    const double height = (high - low) / (double)s->strips;
+    for (size_t i = 0; i < s->count; i++) {
+        line *of = &s->lines[i];
+        const double from = (fmin(of->from.y, of->to.y) - s->near - low) / height;
+        const double to = (fmax(of->from.y, of->to.y) + s->near - low) / height;
+        const double most = (double)s->strips - 1;
+        of->first = height > 0 ? (size_t)fmin(fmax(0, from), most) : 0;
+        of->last = height > 0 ? (size_t)fmin(fmax(0, to), most) : 0;
+    }
+}
+
+/* Puts the lines into strips. */
+static bool fill_strips(sweep *s) {
+    size_t count = 0;
+    s->ends = calloc(s->strips + 1, sizeof *s->ends);
+    for (size_t i = 0; s->ends && i < s->count; i++)
+        for (size_t k = s->lines[i].first; k <= s->lines[i].last; k++, count++)
+            s->ends[k + 1]++;
+    for (size_t k = 0; s->ends && k < s->strips; k++)
+        s->ends[k + 1] += s->ends[k];
+    s->items = s->ends ? malloc((count + 1) * sizeof *s->items) : NULL;
+    for (size_t i = 0; s->items && i < s->count; i++)
+        for (size_t k = s->lines[i].first; k <= s->lines[i].last; k++)
+            s->items[s->ends[k]++] = i;
+    return s->items;
+}
+
+/* Each pair is looked at in the first strip that both are in. */
+static void sweep_strip(sweep *s, size_t strip) {
+    const size_t begin = strip ? s->ends[strip - 1] : 0, end = s->ends[strip];
+    for (size_t i = begin; i < end && !s->status; i++) {
+        const line *a = &s->lines[s->items[i]];
+        const double low = fmin(a->from.y, a->to.y) - s->near, high = fmax(a->from.y, a->to.y) + s->near;
+        for (size_t j = i + 1; j < end && s->lines[s->items[j]].low <= a->high + s->near && !s->status; j++) {
+            const line *b = &s->lines[s->items[j]];
+            if ((a->first > b->first ? a->first : b->first) == strip && fmax(b->from.y, b->to.y) >= low &&
+                fmin(b->from.y, b->to.y) <= high)
+                look_at(s, a, b);
+        }
+    }
 }
 
 narc_status narc_find_crossings(const narc_contours *contours, bool closed, double near, narc_crossings *out_crossings,
                                 narc_error *error) {
     sweep s = {.near = near, .lines = malloc((contours->point_count + 1) * sizeof *s.lines)};
-    if (!s.lines)
-        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %zu lines", contours->point_count);
-    list_lines(&s, contours, closed);
-    for (size_t i = 0; i < s.count && !s.status; i++) {
-        const line *a = &s.lines[i];
-        const double low = fmin(a->from.y, a->to.y) - s.near, high = fmax(a->from.y, a->to.y) + s.near;
-        for (size_t j = i + 1; j < s.count && s.lines[j].low <= a->high + s.near && !s.status; j++) {
-            const line *b = &s.lines[j];
-            if (fmax(b->from.y, b->to.y) >= low && fmin(b->from.y, b->to.y) <= high)
-                look_at(&s, a, b);
-        }
-    }
+    if (s.lines)
+        list_lines(&s, contours, closed);
+    s.status = s.lines && fill_strips(&s) ? NARC_OK : NARC_ERROR_MEMORY;
+    for (size_t k = 0; k < s.strips && !s.status; k++)
+        sweep_strip(&s, k);
     free(s.lines);
+    free(s.ends);
+    free(s.items);
     if (s.status) {
         free(s.found.items);
         return s.status == NARC_ERROR_MEMORY
-                   ? narc_fail(error, s.status, 0, 0, "not enough memory for %zu crossings", s.found.count)
+                   ? narc_fail(error, s.status, 0, 0, "not enough memory for %zu lines", contours->point_count)
                    : narc_fail(error, s.status, 0, MOST_CROSSINGS, "its lines cross more than %d times",
                                MOST_CROSSINGS / 2);
     }
