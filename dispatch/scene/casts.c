@@ -18,8 +18,7 @@ enum { FEW = 2 };
 
 struct slots {
     size_t count;
-    uint32_t pair[NARC_CAST_SLOTS], body[NARC_CAST_SLOTS]; /* B's */
-    uint32_t hint[NARC_CAST_SLOTS];
+    uint32_t pair[NARC_CAST_SLOTS], hint[NARC_CAST_SLOTS];
     narc_bodies a, b;
     narc_pairs pairs;
     narc_query query;
@@ -68,7 +67,6 @@ static void open_slots(const narc_cast_job *job, struct slots *slots) {
 static void move_slot(struct slots *slots, size_t from, size_t to) {
     narc_casts *const c = &slots->casts;
     slots->pair[to] = slots->pair[from];
-    slots->body[to] = slots->body[from];
     slots->hint[to] = slots->hint[from];
     for (int k = 0; k < 2; k++) {
         struct narc_cast_side *const side = &c->side[k];
@@ -112,11 +110,19 @@ static void write_miss(const narc_cast_job *job, size_t pair) {
         job->rows[pair] = (narc_impact){.pair = (uint32_t)pair};
 }
 
+/* The number of a pair's A or B in its set; bodies 2 k and 2 k + 1 if the pairs bring their own (check.c). */
+static size_t find_body(const narc_cast_job *job, int side, size_t pair) {
+    const narc_pairs *const pairs = job->batch->pairs;
+    const narc_index_column column = side ? pairs->b : pairs->a;
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
+    return own ? 2 * pair + (size_t)side : column.base ? narc_index_at(column, pair) : pair;
+}
+
 /* Writes the row of a pair, unless its mover hits another body before, or one with a lower number then. */
 static void write_row(const narc_cast_job *job, const struct slots *slots, size_t slot, int outcome) {
     const narc_contact *const c = &slots->casts.contact[slot];
     const size_t pair = slots->pair[slot];
-    const uint32_t body = slots->body[slot];
+    const uint32_t body = (uint32_t)find_body(job, 1, pair);
     const float time = slots->casts.time[slot];
     narc_impact *const row = find_row(job, pair);
     if (job->nearest && row->count != NARC_CAST_MISS &&
@@ -144,7 +150,6 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
     const narc_pairs *const pairs = batch->pairs;
     const narc_bodies *const sets[2] = {batch->a, batch->b};
     const narc_index_column columns[2] = {pairs->a, pairs->b};
-    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* bodies 2 k and 2 k + 1; see check.c */
     narc_casts *const casts = &slots->casts;
     size_t item[2];
     double motion_x[2], motion_y[2];
@@ -152,7 +157,7 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
         const narc_motions *const m = &job->motions[k];
         struct narc_cast_side *const side = &casts->side[k];
         item[k] = columns[k].base ? narc_index_at(columns[k], pair) : pair;
-        const size_t body = own ? 2 * pair + (size_t)k : item[k];
+        const size_t body = find_body(job, k, pair);
         side->shape[slot] = narc_index_at(sets[k]->shape, item[k]);
         side->cosine[slot] = narc_float_at(sets[k]->cosine, item[k]);
         side->sine[slot] = narc_float_at(sets[k]->sine, item[k]);
@@ -160,7 +165,6 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
         side->angle[slot] = narc_float_or(m->angle, body, 0);
         motion_x[k] = (double)narc_float_or(m->x, body, 0);
         motion_y[k] = (double)narc_float_or(m->y, body, 0);
-        slots->body[slot] = (uint32_t)body;
     }
     casts->x[slot] = narc_position_at(sets[1]->x, item[1]) - narc_position_at(sets[0]->x, item[0]) +
                      (double)narc_float_or(pairs->shift_x, pair, 0);

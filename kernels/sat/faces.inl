@@ -87,10 +87,11 @@ INLINE vec2 choose_face(const struct arc_pair *arcs, vec2 position_b, vm loose, 
 
 /* The normals of the pairs k ... of a queue in the lanes `loose`, which touch with these arcs. Of runs of chains only
  * what may touch counts. */
-NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
-                         const struct arc_pair *arcs, vm loose, vec2 *normal) {
+NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int k, const struct gap *gap, vm loose,
+                         vec2 *normal) {
     const narc_record *const records = call->batch->shapes->records;
     const struct pose pose = get_pose(queue, k);
+    const struct arc_pair arcs = load_arc_pair(records, gap->record_a, gap->record_b, &pose);
     vm faces[JUNCTIONS], circle[2];
     for (int j = 0; j < JUNCTIONS; j++) {
         const bool is_b = j % 2;
@@ -98,7 +99,7 @@ NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int
                  first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k),
                  record = is_b ? gap->record_b : gap->record_a;
         const struct feature f = find_feature_at(records, is_b ? get_ring_b(queue, k) : get_ring_a(queue, k), record,
-                                                 &pose, get_junction(arcs, j), is_b);
+                                                 &pose, get_junction(&arcs, j), is_b);
         faces[j] = touches_edge(&f, info, is_b ? pose.scale_b : pose.scale_a);
         circle[j % 2] = has_flag(info, NARC_SHAPE_CIRCLE);
         if (NARC_PIECES && vm_any(has_mark(info, NARC_PIECE_MARKS))) {
@@ -107,7 +108,7 @@ NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int
             faces[j] = vm_and(faces[j], is_front(info, edge));
         }
     }
-    *normal = choose_face(arcs, pose.position, loose, faces, circle[0], circle[1], *normal);
+    *normal = choose_face(&arcs, pose.position, loose, faces, circle[0], circle[1], *normal);
 }
 
 /* The unit normal of the gap of the pairs k ... of a queue, in the lanes `which`, and what touches along it. */
@@ -119,7 +120,7 @@ INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue
     const vm loose = vm_and(which, is_loose(&arcs, pose.position));
     vec2 n = v2_divide(gap->normal, gap->length);
     if (vm_any(loose))
-        tell_faces(call, queue, k, gap, &arcs, loose, &n);
+        tell_faces(call, queue, k, gap, loose, &n);
     *out_a = find_feature_beside(records, get_ring_a(queue, k), gap->record_a, &arcs.a, &pose, n, false);
     *out_b = find_feature_beside(records, get_ring_b(queue, k), gap->record_b, &arcs.b, &pose, n, true);
     return n;
