@@ -63,7 +63,7 @@ foreach(document IN LISTS documents)
   list(TRANSFORM functions REPLACE "[`)]" "")
   string(REGEX MATCHALL "(narc|NARC)_[A-Za-z_0-9]*[A-Za-z0-9]" names "${text}")
   string(REGEX MATCHALL "[` ]--[a-z][a-z-]*[a-z]" options "${text}")
-  list(TRANSFORM options REPLACE "^." "")
+  list(TRANSFORM options REPLACE "^[` ]" "")
   list(REMOVE_ITEM options ${others})
   list(TRANSFORM names REPLACE "^(NARC_COMPILES_).*" "\\1") # and an instruction set
   list(REMOVE_DUPLICATES names)
