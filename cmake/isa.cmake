@@ -29,6 +29,11 @@ function(narc_add_isa_objects target name isa)
   # (in LLVM's salvageDebugInfo): lines, but no variables.
   target_compile_options(${target} PRIVATE $<$<C_COMPILER_ID:GNU>:-fno-var-tracking>
     $<$<AND:$<C_COMPILER_ID:Clang,AppleClang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
+  # The address sanitizer's checks written out take GCC half a minute in a file; as calls they are the same.
+  if(CMAKE_C_FLAGS MATCHES "-fsanitize=[a-z,-]*address")
+    target_compile_options(${target} PRIVATE
+      $<$<C_COMPILER_ID:GNU>:SHELL:--param asan-instrumentation-with-call-threshold=0>)
+  endif()
   # Fuzzing goes through the plain C kernels with sanitizers, which take minutes to compile into the vectors' ones.
   if(NARC_BUILD_FUZZERS AND NOT target STREQUAL "narc_isa_scalar")
     target_compile_options(${target} PRIVATE -fno-sanitize=all)

@@ -5,8 +5,6 @@ set(CMAKE_SYSTEM_PROCESSOR wasm32)
 set(CMAKE_C_COMPILER clang)
 set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_EXECUTABLE_SUFFIX_C .wasm)
-# The stack lies below all data: one that is too small is a trap, not other data's end.
-set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--stack-first,-z,stack-size=8388608")
 # Without this option Node 20 crashed at the end of long programs.
 set(CMAKE_CROSSCOMPILING_EMULATOR node --no-warnings --no-turbo-fast-api-calls "${CMAKE_CURRENT_LIST_DIR}/wasi.mjs")
 set(CMAKE_FIND_ROOT_PATH /usr/include/wasm32-wasi)

@@ -110,7 +110,7 @@ static narc_status check_number(float number, const char *name, narc_error *erro
                          : NARC_OK;
 }
 
-static narc_status check_query(const narc_query *query, narc_error *error) {
+static narc_status check_query(const narc_query *query, size_t pair_count, narc_error *error) {
     narc_status status = check_number(query->margin, "margin", error);
     if (status == NARC_OK)
         status = check_number(query->second_margin, "second_margin", error);
@@ -122,6 +122,9 @@ static narc_status check_query(const narc_query *query, narc_error *error) {
                          (double)NARC_MAX_FLAT_ANGLE);
     if (status == NARC_OK && !query->selection.base && query->selection_count > 0)
         return narc_fail_missing(error, "query.selection");
+    if (status == NARC_OK && query->selection_count > pair_count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->selection_count,
+                         "query.selection_count is %zu, but there are %zu pairs", query->selection_count, pair_count);
     return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
 }
 
@@ -309,6 +312,17 @@ narc_status narc_check_indexed(const narc_index *index, const narc_bodies *bodie
     return narc_check_set(bodies, error);
 }
 
+narc_status narc_check_search(const narc_index *index, const narc_index_query *query, const char *name,
+                              narc_error *error) {
+    const narc_owners *const owners = query->owners;
+    if (owners && !owners->owner.base && index->count > 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s.owners->owner is NULL", name);
+    for (size_t k = 0; owners && k < sizeof owners->reserved / sizeof(void *); k++)
+        if (owners->reserved[k])
+            return narc_fail(error, NARC_ERROR_ARGUMENT, k, 0, "%s.owners->reserved[%zu] is not NULL", name, k);
+    return CHECK_RESERVED(*query, name, error);
+}
+
 narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                               const narc_workers *workers, narc_error *error) {
     narc_status status = narc_check_set(bodies, error);
@@ -355,7 +369,7 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     const narc_query *const q = query ? query : &defaults;
     narc_status status = narc_check_count(pairs->count, UINT32_MAX, "pairs in one batch", error);
     if (status == NARC_OK)
-        status = check_query(q, error);
+        status = check_query(q, pairs->count, error);
     if (status == NARC_OK)
         status = CHECK_RESERVED(*pairs, "pairs", error);
     if (status != NARC_OK)

@@ -59,6 +59,10 @@ narc_status narc_check_set(const narc_bodies *bodies, narc_error *error);
 /* The same for the bodies of an index, which are as many as its boxes. */
 narc_status narc_check_indexed(const narc_index *index, const narc_bodies *bodies, narc_error *error);
 
+/* Is what a question of an index, the member `name`, asks for in order? */
+narc_status narc_check_search(const narc_index *index, const narc_index_query *query, const char *name,
+                              narc_error *error);
+
 /* Checks bodies first .. first + *count - 1 as far as kernels rely on it: columns and shapes. *count 0: to the end. */
 narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                               const narc_workers *workers, narc_error *error);

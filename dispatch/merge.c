@@ -164,11 +164,6 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
            (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
 }
 
-/* Is a row one of a chain's entry? A concave arc, where there is no run. */
-static bool is_of_chain(const row_list *list, const narc_manifold *row) {
-    return find_run(list, row->pair) != NARC_NO_RUN || signbit(row->radius_b);
-}
-
 /* Do two rows tell of both sides of a thin solid within the body: faces that look away from each other, where neither place
  * lies before the other one's tangent? Walls on both sides of a body look at each other. */
 static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
@@ -213,18 +208,27 @@ static void drop_seam(row_list *list, size_t from, size_t to) {
     drop_row(list, from);
 }
 
+/* Is it of an entry of a chain? What is concave has its radius below 0, or -0, and nothing else has. */
+static bool is_ground(const row_list *list, const narc_manifold *row) {
+    return find_run(list, row->pair) != NARC_NO_RUN || signbit(row->radius_b);
+}
+
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
  * has two sides that face each other. Returns whether row j has grown. */
 static bool compare_rows(row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
-    if (are_back_to_back(&a, &b) && is_of_chain(list, &a) && is_of_chain(list, &b)) {
+    if (!is_ground(list, &a) || !is_ground(list, &b))
+        return false;
+    if (are_back_to_back(&a, &b)) {
         drop_row(list, find_separation(&a) < find_separation(&b) ? j : k);
         return false;
     }
     const bool is_one_run = run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b);
+    const bool is_seam =
+        !is_one_run && has_same_normal(&a, &b, SAME_SEAM_NORMAL) && (has_all_points(&a, &b) || has_all_points(&b, &a));
     const bool is_flush =
-        is_one_run ? has_same_normal(&a, &b, SAME_RUN_NORMAL) : goes_over(&a, &b) || goes_over(&b, &a);
+        is_one_run ? has_same_normal(&a, &b, SAME_RUN_NORMAL) : !is_seam && (goes_over(&a, &b) || goes_over(&b, &a));
     if (is_one_run || is_flush) {
         const float one = find_separation(&a), other = find_separation(&b);
         if (is_flush && list->manifolds)

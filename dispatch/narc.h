@@ -149,8 +149,9 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
  *   workers     threads to use; NULL: the calling one
  *   out_bodies  parts->count rows, overlapping none of the inputs
  * Positions are computed in double precision, and rotations too, made to have length 1 first: then they are rounded. A
- * broken part, or one of a broken owner (see narc_bodies), is a row of zeros but for its shape, and so is one whose
- * place or scale is out of range: broken bodies, which queries skip and count as ever.
+ * part that is not turned (sine 0, cosine above 0) has its owner's rotation to the bit. A broken part, or one of a broken
+ * owner (see narc_bodies), is a row of zeros but for its shape, and so is one whose place or scale is out of range:
+ * broken bodies, which queries skip and count as ever.
  *   Parts of one owner form no pair if their groups are one: narc_pair_filter.group with owner + 1, as 0 is no group.
  * Who has groups of bodies gives all their parts that of the bodies, and other numbers to the rest. Parts come and go
  * as bodies do: the last one into the gap, and narc_pair_options.id tells which is which. docs/questions.md has more.

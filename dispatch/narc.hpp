@@ -456,6 +456,8 @@ struct index_options : detail::options<index_options, narc_index_options> {
 struct index_query : detail::options<index_query, narc_index_query> {
     index_query &mask(narc_word_column value) noexcept { return set(&narc_index_query::mask, value); }
     index_query &ignored(narc_index_column value) noexcept { return set(&narc_index_query::ignored, value); }
+    index_query &owners(const narc_owners &value) noexcept { return set(&narc_index_query::owners, &value); }
+    index_query &owners(const narc_owners &&) = delete;
 };
 
 class index : public detail::owner<narc_index, narc_create_index, narc_destroy_index> {
@@ -484,6 +486,7 @@ struct ray_options : detail::options<ray_options, narc_ray_options> {
 
 struct cast_options : detail::options<cast_options, narc_cast_options> {
     cast_options &target(float value) noexcept { return set(&narc_cast_options::target, value); }
+    cast_options &targets(narc_float_column value) noexcept { return set(&narc_cast_options::targets, value); }
     cast_options &tolerance(float value) noexcept { return set(&narc_cast_options::tolerance, value); }
     cast_options &skipped(size_t &out) noexcept { return set(&narc_cast_options::out_skipped, &out); }
 };

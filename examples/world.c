@@ -82,9 +82,10 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_compute_bounding_circle(centered, count, &circle);
     const double reach = hypot(circle.x, circle.y) + circle.radius;
     /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has
-     * an area from w d / 2 to w d, and its reach is from d / 2 to d. */
-    w->shapes[shape] =
-        (world_shape){(float)mass.area, (float)mass.second_moment, (float)reach, (float)(mass.area / (2 * reach))};
+     * an area from w d / 2 to w d, and its reach is from d / 2 to d. What is fast against a segment, which has no area,
+     * is so by its own thickness alone, as against ground. */
+    const double thickness = mass.area > 0 ? mass.area / (2 * reach) : (double)FLT_MAX;
+    w->shapes[shape] = (world_shape){(float)mass.area, (float)mass.second_moment, (float)reach, (float)thickness};
     if (out_shape)
         *out_shape = shape;
     return NARC_OK;

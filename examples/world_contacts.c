@@ -206,7 +206,8 @@ narc_status world_stop_bullets(world *w) {
         const float deepest = fminf(c->points[0].separation, c->points[1].separation);
         const narc_pairs one = {
             .count = 1, .a = {w->list->pairs.a.base + pair, 0}, .b = {w->list->pairs.b.base + pair, 0}};
-        const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest)};
+        const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest),
+                                           .tolerance = 0.01f * c->depth};
         narc_impact hit = {.count = 0};
         if (c->depth > 0 &&
             narc_cast_pairs(w->store, &before, &motions, &one, NULL, &options, &hit, 1, &w->error) != NARC_OK)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "names.h"
 
 narc_excerpt narc_make_excerpt(const char *text) {
     enum { LONGEST = 40 };
@@ -17,10 +18,9 @@ narc_excerpt narc_make_excerpt(const char *text) {
     if (is_cut)
         for (shown = LONGEST; shown > 0 && ((unsigned char)text[shown] & 0xc0) == 0x80;)
             shown--;
-    for (size_t i = 0; i < shown; i++) {
-        const unsigned char c = (unsigned char)text[i];
-        excerpt.text[i] = c < 0x20 || c == 0x7f ? '?' : text[i];
-    }
+    memcpy(excerpt.text, text, shown);
+    excerpt.text[shown] = 0;
+    narc_make_printable(excerpt.text);
     strcpy(excerpt.text + shown, is_cut ? "..." : "");
     return excerpt;
 }

@@ -26,6 +26,17 @@ bool narc_next_code_point(const char **text, uint32_t *out_code) {
     return true;
 }
 
+void narc_make_printable(char *text) {
+    for (char *c = text; *c;) {
+        const char *next = c;
+        uint32_t code;
+        if (narc_next_code_point(&next, &code) && code >= 0x20 && (code < 0x7f || code >= 0xa0))
+            c += next - c;
+        else
+            *c++ = '?';
+    }
+}
+
 bool narc_next_of_name(const char **text) {
     uint32_t code;
     return narc_next_code_point(text, &code) && code >= 0x20 && code != 0x7f && code != ',' && code != '"';

@@ -11,6 +11,9 @@
 /* Reads the code point at *text and moves on; false for invalid UTF-8 (also surrogates and overlong forms). */
 bool narc_next_code_point(const char **text, uint32_t *out_code);
 
+/* Puts '?' in the place of each byte that is no UTF-8, or a control character. */
+void narc_make_printable(char *text);
+
 /* Moves on over a character; false if a name cannot have it. */
 bool narc_next_of_name(const char **text);
 

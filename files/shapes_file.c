@@ -15,9 +15,8 @@
 
 #include "memory.h"
 #include "names.h"
+#include "narc_chains.h"
 #include "narc_files.h"
-
-static const double FULL_TURN = 6.283185307179586;
 
 /* What is read now, for messages. After the first error numbers are 0 and lists are empty. */
 typedef struct reader {
@@ -134,7 +133,7 @@ static void check_object(reader *at, const cJSON *item, const char *what, const 
 
 /* ---------------------------------------------------------------------------- the forms of a shape */
 
-/* Builds a shape from what was read; after an error in that, of anything. */
+/* Builds a shape from what was read; after an error in that, of anything. The store judges it. */
 typedef narc_status build_form(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
                                narc_error *error);
 
@@ -156,8 +155,9 @@ static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc
                               narc_error *error) {
     (void)radius;
     *out_count = check_list(at, item, "arcs", NARC_MAX_ARCS);
+    (void)error;
     read_arcs(at, item, *out_count, out_arcs);
-    return narc_validate_arcs(out_arcs, *out_count, error);
+    return NARC_OK;
 }
 
 static narc_status build_points(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
@@ -222,28 +222,15 @@ static const struct {
 };
 enum { FORM_COUNT = sizeof forms / sizeof forms[0], CHAIN = FORM_COUNT, NO_FORM };
 
-/* What can be wrong with an arc of a chain by itself: normals turn with the sign of the radius, by less than a full
- * turn, or if angles wrap by no more than half of one. Only a plain point turns by nothing. */
-static narc_status check_chain_arc(const narc_arc *arc, size_t index, narc_error *error) {
-    const double turn = arc->end - arc->start, onwards = signbit(arc->radius) ? -turn : turn;
-    const bool is_point = arc->radius == 0 && fabs(turn) <= NARC_TOLERANCE, wraps = onwards < 0;
-    const double most = wraps ? FULL_TURN / 2 + NARC_TOLERANCE : FULL_TURN;
-    const double numbers[5] = {arc->center_x, arc->center_y, arc->radius, arc->start, arc->end};
-    for (int k = 0; k < 5; k++)
-        if (!isfinite(numbers[k]))
-            return narc_fail(error, NARC_ERROR_NOT_FINITE, index, numbers[k], "arc %zu: a number is not finite", index);
-    if (!is_point && (turn == 0 || onwards + (wraps ? FULL_TURN : 0) > most || onwards < -FULL_TURN))
-        return narc_fail(error, NARC_ERROR_SWEEP, index, turn,
-                         "arc %zu: from start to end it turns by %.9g, but its radius is %.9g", index, turn,
-                         arc->radius);
-    return NARC_OK;
-}
-
-static narc_status check_chain(const narc_arc *arcs, size_t count, narc_error *error) {
-    narc_status status = count ? NARC_OK : narc_fail(error, NARC_ERROR_COUNT, 0, 0, "a chain without arcs");
-    for (size_t i = 0; i < count && !status; i++)
-        status = check_chain_arc(&arcs[i], i, error);
-    return status;
+/* What files hold the store takes: a shape is added to it, of a chain it is asked. */
+static narc_status offer(narc_shapes *store, const narc_arc *arcs, size_t count, narc_form form, uint32_t *out_index,
+                         narc_error *error) {
+    if (form == NARC_FORM_SHAPE)
+        return narc_add_shape(store, arcs, count, out_index, error);
+    const narc_chain_options options = {.closed = form == NARC_FORM_CLOSED_CHAIN};
+    size_t entries;
+    const narc_status status = narc_add_chain(store, arcs, count, &options, NULL, 0, &entries, error);
+    return status == NARC_ERROR_CAPACITY ? NARC_OK : status; /* all is well, but there is no room for entries */
 }
 
 /* ---------------------------------------------------------------------------- names */
@@ -302,6 +289,13 @@ static void *allocate(const narc_allocator *allocator, size_t size, const char *
     if (!memory)
         narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %s of %zu bytes", what, size);
     return memory;
+}
+
+/* A store to ask, where the caller has none. NULL on error. */
+static narc_status open_store(const narc_allocator *allocator, narc_shapes **out_store, narc_error *error) {
+    *out_store = NULL;
+    const narc_status status = narc_create_shapes(allocator, out_store);
+    return status ? narc_fail(error, status, 0, 0, "not enough memory for a store") : NARC_OK;
 }
 
 /* A list without shapes, with room for as many as there are values in the parsed file; so its size is less than theirs,
@@ -371,15 +365,15 @@ static const char *get_name(reader *at, const cJSON *object, size_t index) {
     return item->valuestring;
 }
 
-/* Reports a builder's error, which may begin with what it is about: "arc 2: ". */
+/* Reports an error of a builder or of the store, which may begin with what it is about: "arc 2: ". */
 static void fail_build(reader *at, const cJSON *item, const narc_error *error) {
-    int length = 0, number;
-    if (sscanf(error->message, "%*[a-z] %d%n", &number, &length) == 1 && error->message[length] == ':') {
-        const cJSON *element = cJSON_IsArray(item) ? cJSON_GetArrayItem(item, number) : NULL;
+    int length = 0, number = (int)error->index;
+    const bool begins = sscanf(error->message, "%*[a-z] %d%n", &number, &length) == 1 && error->message[length] == ':';
+    const cJSON *element = cJSON_IsArray(item) && (begins || number > 0) ? cJSON_GetArrayItem(item, number) : NULL;
+    if (begins)
         snprintf(at->element, sizeof at->element, "%.*s", length, error->message);
-        fail_shape(at, error->status, element ? element : item, error->value, "%s", error->message + length + 2);
-    }
-    fail_shape(at, error->status, item, error->value, "%s", error->message);
+    fail_shape(at, error->status, element ? element : item, error->value, "%s",
+               error->message + (begins ? length + 2 : 0));
 }
 
 /* A convex shape, which also comes into the store. */
@@ -387,13 +381,14 @@ static const narc_arc *read_convex(reader *at, const cJSON *item, size_t form, d
                                    narc_arc *arcs, narc_named_shape *shape) {
     narc_error error;
     if (forms[form].build(at, item, radius, arcs, &shape->arc_count, &error) != NARC_OK ||
-        (store && !at->status && narc_add_shape(store, arcs, shape->arc_count, &shape->index, &error) != NARC_OK))
+        (!at->status && offer(store, arcs, shape->arc_count, shape->form, &shape->index, &error) != NARC_OK))
         fail_build(at, item, &error);
     return arcs;
 }
 
 /* A chain, whose arcs stay where they are until the shape has a block of its own; to be released if not NULL. */
-static narc_arc *read_chain(reader *at, const cJSON *item, const list *shapes, narc_named_shape *shape) {
+static narc_arc *read_chain(reader *at, const cJSON *item, narc_shapes *store, const list *shapes,
+                            narc_named_shape *shape) {
     static const char *const keys[] = {"closed", "arcs", NULL};
     check_object(at, item, "chain", keys);
     const cJSON *closed = at->status ? NULL : find(item, "closed"),
@@ -409,7 +404,7 @@ static narc_arc *read_chain(reader *at, const cJSON *item, const list *shapes, n
         at->status = NARC_ERROR_MEMORY;
     if (read)
         read_arcs(at, arcs, shape->arc_count, read);
-    if (read && !at->status && check_chain(read, shape->arc_count, &error) != NARC_OK)
+    if (read && !at->status && offer(store, read, shape->arc_count, shape->form, NULL, &error) != NARC_OK)
         fail_build(at, arcs, &error);
     return read;
 }
@@ -449,14 +444,14 @@ static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list
     *shape = (narc_named_shape){.origin = origin ? as_point(at, origin, "origin") : (narc_point){0}};
 
     const double corner = get_number_or_zero(at, object, "radius");
-    narc_arc own[NARC_MAX_ARCS], *chain = form == CHAIN ? read_chain(at, item, shapes, shape) : NULL;
+    narc_arc own[NARC_MAX_ARCS], *chain = form == CHAIN ? read_chain(at, item, store, shapes, shape) : NULL;
     const narc_arc *arcs = form == CHAIN ? chain : read_convex(at, item, form, corner, store, own, shape);
     const bool added = !at->status && form != CHAIN;
     if (!at->status)
         keep_shape(at, shapes, name, arcs);
     if (chain)
         shapes->allocator.release(chain, shapes->allocator.context);
-    if (at->status && added && store)
+    if (at->status && added)
         narc_remove_shape(store, shape->index, NULL);
 }
 
@@ -493,7 +488,7 @@ static list *read_list(reader *at, const narc_allocator *allocator, narc_shapes 
     }
     if (!at->status)
         return shapes;
-    for (size_t i = store ? shapes->shown.count : 0; i > 0; i--)
+    for (size_t i = shapes->shown.count; i > 0; i--)
         if (shapes->items[i - 1].form == NARC_FORM_SHAPE)
             narc_remove_shape(store, shapes->items[i - 1].index, NULL);
     narc_destroy_shape_list(&shapes->shown);
@@ -514,11 +509,17 @@ narc_status narc_read_shapes(const void *data, size_t size, const narc_allocator
     text[size] = 0;
     reader at = {.text = text, .error = error};
     list *read = NULL;
+    narc_shapes *own = NULL;
     at.status = narc_clean_text(text, size, error);
     if (!at.status)
         at.status = narc_parse_json(text, &at.root, error);
+    if (!at.status && !store)
+        at.status = open_store(&chosen, &own, error);
     if (!at.status)
-        read = read_list(&at, &chosen, store);
+        read = read_list(&at, &chosen, store ? store : own);
+    for (size_t i = 0; own && read && i < read->shown.count; i++)
+        read->items[i].index = 0;
+    narc_destroy_shapes(own);
     cJSON_Delete(at.root);
     chosen.release(text, chosen.context);
     if (read)
@@ -541,9 +542,10 @@ static void put(writer *to, const char *text) {
     to->length += length;
 }
 
+/* Not "-0", which other programs read as a whole number, and write without its sign. */
 static void put_number(writer *to, const char *before, double value) {
     char digits[40];
-    snprintf(digits, sizeof digits, "%.17g", value);
+    snprintf(digits, sizeof digits, value == 0 && signbit(value) ? "%.1f" : "%.17g", value);
     const char *point = localeconv()->decimal_point;
     char *found = strstr(digits, point);
     if (found) {
@@ -586,7 +588,7 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
 }
 
 /* Would the shape be read again? */
-static narc_status check_shape(const narc_named_shape *shape, size_t index, narc_error *error) {
+static narc_status check_shape(const narc_named_shape *shape, size_t index, narc_shapes *store, narc_error *error) {
     if (!shape->name || !shape->arcs)
         return narc_fail(error, NARC_ERROR_ARGUMENT, index, 0, "shape %zu: %s is NULL", index,
                          shape->name ? "arcs" : "name");
@@ -601,11 +603,11 @@ static narc_status check_shape(const narc_named_shape *shape, size_t index, narc
         return narc_fail(error, NARC_ERROR_ARGUMENT, index, shape->form, "shape %zu: there is no form %d", index,
                          (int)shape->form);
     narc_error wrong;
-    if ((shape->form == NARC_FORM_SHAPE ? narc_validate_arcs(shape->arcs, shape->arc_count, &wrong)
-                                        : check_chain(shape->arcs, shape->arc_count, &wrong)) != NARC_OK)
+    uint32_t added;
+    if (offer(store, shape->arcs, shape->arc_count, shape->form, &added, &wrong) != NARC_OK)
         return narc_fail(error, wrong.status, index, wrong.value, "shape '%s': %s", narc_make_excerpt(shape->name).text,
                          wrong.message);
-    return NARC_OK;
+    return shape->form == NARC_FORM_SHAPE ? narc_remove_shape(store, added, error) : NARC_OK;
 }
 
 /* Do all names differ? */
@@ -633,9 +635,11 @@ narc_status narc_write_shapes(const narc_named_shape *shapes, size_t count, cons
     if (count == 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "no shape to write");
     const narc_allocator chosen = narc_choose_allocator(allocator);
-    narc_status status = NARC_OK;
+    narc_shapes *store;
+    narc_status status = open_store(&chosen, &store, error);
     for (size_t i = 0; i < count && !status; i++)
-        status = check_shape(&shapes[i], i, error);
+        status = check_shape(&shapes[i], i, store, error);
+    narc_destroy_shapes(store);
     status = status ? status : check_twins(shapes, count, &chosen, error);
     if (status)
         return status;

@@ -247,12 +247,16 @@ NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request
 /* Most parts of an outline. */
 #define NARC_MAX_PARTS 256
 
+/* No part reaches further into its neighbours than this many times the lap. */
+#define NARC_LAP_REACH 1.04
+
 typedef struct narc_parts_request {
     size_t most;      /* at most so many parts, 1 .. NARC_MAX_PARTS */
     double tolerance; /* as few parts as are found that no point of is further than this from the outline; 0: the
                          nearest that are found, at most `most` */
     double lap;       /* 0, or how far each part goes on into its neighbours, a length, so that shapes which only
-                         approximate parts leave no seam between them: twice their tolerance is enough */
+                         approximate parts leave no seam between them: twice their tolerance is enough. The tolerance
+                         holds with laps: they take NARC_LAP_REACH times this of it */
     double flatness;  /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
     void *reserved[2];
 } narc_parts_request;
@@ -263,18 +267,20 @@ typedef struct narc_parts {
     narc_path **paths;
     size_t count;
     double distance; /* no point of the parts is further than that from the outline's inside; flatness is counted */
-    double area;     /* of the outline's inside */
+    double area;     /* of the outline's inside, of contours that cross that of their union */
 } narc_parts;
 
 /* Cuts an outline into convex parts, which may overlap: approximate convex decomposition (Lien and Amato 2006). Inside
- * is what an odd number of contours is around; contours that cross are outlines each. A bay or hole stays where no point
+ * is what an odd number of contours is around; contours that cross are outlines each, one that crosses itself is the loops
+ * between its crossings. A bay or hole stays where no point
  * of it is further from the inside than the tolerance, so narrow ones may be as deep as they like. Cuts go from the
  * deepest bays to where that leaves least, and parts are joined again as far as the tolerance lets them be: a search, no
  * proof that fewer do not serve. Where the outline is as thin as a line, so is a part, with 0.1 % of its length in width.
  * Takes some hundredths of a second with a tolerance, ten times as long without. Free the result with
  * narc_release_parts(). Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (`most`; an outline without points),
  * NARC_ERROR_SIZE (no length; all points in one place), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with so many
- * parts, or is below a 1024th of the extent), NARC_ERROR_MEMORY. */
+ * parts, or without laps and flatness is below a 1024th of the extent: error->value is the least possible one then, or the
+ * distance of the parts that were found), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_cut_path(const narc_path *path, const narc_parts_request *request, narc_parts *out_parts,
                                    narc_error *error);
 NARC_API void narc_release_parts(narc_parts *parts);
@@ -315,18 +321,22 @@ typedef struct narc_arc_chains {
 /* The curves of a path, and lines alone, by narc_fit_bezier(). Of lines one after the other, such as those of traced
  * outlines, as many as the tolerance lets be become one line or two arcs; pieces join with a common tangent but at
  * corners: where the lines turn by more than half a radian within some tolerances. A chain of lines that is a whole
- * contour may begin at another of its points. Contours are closed by a line where they are open, unless `open`, and those
+ * contour may begin at another of its points. Arcs that a store would not take because they are flat become lines.
+ * narc_add_chain() takes each chain as narc_describe_chain() gives it, with default options. Contours are closed by a line where they are open, unless `open`, and those
  * that are a point are left out. Closed chains have the inside on their left: what an odd number of chains is around;
- * open ones go as they were drawn. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
- * NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is drawn), NARC_ERROR_MEMORY. */
+ * open ones go as they were drawn. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier() and
+ * narc_add_chain(), with the contour, of those that are drawn, in error->index; NARC_ERROR_NOT_SIMPLE (lines cross, of one
+ * contour or of two: the message names both, counted from 0), NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is
+ * drawn), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
                                      narc_error *error);
 NARC_API void narc_release_chains(narc_arc_chains *chains);
 
 /* One chain, `pieces[0 .. count-1]`, as arcs in the form of shapes, for ground: with the inside on its left, normals that
  * point to the right, and radii below 0 where it is concave (narc_files.h has it exactly). Straight pieces are the edges
- * between arcs; where pieces meet with an angle above 1e-6 there is an arc of radius 0, or -0 in a valley, and plain
- * points at the ends of an open chain that are ends of lines. `out_arcs` has room for 2 count + 1. NARC_ERROR_ARGUMENT
+ * between arcs; where they meet with an angle above half of NARC_TOLERANCE there is an arc of radius 0, or -0.0 in a valley,
+ * and plain points at the ends of an open chain that are ends of lines. Arcs of more than half a turn become two.
+ * `out_arcs` has room for 3 count + 1. NARC_ERROR_ARGUMENT
  * (NULL), NARC_ERROR_COUNT (no pieces). */
 NARC_API narc_status narc_describe_chain(const narc_curve_arc *pieces, size_t count, bool closed, narc_arc *out_arcs,
                                          size_t *out_count, narc_error *error);

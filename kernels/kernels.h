@@ -101,8 +101,7 @@ typedef struct narc_ray_batch {
 typedef struct narc_region_batch {
     const narc_index *index;
     const narc_box *boxes;
-    narc_word_column mask;     /* base NULL: none */
-    narc_index_column ignored; /* base NULL: none */
+    const narc_index_query *query;
 } narc_region_batch;
 
 /* Where that kernel puts what it finds: the bodies of each query, in any order, behind those of the query before it. */
@@ -119,11 +118,12 @@ enum { NARC_REGION_ROOM = 16 * NARC_NODE_SLOTS + 16 };
 /* So many bodies of a query, at most, the kernel puts into order. NARC_FOUND_PADDING more may be read. */
 enum { NARC_ORDER_BODIES = 128 };
 
-/* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
- * And room for a vector that begins anywhere. */
-/* Of a body that turns, by default: the part of the smaller bounding radius that a hit may be away from the target. */
+/* Of bodies that turn, by default: the part of the smaller bounding radius that a hit may be away from the target, at
+ * most (scene/casts.c). */
 #define NARC_TURNING_TOLERANCE 0x1p-10
 
+/* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
+ * And room for a vector that begins anywhere. */
 enum { NARC_CAST_SLOTS = 48, NARC_CAST_ROOM = NARC_CAST_SLOTS + 16 };
 
 /* What a step of a cast may come to, beside NARC_CAST_...: it goes on; it has no answer. */
@@ -145,10 +145,11 @@ struct narc_cast_side {
 /* Casts under way, a slot each. The kernels may write behind the last one, up to NARC_CAST_ROOM. Times are floats,
  * rounded down: a place at a time is exact, and the caller's own. */
 typedef struct narc_casts {
-    float target, tolerance;                                   /* the caller's */
+    float tolerance;                                           /* the caller's */
     struct narc_cast_side side[2];                             /* A, B */
     double x[NARC_CAST_ROOM], y[NARC_CAST_ROOM];               /* B's position at the start, from A's */
     double motion_x[NARC_CAST_ROOM], motion_y[NARC_CAST_ROOM]; /* B's against A's */
+    float target[NARC_CAST_ROOM];                              /* the caller's */
     double end[NARC_CAST_ROOM];                                /* nothing touches then or later */
     double enough[NARC_CAST_ROOM];     /* a separation that is so much above the target is a hit */
     float turning[NARC_CAST_ROOM];     /* 1: turning moves an outline; else 0 */

@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "base/call.inl"
+#include "base/contact_point.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
@@ -93,8 +94,11 @@ INLINE void store_first_gap(const struct call *call, const struct queue *queue, 
     const vm keep = vm_and(found, is_below(gap->separation, get_margins(call, queue, k)));
     if (!vm_any(keep))
         return;
-    struct feature on_a, on_b;
-    const vec2 n = find_gap_features(call, queue, k, gap, &on_a, &on_b);
+    const narc_record *records = call->batch->shapes->records;
+    const struct pose pose = get_pose(queue, k);
+    const vec2 n = v2_divide(gap->normal, gap->length);
+    const struct feature on_a = find_feature_at(records, get_ring_a(queue, k), gap->record_a, &pose, n, false);
+    const struct feature on_b = find_feature_at(records, get_ring_b(queue, k), gap->record_b, &pose, n, true);
     store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 

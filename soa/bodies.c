@@ -4,17 +4,15 @@
  */
 #include <math.h>
 
+#include "broken.h"
 #include "column.h"
 #include "elementary.h"
 #include "error.h"
-#include "store.h"
 
 static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, narc_error *error) {
     const uint32_t shape = narc_index_at(bodies->shape, body);
     const double x = narc_position_at(bodies->x, body), y = narc_position_at(bodies->y, body);
-    /* In single precision, as the kernels compute it: what passes here has an answer there. */
     const float cosine = narc_float_at(bodies->cosine, body), sine = narc_float_at(bodies->sine, body);
-    const float off = cosine * cosine + sine * sine - 1.0f;
     const float scale = bodies->scale.base ? narc_float_at(bodies->scale, body) : 1.0f;
     const double c = (double)cosine, s = (double)sine;
     if (shape >= shapes->count)
@@ -29,11 +27,11 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
     if (!isfinite(c) || !isfinite(s))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(c) ? s : c, "body %zu: %s is %g", body,
                          isfinite(c) ? "sine" : "cosine", isfinite(c) ? s : c);
-    if (!(fabsf(off) <= (float)NARC_ROTATION_TOLERANCE))
+    if (!narc_is_rotation(cosine, sine))
         return narc_fail(error, NARC_ERROR_ARGUMENT, body, narc_hypot(c, s),
                          "body %zu: cosine and sine make a vector of length %.9g, not 1", body, narc_hypot(c, s));
     const float size = scale * shapes->headers[shape].bound_radius;
-    if (!(size >= (float)NARC_MIN_SIZE && size <= (float)NARC_MAX_BOUND_RADIUS))
+    if (!narc_is_size(size))
         return narc_fail(error, NARC_ERROR_SIZE, body, (double)scale,
                          "body %zu: scale is %.9g, its bounding radius is then %.9g, not in %g .. %g", body,
                          (double)scale, (double)size, NARC_MIN_SIZE, NARC_MAX_SIZE);

@@ -115,7 +115,6 @@ typedef struct side {
 } side;
 
 static narc_status find_sides(const narc_point *points, size_t count, side *out_sides, narc_error *error) {
-    double sum = 0;
     narc_status status = narc_check_points(points, count, error);
     if (status != NARC_OK)
         return status;
@@ -126,19 +125,14 @@ static narc_status find_sides(const narc_point *points, size_t count, side *out_
             return narc_fail(error, NARC_ERROR_SIZE, i, length, "side %zu: length is %g", i, length);
         out_sides[i] = (side){length, (to.y - from.y) / length, (from.x - to.x) / length, 0};
     }
+    double turns[NARC_MAX_ARCS];
     for (size_t i = 0; i < count; i++) {
-        side *after = &out_sides[i];
-        const side *before = &out_sides[(i + count - 1) % count];
+        const side *after = &out_sides[i], *before = &out_sides[(i + count - 1) % count];
         double cross = before->normal_x * after->normal_y - before->normal_y * after->normal_x;
-        after->turn = narc_atan2(cross, before->normal_x * after->normal_x + before->normal_y * after->normal_y);
-        if (after->turn < NARC_TOLERANCE)
-            return narc_fail(error, NARC_ERROR_NOT_CONVEX, i, after->turn,
-                             "point %zu: the outline turns by %.6g rad, not left (counter-clockwise)", i, after->turn);
-        sum += after->turn;
+        turns[i] = narc_atan2(cross, before->normal_x * after->normal_x + before->normal_y * after->normal_y);
+        out_sides[i].turn = turns[i];
     }
-    if (sum > 3 * NARC_PI) /* a closed outline makes a whole number of turns */
-        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, sum, "the polygon turns by %.6g rad in all, not once", sum);
-    return NARC_OK;
+    return narc_check_turns(turns, count, error);
 }
 
 static double find_tangent(double angle) {

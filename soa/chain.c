@@ -34,6 +34,14 @@ double narc_find_chain_room(const narc_chain_arc *before, const narc_chain_arc *
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
+/* A valley's bottom may have lost the sign of its radius, as programs write it that read -0 as a whole number: its normals
+ * still turn clockwise. Of half a turn the sign decides. */
+static bool is_concave(const narc_arc *arc) {
+    const double turn = arc->end - arc->start + (arc->end < arc->start ? 2 * NARC_PI : 0);
+    return signbit(arc->radius) ||
+           (arc->radius == 0 && turn > NARC_PI + NARC_TOLERANCE && turn <= 2 * NARC_PI - NARC_TOLERANCE);
+}
+
 static narc_status read_arc(const narc_arc *arc, size_t i, const narc_chain_options *options, narc_chain_arc *out_arc,
                             narc_error *error) {
     const double numbers[] = {arc->center_x, arc->center_y, arc->radius, arc->start, arc->end};
@@ -41,10 +49,13 @@ static narc_status read_arc(const narc_arc *arc, size_t i, const narc_chain_opti
         if (!(fabs(numbers[k]) <= NARC_MAX_DISTANCE))
             return narc_fail(error, isfinite(numbers[k]) ? NARC_ERROR_SIZE : NARC_ERROR_NOT_FINITE, i, numbers[k],
                              "arc %zu: a number is %g", i, numbers[k]);
-    const bool is_concave = signbit(arc->radius);
-    double turn = is_concave ? arc->start - arc->end : arc->end - arc->start;
-    *out_arc = (narc_chain_arc){
-        .x = arc->center_x, .y = arc->center_y, .radius = arc->radius, .start = arc->start, .number = (uint32_t)i};
+    const bool concave = is_concave(arc);
+    double turn = concave ? arc->start - arc->end : arc->end - arc->start;
+    *out_arc = (narc_chain_arc){.x = arc->center_x,
+                                .y = arc->center_y,
+                                .radius = concave ? -fabs(arc->radius) : arc->radius,
+                                .start = arc->start,
+                                .number = (uint32_t)i};
     if (arc->radius == 0 && fabs(turn) <= NARC_TOLERANCE) {
         out_arc->radius = 0;
         return NARC_OK;
@@ -52,12 +63,12 @@ static narc_status read_arc(const narc_arc *arc, size_t i, const narc_chain_opti
     turn += turn < 0 ? 2 * NARC_PI : 0;
     if (!(turn >= NARC_TOLERANCE && turn <= NARC_PI + NARC_TOLERANCE))
         return narc_fail(error, NARC_ERROR_SWEEP, i, turn, "arc %zu: sweep is %.9g rad%s, %s", i, turn,
-                         is_concave ? " clockwise" : "",
+                         concave ? " clockwise" : "",
                          turn < NARC_TOLERANCE ? "it turns by nothing" : "more than half a turn");
-    if (is_concave && -arc->radius < options->least_radius)
+    if (concave && fabs(arc->radius) < options->least_radius)
         return narc_fail(error, NARC_ERROR_RADIUS, i, arc->radius, "arc %zu: concave with the radius %.9g, below %.9g",
-                         i, -arc->radius, options->least_radius);
-    out_arc->turn = is_concave ? -turn : turn;
+                         i, fabs(arc->radius), options->least_radius);
+    out_arc->turn = concave ? -turn : turn;
     return NARC_OK;
 }
 
@@ -90,9 +101,9 @@ static narc_status check_join(const narc_chain_arc *before, const narc_chain_arc
 static size_t find_first(const narc_arc *arcs, size_t count, bool closed) {
     size_t first = 0;
     bool found = !closed;
-    for (size_t i = 0; i < count && !(found && signbit(arcs[first].radius)) && closed; i++) {
+    for (size_t i = 0; i < count && !(found && is_concave(&arcs[first])) && closed; i++) {
         const bool turns = !(arcs[i].radius == 0 && fabs(arcs[i].end - arcs[i].start) <= NARC_TOLERANCE);
-        if (turns && (!found || signbit(arcs[i].radius))) {
+        if (turns && (!found || is_concave(&arcs[i]))) {
             first = i;
             found = true;
         }
@@ -176,7 +187,8 @@ static size_t make_side(const narc_arc *arcs, size_t count, bool closed, bool ba
     for (size_t k = 0; k < count; k++) {
         const narc_arc *arc = &arcs[back ? count - 1 - k : k];
         out[from + k] =
-            back ? (narc_arc){arc->center_x, arc->center_y, -arc->radius, arc->end + NARC_PI, arc->start + NARC_PI}
+            back ? (narc_arc){arc->center_x, arc->center_y, is_concave(arc) ? fabs(arc->radius) : -arc->radius,
+                              arc->end + NARC_PI, arc->start + NARC_PI}
                  : *arc;
     }
     if (closed)

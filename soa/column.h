@@ -15,6 +15,11 @@ static inline float narc_float_at(narc_float_column column, size_t index) {
     return *(const float *)narc_at(column.base, column.stride, index);
 }
 
+/* Of a column that may be left out. */
+static inline float narc_float_or(narc_float_column column, size_t index, float none) {
+    return column.base ? narc_float_at(column, index) : none;
+}
+
 static inline uint32_t narc_index_at(narc_index_column column, size_t index) {
     return *(const uint32_t *)narc_at(column.base, column.stride, index);
 }

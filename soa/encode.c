@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "broken.h"
 #include "elementary.h"
 #include "error.h"
 #include "outline.h"
@@ -177,7 +178,7 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
     for (size_t i = 0; i < count; i++)
         extent = fmax(extent, narc_hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
     narc_shape_header header = make_header(&outline, count, bound, extent);
-    if ((double)header.bound_radius > NARC_MAX_BOUND_RADIUS)
+    if (!narc_is_size(header.bound_radius))
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound.radius,
                          "the shape's bounding radius is %.9g, with room for rounding %.9g, more than %g", bound.radius,
                          (double)header.bound_radius, NARC_MAX_SIZE);
@@ -257,7 +258,7 @@ narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const n
     write_concave(out_shape, (float)least_bound);
     *find_solid(out_shape) = *solid;
     const double bound = (double)out_shape->header.bound_radius;
-    if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS))
+    if (!narc_is_size(out_shape->header.bound_radius))
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound, "its bounding radius is %g, not in %g .. %g", bound,
                          NARC_MIN_SIZE, NARC_MAX_SIZE);
     if (-arc->radius > 4 * NARC_MAX_RADIUS_RATIO * bound)
@@ -381,8 +382,8 @@ static narc_status check_header(const narc_shape_header *header, const narc_outl
     for (size_t i = 0; i < o->count; i++)
         if (o->radius[i] > NARC_MAX_RADIUS_RATIO * circle.radius * (1 + 1e-6) + STORED_ROOM * extent)
             return fail_stored(error, "an arc that is too flat");
-    if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS) || !isfinite(header->bound_x) ||
-        !isfinite(header->bound_y) || !isfinite(header->inner_x) || !isfinite(header->inner_y) || !isfinite(inner))
+    if (!narc_is_size(header->bound_radius) || !isfinite(header->bound_x) || !isfinite(header->bound_y) ||
+        !isfinite(header->inner_x) || !isfinite(header->inner_y) || !isfinite(inner))
         return fail_stored(error, "a circle that is out of range");
     if (!(narc_hypot((double)header->bound_x, (double)header->bound_y) <= NARC_MAX_SIZE * (1 + 1e-6)))
         return fail_stored(error, "a shape too far from its origin");
@@ -448,8 +449,7 @@ static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error)
     if (header.count != 1 || header.first_arc != NARC_PIECE_CONCAVE || a->inner_radii != 0)
         return fail_stored(error, "a piece of a chain that is none");
     if (!isfinite(a->center_x) || !isfinite(a->center_y) || !isfinite(a->radius) || !signbit(a->radius) ||
-        !(header.bound_radius >= (float)NARC_MIN_SIZE && header.bound_radius <= (float)NARC_MAX_BOUND_RADIUS) ||
-        find_concave_extent(a) > 5 * NARC_MAX_RADIUS_RATIO * NARC_MAX_SIZE)
+        !narc_is_size(header.bound_radius) || find_concave_extent(a) > 5 * NARC_MAX_RADIUS_RATIO * NARC_MAX_SIZE)
         return fail_stored(error, "a number that no concave arc has");
     if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || !(fabs(end_x * end_x + end_y * end_y - 1) <= UNIT_SLACK) ||
         !(x * end_y - y * end_x >= NARC_TOLERANCE / 4))

@@ -15,7 +15,12 @@ narc_status narc_fail(narc_error *error, narc_status status, size_t index, doubl
         error->value = value;
         va_list arguments;
         va_start(arguments, format);
-        vsnprintf(error->message, sizeof error->message, format, arguments);
+        size_t end = sizeof error->message - 1;
+        if (vsnprintf(error->message, end + 1, format, arguments) > (int)end) { /* cut: but within no character */
+            while (end > 0 && ((unsigned char)error->message[end - 1] & 0xc0) == 0x80)
+                end--;
+            error->message[end - (end > 0 && (unsigned char)error->message[end - 1] >= 0xc0)] = 0;
+        }
         va_end(arguments);
     }
     return status;

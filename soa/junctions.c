@@ -42,7 +42,6 @@ static double find_alpha(const chord_ring *c, size_t arc, double first) {
 
 static narc_status measure_chords(const narc_point *points, size_t count, chord_ring *out_chain, double *out_turns,
                                   narc_error *error) {
-    double sum = 0;
     out_chain->count = count;
     narc_status status = narc_check_points(points, count, error);
     if (status != NARC_OK)
@@ -57,16 +56,9 @@ static narc_status measure_chords(const narc_point *points, size_t count, chord_
         out_chain->chord[i] = length;
         out_chain->direction[i] = narc_atan2(-x, y);
     }
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         out_turns[i] = narc_wrap_angle(out_chain->direction[i] - out_chain->direction[(i + count - 1) % count]);
-        if (out_turns[i] < NARC_TOLERANCE)
-            return narc_fail(error, NARC_ERROR_NOT_CONVEX, i, out_turns[i],
-                             "point %zu: the outline turns by %.6g rad, not left (counter-clockwise)", i, out_turns[i]);
-        sum += out_turns[i];
-    }
-    if (sum > 3 * NARC_PI) /* a closed outline makes a whole number of turns */
-        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, sum, "the outline turns by %.6g rad in all, not once", sum);
-    return NARC_OK;
+    return narc_check_turns(out_turns, count, error);
 }
 
 static narc_status solve_odd(chord_ring *c, const double *turns, narc_error *error) {

@@ -12,7 +12,7 @@
  *       radius > 0     convex: normals turn counter-clockwise from `start` to `end`, by at most half a turn
  *       radius 0       a convex corner; or with `start` and `end` equal a plain point: an end of an edge
  *       radius < 0     concave, solid outside the circle: normals turn clockwise from `start` to `end`
- *       radius -0.0    the bottom of a valley, a concave corner
+ *       radius -0.0    the bottom of a valley, a concave corner; so is 0 where normals turn clockwise
  *
  *   A level ground from x = 0 to x = 9 with the solid below is walked from its right end:
  *
@@ -46,7 +46,7 @@
 extern "C" {
 #endif
 
-/* The run of entries that are concave arcs, which are of none. */
+/* The run of entries that are concave arcs, which are of none, and of bodies that are no entries. */
 #define NARC_NO_RUN UINT32_MAX
 
 /* How a chain is divided; zero-initialised options are all defaults. */
@@ -98,8 +98,9 @@ NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, s
 
 /* Merges what several entries tell of one body: `count` rows of narc_find_contacts() or narc_find_manifolds(), in their
  * order, without gaps, in place; returns how many are left. Rows without a contact go.
- *   pairs   those of the query, whose bodies `a` are asked about and whose bodies `b` are all entries of chains
- *   run     of each body `b`: its entry's run; base NULL: all are concave
+ *   pairs   those of the query, whose bodies `a` are asked about. Bodies `b` are entries of chains, or others
+ *   run     of each body `b`: its entry's run, of other bodies NARC_NO_RUN: their rows stay as they are; base NULL: as
+ *           if all were NARC_NO_RUN
  * Looked at are rows of one body a that follow each other, as a broad phase lists them, each beside the 64 before it:
  *   - Of two rows of one run that have one normal (within 1e-4 rad) the points are joined: the two outermost stay,
  *     but for the higher one where the deepest lies between them, in the first one's row, which is compared again. (A contact has one point: that with the smaller separation.) Else the row with the greater

@@ -23,10 +23,11 @@ extern "C" {
 /* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
  * cosine^2 + sine^2 must be 1 within NARC_ROTATION_TOLERANCE; the kernels remove the rest, so that a rotation may
  * drift a little. A body with a NaN or an infinity, with another cosine and sine, with a scale that is not positive or
- * takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, or with a shape that was removed, collides with nothing. A
- * pair with such a body, or with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these
- * (narc_query.out_skipped). narc_compute_boxes() gives a broken body an empty box, so that it is in no pair that is
- * found from boxes: there it is narc_box_options.out_skipped that counts.
+ * takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, or with a shape that was removed, collides with nothing: it is
+ * broken. At the limits roundings of single precision decide, in all calls alike. A pair with such a body, or with two
+ * bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these (narc_query.out_skipped).
+ * narc_compute_boxes() gives a broken body an empty box, so that it is in no pair that is found from boxes: there it is
+ * narc_box_options.out_skipped that counts.
  *
  * Columns may lie anywhere. Batches of pairs are read fastest where what belongs to a body lies in a row: x, y, cosine
  * and sine, all float; or as in narc_body. */
@@ -98,8 +99,8 @@ typedef struct narc_pairs {
  *                     sharp polygons of up to 8 corners nothing. What hints mean is the library's business. Any value is safe: one that is
  *                     stale, or made up, or another pair's, costs time and changes no bit of the answer. Untouched on
  *                     an error other than NARC_ERROR_CAPACITY
- *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out ({0}, base
- *                     and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
+ *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once, so no more than there
+ *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
  *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
  *                     of the selection, and bit k of overlaps is that of pair selection[k]
  *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
@@ -143,7 +144,8 @@ typedef struct narc_query {
  *   count       1; 0: none, and all else but `pair` 0 (see narc_query.dense); or with a margin of +INFINITY no answer,
  *               and separation +INFINITY
  *   separation  signed distance between the bodies, negative: penetration depth
- *   normal      unit, from A to B, world axes
+ *   normal      unit, from A to B, world axes. Where corners, or the centres of round ones, lie in one place up to
+ *               rounding, the normal of an edge beside them, if one's gap is as large but for the error bound
  *   point       halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
  *               position of body A, so that it is precise in a large world; where two edges touch along a stretch,
  *               the middle of that stretch. The point less half the separation along the normal lies on A, and plus

@@ -91,15 +91,27 @@ NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, 
 NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, float *out_slack, narc_error *error);
 
+/* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
+ * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
+ *   owner     of each body of the index, any number; UINT32_MAX: the body is a thing by itself
+ *   ignored   for each query an owner whose bodies are not found; UINT32_MAX: none; left out: none */
+typedef struct narc_owners {
+    narc_index_column owner;
+    narc_index_column ignored;
+    void *reserved[4]; /* NULL */
+} narc_owners;
+
 /* How a question goes through an index; NULL or {0}: all bodies, in the calling thread.
  *   mask      64 bits for each query: only bodies with category & mask not 0 are found; left out: all bits set
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
- *   workers   threads to use; NULL: the calling one */
+ *   workers   threads to use; NULL: the calling one
+ *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;
     const narc_workers *workers;
-    void *reserved[4]; /* NULL */
+    const narc_owners *owners;
+    void *reserved[3]; /* NULL */
 } narc_index_query;
 
 /* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).
@@ -126,15 +138,17 @@ typedef struct narc_rays {
     void *reserved[2];                    /* NULL */
 } narc_rays;
 
-/* What a ray meets that starts within a body, or on its outline. */
+/* What a ray meets that starts within a body, or on its outline. With owners: within any part of a thing. */
 typedef enum narc_inside {
     NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
-    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards */
-    NARC_INSIDE_IGNORES = 2, /* not that body */
+    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
+                                last of the parts that follow each other without a gap; the row names that part. Parts
+                                are connected where they come within twice NARC_ERROR_BOUND * (the latter's extent) */
+    NARC_INSIDE_IGNORES = 2, /* not that body; no part of that thing */
 } narc_inside;
 
 /* What is 0 or NULL has its default, as all has for {0}.
- *   search        mask, ignored, workers
+ *   search        mask, ignored, workers, owners: of each thing the first row counts
  *   inside        see narc_inside
  *   any           1: whether anything is hit is all that matters. A row with count 1 tells of some body that is hit
  *                 (the same one for the same index)
@@ -176,8 +190,12 @@ typedef struct narc_ray_hit {
  *   options    NULL: defaults
  *   out_rows   room for `capacity` rows, at least rays->count * most
  * The point is within NARC_ERROR_BOUND * (the body's extent) of the outline and of the ray, however far the ray has come
- * (from more than 1e9 extents away, the digits of doubles are lost too); a ray that passes a body by no more than that
- * may hit or miss it. A corner is hit as the end of an edge. Pieces of chains (narc_chains.h) are hit from the air: a
+ * (from more than 1e9 extents away, the digits of doubles are lost too). A ray that passes a body by no more than that
+ * may hit or miss it, but one that touches it on its way, if only at a corner or along a side, hits it. So through a point that
+ * two bodies hold, such as tiles' common corner, no ray passes unless it hits both (of shapes less than 250 of their radii
+ * from their own origin). A touch has a fraction and a normal as any hit; at most, the normal is across the ray. A corner is
+ * hit as the end of an edge, a segment along the ray at its end, against the normal. Boxes only have to hold their bodies:
+ * larger ones change no bit. Pieces of chains (narc_chains.h) are hit from the air: a
  * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
  * bodies, and those whose shape does not exist, are not hit: so that a single ray takes no longer where there are many
  * bodies, they are not looked at beforehand. Rays that start at the same place and follow each other in the order of
@@ -202,18 +220,22 @@ typedef struct narc_motions {
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   target        the separation that is looked for: 0: touch; above 0: closer than that; below 0: so deep
- *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
- *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
+ *   tolerance     where turning moves a body's outline, a hit has a separation within target .. target + tolerance; 0:
+ *                 the least of 1/1024 of the smaller body's bounding radius, 1/64 of the thinner one's inscribed radius,
+ *                 and 1/16 of what turning moves the outlines, but no less than rounding: so a turn of next to nothing
+ *                 is as none. Bodies that do not turn need none: they meet up to rounding
  *   workers       threads to use; NULL: the calling one
  *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
  *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
- *                 finite, and such pairs on the way of the others. NULL: nobody asks */
+ *                 finite, and such pairs on the way of the others. NULL: nobody asks
+ *   targets       a target for each pair instead, of narc_cast_shapes() for each mover; `target` then means nothing */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    narc_float_column targets;
+    void *reserved[2]; /* NULL */
 } narc_cast_options;
 
 /* What became of a cast. */
@@ -247,16 +269,19 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not. Without turning, the time is exact up to
+ * no further than the target at the start hit at fraction 0, parting or not: what touches, or overlaps a little, can't be
+ * cast away from the other body, or along it, but with a target below the separation that it has, such as the contact's
+ * less a little (`targets`). Without turning, the time is exact up to
  * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
  * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
- * counts for what it moves: not for a circle about its position.
+ * counts for what it moves: a circle about its position is cast as if it did not turn, to the bit.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_NOT_FINITE (target, tolerance, or
+ * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                                      const narc_pairs *pairs, const narc_motions *other_motions,
@@ -266,7 +291,7 @@ NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodie
 /* What each mover hits first: the least (fraction, body).
  *   index, bodies    what stands still while movers move, as in narc_cast_rays()
  *   movers, motions  any bodies, and how each moves
- *   search           mask and ignored by mover, workers (those of `options` are not used); NULL: defaults
+ *   search           mask, ignored and the owner ignored by mover, workers (those of `options` are not used); NULL: defaults
  *   out_rows         room for `capacity` rows, at least movers->count; A is the mover
  * Otherwise as narc_cast_pairs(), but the index allocates: NARC_ERROR_MEMORY, NARC_ERROR_COUNT (2^32 pairs of a mover and
  * a box on its way). That bodies' shapes exist is only looked at where a mover comes near. One call at a time for each
@@ -313,7 +338,8 @@ typedef struct narc_distance {
  *   out_rows   room for points->count rows
  * With D the distance between point and position, E the body's extent: the separation is within
  * NARC_ERROR_BOUND * (D + E) of the exact one, the place so near to the outline, and no other is nearer by more than
- * that. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
+ * that. Where arcs were given NARC_TOLERANCE apart, the place is within that of the outline, and another may be nearer by
+ * some 1e-3 of the bounding radius. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
  * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 14. */
@@ -322,7 +348,9 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
                                          narc_distance *out_rows, narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
- *   search     mask, ignored, workers
+ *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which
+ *              the point is deepest in, and the thing's outside is at least so far; it is further where that part's place
+ *              lies within another part. A point is within a thing (`inside`) if it is within a part
  *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
  *   inside     1: only bodies that the point is within
  *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows

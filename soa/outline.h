@@ -36,6 +36,9 @@ void narc_read_outline(const narc_arc *arcs, size_t count, narc_outline *out_out
 /* Are all coordinates finite? */
 narc_status narc_check_points(const narc_point *points, size_t count, narc_error *error);
 
+/* Is an outline convex, of whose points these are the turns, once round and counter-clockwise? */
+narc_status narc_check_turns(const double *turns, size_t count, narc_error *error);
+
 /* narc_validate_arcs() for those who need the outline and the bounding circle (absolute coordinates) next. */
 narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *out_outline, narc_circle *out_bound,
                             narc_error *error);

@@ -302,6 +302,8 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
     shapes->piece_count += narc_is_piece(&encoded->header);
+    if (shapes->largest_ratio < encoded->header.extent_ratio)
+        shapes->largest_ratio = encoded->header.extent_ratio;
     put_box(shapes, shape, narc_find_box_form(encoded));
     shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
     link_shape(shapes, shape, find_bucket(shapes, hash));

@@ -194,6 +194,7 @@ struct narc_shapes {
     size_t removed_count;                 /* removed shapes */
     size_t box_count;                     /* shapes with a form of a box or a capsule */
     size_t piece_count;                   /* shapes that are pieces of chains */
+    uint8_t largest_ratio;                /* the largest extent_ratio that a shape has had */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
     uint64_t history;                     /* a hash of which shapes did so, one after the other */

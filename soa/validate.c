@@ -123,6 +123,22 @@ narc_status narc_check_points(const narc_point *points, size_t count, narc_error
     return NARC_OK;
 }
 
+narc_status narc_check_turns(const double *turns, size_t count, narc_error *error) {
+    double sum = 0;
+    size_t first = count;
+    for (size_t i = 0; i < count; i++) {
+        sum += turns[i];
+        first = first == count && turns[i] < NARC_TOLERANCE ? i : first;
+    }
+    if (first < count)
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, first, turns[first],
+                         "point %zu: the outline turns by %.6g rad, not left (counter-clockwise)%s", first,
+                         turns[first], sum < -NARC_PI ? ": it is clockwise: reverse the points" : "");
+    if (sum > 3 * NARC_PI) /* a closed outline makes a whole number of turns */
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, sum, "the outline turns by %.6g rad in all, not once", sum);
+    return NARC_OK;
+}
+
 narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *out_outline, narc_circle *out_bound,
                             narc_error *error) {
     narc_status status;

@@ -8,9 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "calls.h"
 #include "elementary.h"
 #include "fail.h"
 #include "narc.h"
+#include "narc_broad_phase.h"
 #include "table.h"
 #include "text.h"
 #include "turn.h"
@@ -18,17 +20,16 @@
 enum { SHAPE, X, Y, ANGLE, SCALE, BODY_COLUMNS };
 static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle", "scale"};
 
-/* The scale of the current row. The kernels ignore a body that is too small or too large; a file must not have one. */
-static float read_scale(table *rows, double bound) {
-    const double scale = row_number(rows, SCALE);
-    const double size = scale * bound;
-    if (!(scale > 0))
+/* The scale of the current row, for this shape. The kernels ignore a body that is too small or too large; a file must not
+ * have one. */
+static float read_scale(table *rows, const narc_shapes *store, uint32_t shape) {
+    const narc_body sized = {.cosine = 1, .scale = (float)row_number(rows, SCALE), .shape = shape};
+    const narc_bodies one = narc_view_bodies(&sized, 1);
+    if (!(row_number(rows, SCALE) > 0))
         fail_field(rows, SCALE, "must be more than 0");
-    if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE)) {
-        fail_field(rows, SCALE, "makes the body's radius %.9g, outside %.9g to %.9g,", size, NARC_MIN_SIZE,
-                   NARC_MAX_SIZE);
-    }
-    return (float)scale;
+    if (narc_validate_bodies(store, &one, NULL) != NARC_OK)
+        fail_field(rows, SCALE, "makes the body's radius less than %g or more than %g,", NARC_MIN_SIZE, NARC_MAX_SIZE);
+    return sized.scale;
 }
 
 /* Turns angles into cosines and sines. They were reduced to half a turn either way in double precision, so that large
@@ -52,12 +53,11 @@ static size_t find_shape(const narc_shape_list *shapes, const char *text) {
     return found == shapes->count && parse_whole(text, shapes->count - 1, &index) ? (size_t)index : found;
 }
 
-/* What bodies may be: the shapes of a file, the radius of the smallest circle around each, and the entries of chains. */
+/* What bodies may be: the shapes of a file, and the entries of chains. */
 typedef struct catalogue {
     const char *path;
     const narc_shape_list *shapes;
     narc_shapes *store;
-    double *bounds;
     chain_entries *chains;
 } catalogue;
 
@@ -72,23 +72,12 @@ static void add_chain(catalogue *c, size_t k) {
     if (narc_add_chain(c->store, shape->arcs, shape->arc_count, &options, chain->items, chain->count, &chain->count,
                        &error) != NARC_OK)
         fail_at(c->path, 0, "chain '%s': %s", shape->name, error.message);
-    for (size_t i = 0; i < chain->count; i++) {
-        narc_aabb box;
-        narc_get_aabb(c->store, chain->items[i].shape, 1, 0, 1, &box);
-        c->bounds[k] = fmax(c->bounds[k], narc_hypot(box.max_x - box.min_x, box.max_y - box.min_y) / 2);
-    }
 }
 
 static catalogue open_catalogue(const char *path, const narc_shape_list *shapes, narc_shapes *store) {
-    catalogue c = {path, shapes, store, allocate(shapes->count, sizeof *c.bounds),
-                   allocate(shapes->count, sizeof *c.chains)};
-    for (size_t k = 0; k < shapes->count; k++) {
-        narc_circle bound = {0, 0, 0};
-        if (shapes->items[k].form == NARC_FORM_SHAPE)
-            narc_compute_bounding_circle(shapes->items[k].arcs, shapes->items[k].arc_count, &bound);
-        c.bounds[k] = bound.radius;
+    catalogue c = {path, shapes, store, allocate(shapes->count, sizeof *c.chains)};
+    for (size_t k = 0; k < shapes->count; k++)
         c.chains[k] = (chain_entries){NULL, 0};
-    }
     return c;
 }
 
@@ -96,7 +85,6 @@ static void close_catalogue(catalogue *c) {
     for (size_t k = 0; k < c->shapes->count; k++)
         free(c->chains[k].items);
     free(c->chains);
-    free(c->bounds);
 }
 
 /* A part of a body: its shape, in the file and in the store, and where it lies in the body's coordinates. */
@@ -155,9 +143,9 @@ static void find_parts(catalogue *c, const char *name, compound *out) {
         out->centroid = (narc_point){out->centroid.x / area, out->centroid.y / area};
 }
 
-static void add_part(table *rows, body_list *bodies, const compound *of, size_t k, const double *bounds) {
+static void add_part(table *rows, body_list *bodies, const compound *of, size_t k, const narc_shapes *store) {
     const body_part *part = &of->parts[k];
-    const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, bounds[part->item]) : 1;
+    const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, store, part->shape) : 1;
     const double angle = remainder(row_number(rows, ANGLE), FULL_TURN);
     narc_point turn;
     narc_find_cosine(angle, &turn.x, &turn.y);
@@ -189,7 +177,7 @@ void read_bodies(const char *path, const char *shapes_path, const narc_shape_lis
         if (of.count == 0)
             fail_field(&rows, SHAPE, "is no name or index of a shape (there are %zu)", shapes->count);
         for (size_t part = 0; part < of.count; part++) {
-            add_part(&rows, &bodies, &of, part, known.bounds);
+            add_part(&rows, &bodies, &of, part, store);
             angles = grow(angles, &angle_capacity, bodies.count, sizeof *angles);
             angles[bodies.count - 1] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
         }
@@ -264,6 +252,21 @@ narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies) {
                                nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
     }
     return boxes;
+}
+
+size_t count_unboxed(const narc_shapes *store, const body_list *bodies) {
+    const narc_bodies view = view_bodies(bodies);
+    narc_box *boxes = allocate(bodies->count, sizeof *boxes);
+    size_t count = 0;
+    narc_error error;
+    check_call(narc_compute_boxes(store, &view, &(narc_box_options){.out_skipped = &count}, boxes, &error), &error);
+    free(boxes);
+    return count;
+}
+
+void print_unboxed(FILE *file, size_t count) {
+    if (count)
+        fprintf(file, "without a box       %zu bodies, beyond the range of single precision\n", count);
 }
 
 narc_bodies view_bodies(const body_list *bodies) {

@@ -6,6 +6,7 @@
 #define NARC_TOOL_BODIES_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "narc_chains.h"
 #include "narc_files.h"
@@ -53,6 +54,11 @@ void drop_own_pairs(const body_list *bodies, pair_list *pairs);
 
 /* The bodies' bounding boxes in the world, to be freed. */
 narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies);
+
+/* How many have none in single precision, as narc_compute_boxes() says: they are too far out. print_unboxed() tells of
+ * them in a report, if there are any. */
+size_t count_unboxed(const narc_shapes *store, const body_list *bodies);
+void print_unboxed(FILE *file, size_t count);
 
 /* Both as the library wants them. */
 narc_bodies view_bodies(const body_list *bodies);

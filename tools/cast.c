@@ -38,8 +38,9 @@ static const char HELP[] =
     "                  points are in world coordinates, normals point out of the body\n"
     "                  -: standard output, and the report goes to standard error\n"
     "  --inside NAME   a ray that begins within a body: stops there (the default; fraction 0, normal 0),\n"
-    "                  leaves (is hit from inside where it leaves), or ignores that body\n"
-    "  --most N        so many hits of each ray, the nearest first; default 1\n"
+    "                  leaves (is hit from inside where it leaves), or ignores that body;\n"
+    "                  a body of several parts is one body\n"
+    "  --most N        so many hits of each ray, one of each body, the nearest first; default 1\n"
     "  --picture FILE  a .png or .svg picture of bodies, rays, hits and normals\n"
     "  --isa NAME      the instruction set, one of those that narc info lists\n"
     "  --threads N     1 to 1024; left out: one for each processor\n"
@@ -71,7 +72,7 @@ typedef struct job {
     body_list bodies;
     ray_list rays;
     narc_ray_hit *hits;
-    size_t row_count, hit_count, hit_rays, skipped;
+    size_t row_count, hit_count, hit_rays, skipped, unboxed;
     double build_seconds, cast_seconds;
 } job;
 
@@ -88,9 +89,10 @@ static narc_inside find_inside(const char *name) {
 
 static settings read_settings(int argc, char **argv) {
     enum { SHAPES, BODIES, RAYS, OUT, INSIDE, MOST, PICTURE, ISA, THREADS, OPTIONS };
-    option options[OPTIONS] = {{"--shapes", true, NULL},  {"--bodies", true, NULL}, {"--rays", true, NULL},
-                               {"--out", true, NULL},     {"--inside", true, NULL}, {"--most", true, NULL},
-                               {"--picture", true, NULL}, {"--isa", true, NULL},    {"--threads", true, NULL}};
+    option options[OPTIONS] = {
+        {"--shapes", INPUT_FILE, NULL}, {"--bodies", INPUT_FILE, NULL}, {"--rays", INPUT_FILE, NULL},
+        {"--out", true, NULL},          {"--inside", true, NULL},       {"--most", true, NULL},
+        {"--picture", true, NULL},      {"--isa", true, NULL},          {"--threads", true, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
@@ -141,7 +143,9 @@ static void cast_rays(const settings *chosen, job *work) {
                             .y = NARC_POSITION_COLUMN(items, y),
                             .motion_x = NARC_COLUMN(items, motion_x),
                             .motion_y = NARC_COLUMN(items, motion_y)};
+    const narc_owners owners = {.owner = NARC_COLUMN(work->bodies.items, row)};
     narc_ray_options options = chosen->cast;
+    options.search.owners = &owners;
     options.search.workers = &chosen->workers;
     options.out_skipped = &work->skipped;
     if (rays.count > SIZE_MAX / options.most)
@@ -154,9 +158,10 @@ static void cast_rays(const settings *chosen, job *work) {
     check_call(narc_create_index(NULL, &index), &(narc_error){.message = "not enough memory"});
     show_stage("casting", rays.count, "rays", false);
     const double start = seconds_now();
-    check_call(
-        narc_compute_boxes(work->store, &bodies, &(narc_box_options){.workers = &chosen->workers}, boxes, &error),
-        &error);
+    check_call(narc_compute_boxes(work->store, &bodies,
+                                  &(narc_box_options){.workers = &chosen->workers, .out_skipped = &work->unboxed},
+                                  boxes, &error),
+               &error);
     const narc_index_options building = {.workers = &chosen->workers};
     check_call(narc_build_index(index, boxes, bodies.count, &building, &error), &error);
     const double built = seconds_now();
@@ -227,6 +232,7 @@ static void draw(const settings *chosen, FILE *picture, const job *work) {
 static void print_report(FILE *file, const job *work) {
     fprintf(file, "shapes              %zu\n", work->shapes->count);
     fprintf(file, "bodies              %zu\n", work->bodies.row_count);
+    print_unboxed(file, work->unboxed);
     fprintf(file, "all rays            %zu\n", work->rays.count);
     fprintf(file, "rays that hit       %zu\n", work->hit_rays);
     fprintf(file, "hits                %zu\n", work->hit_count);

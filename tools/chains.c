@@ -33,7 +33,7 @@ narc_named_shape *describe_chains(const outline_list *outlines, const narc_arc_c
     for (size_t i = 0; i < outlines->count; i++) {
         for (size_t k = 0, begin = 0; k < chains[i].count; begin = chains[i].ends[k++]) {
             const size_t pieces = chains[i].ends[k] - begin;
-            narc_arc *arcs = allocate(2 * pieces + 1, sizeof *arcs);
+            narc_arc *arcs = allocate(3 * pieces + 1, sizeof *arcs);
             narc_named_shape *made = &shapes[used++];
             *made = (narc_named_shape){.name = name_part(&outlines->items[i], k, chains[i].count),
                                        .arcs = arcs,

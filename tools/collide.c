@@ -86,6 +86,7 @@ typedef struct job {
     narrow_result narrow;
     bool *marked; /* bodies that collide */
     double broad_seconds;
+    size_t unboxed;
 } job;
 
 enum {
@@ -132,9 +133,9 @@ static void read_method(const option *options, narrow_settings *out_chosen) {
 }
 
 static settings read_settings(int argc, char **argv) {
-    option options[OPTIONS] = {[SHAPES] = {"--shapes", true, NULL},
-                               [BODIES] = {"--bodies", true, NULL},
-                               [PAIRS] = {"--pairs", true, NULL},
+    option options[OPTIONS] = {[SHAPES] = {"--shapes", INPUT_FILE, NULL},
+                               [BODIES] = {"--bodies", INPUT_FILE, NULL},
+                               [PAIRS] = {"--pairs", INPUT_FILE, NULL},
                                [MAX_PAIRS] = {"--max-pairs", true, NULL},
                                [OUT] = {"--out", true, NULL},
                                [ALL] = {"--all", false, NULL},
@@ -292,6 +293,7 @@ static void print_report(FILE *file, const job *work, const settings *chosen) {
         fprintf(file, "bodies              %zu, of %zu parts\n", work->bodies.row_count, work->bodies.count);
     else
         fprintf(file, "bodies              %zu\n", work->bodies.count);
+    print_unboxed(file, work->unboxed);
     fprintf(file, "candidate pairs     %zu%s\n", work->pairs.count, chosen->pairs ? " (from the file)" : "");
     print_method(file, &chosen->narrow);
     print_answers(file, found, chosen->narrow.method);
@@ -319,6 +321,7 @@ static void run(int argc, char **argv) {
     read_bodies(chosen.bodies, chosen.shapes, work.shapes, work.store, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
     work.boxes = bound_bodies(work.store, &work.bodies);
+    work.unboxed = count_unboxed(work.store, &work.bodies);
     if (chosen.pairs)
         read_pairs(chosen.pairs, &work.bodies, &work.pairs);
     /* Outputs that cannot be written are found before the work is done. */

@@ -21,8 +21,8 @@
 
 static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
-    "                [--objective NAME] [--edges|--polygon|--paper] [--flatness F] [--min-radius R]\n"
-    "                [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
+    "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
+    "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--out shapes.json]\n"
     "                [--picture FILE]\n"
     "       narc fit INPUT... --chain --tolerance T [--open] [--keep-going] [--characters TEXT]\n"
@@ -39,8 +39,7 @@ static const char HELP[] =
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
-    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull, in the\n"
-    "                  input's unit of length\n"
+    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull\n"
     "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
     "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
     "                  outline, or with --arcs, which is for each, the nearest\n"
@@ -53,7 +52,8 @@ static const char HELP[] =
     "                  perimeter     with --bound only: the shape's perimeter\n"
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
-    "  --edges         straight edges may stand between arcs; without it tangents are continuous\n"
+    "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
+    "  --no-edges      not in these either\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
     "  --characters TEXT\n"
@@ -90,6 +90,7 @@ enum {
     EDGES,
     POLYGON,
     PAPER,
+    NO_EDGES,
     CHARACTERS,
     IDS,
     SILHOUETTE,
@@ -120,15 +121,19 @@ static void check_combinations(const option *options) {
     exclude(&options[EDGES], &options[POLYGON], families);
     exclude(&options[EDGES], &options[PAPER], families);
     exclude(&options[POLYGON], &options[PAPER], families);
+    exclude(&options[NO_EDGES], &options[EDGES], families);
+    exclude(&options[NO_EDGES], &options[POLYGON], families);
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
     for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    static const int of_hulls[] = {ARCS,    PARTS, BOUND,    APPROXIMATE, OBJECTIVE,  EDGES,
-                                   POLYGON, PAPER, FLATNESS, STARTS,      KEEP_ORIGIN};
+    static const int of_hulls[] = {ARCS,    PARTS, BOUND,    APPROXIMATE, OBJECTIVE,   EDGES,
+                                   POLYGON, PAPER, FLATNESS, STARTS,      KEEP_ORIGIN, NO_EDGES};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
         exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
     if (options[OPEN].value && !options[CHAIN].value)
         fail("--open is for --chain: shapes are closed");
+    if (options[NO_EDGES].value && !options[PARTS].value)
+        fail("--no-edges is for --parts: other shapes have edges with --edges alone");
     if (!options[ARCS].value && !options[TOLERANCE].value)
         fail("--arcs or --tolerance is missing");
 }
@@ -205,13 +210,18 @@ static double measure_extent(const outline *of) {
 typedef struct fitting {
     narc_fit_request request;
     size_t parts;       /* at most; 0: the hull */
+    bool no_edges;      /* also in parts that smooth arcs do not come near */
     double flatness;    /* relative to an outline's extent; 0: the usual one */
     narc_shapes *store; /* takes what a file must be able to bring there */
     stage at;
 } fitting;
 
-/* Of a tolerance, what cuts get; the rest is for the shapes that are fitted to parts. */
-static const double SHARE_OF_CUTS = 0.75;
+/* An outline with less, in parts of its extent's square, has no area but that of roundings. */
+static const double LEAST_AREA = 1e-12;
+
+/* Of a tolerance, what parts get; the rest is for the shapes that are fitted to them. Of parts that are approximated laps
+ * take twice the rest. */
+static const double SHARE_OF_PARTS = 0.75, SHARE_OF_LAPPED_PARTS = 0.875;
 
 static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request request, collider *out,
                      narc_error *error) {
@@ -221,8 +231,14 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
     out->fits = allocate(out->count, sizeof *out->fits);
     for (how->at.part = 0; how->at.part < out->count; how->at.part++) {
         narc_fit_result *fit = &out->fits[how->at.part];
-        if (narc_fit_path(paths[how->at.part], &request, fit, error) != NARC_OK ||
-            narc_add_shape(how->store, fit->arcs, fit->arc_count, NULL, error) != NARC_OK)
+        narc_status status = narc_fit_path(paths[how->at.part], &request, fit, error);
+        if (status == NARC_ERROR_NO_SOLUTION && how->parts && !how->no_edges && request.family == NARC_FIT_N_ARC) {
+            request.family = NARC_FIT_EDGES;
+            status = narc_fit_path(paths[how->at.part], &request, fit, error);
+            request.family = NARC_FIT_N_ARC;
+            out->unasked += status == NARC_OK && fit->edge_count > 0;
+        }
+        if (status != NARC_OK || narc_add_shape(how->store, fit->arcs, fit->arc_count, NULL, error) != NARC_OK)
             return false;
         out->distance = fmax(out->distance, fit->max_distance);
     }
@@ -249,23 +265,50 @@ static bool measure_union(collider *of, narc_error *error) {
     return done;
 }
 
+/* What went wrong with cuts, or with the shape of the part that how->at tells, in the numbers of the whole tolerance. */
+static void explain(const fitting *how, const narc_parts_request *cut, bool is_cut, narc_error *error) {
+    const double whole = how->request.tolerance, lap = NARC_LAP_REACH * cut->lap;
+    char reason[sizeof error->message];
+    if (!(whole > 0) || error->status != NARC_ERROR_NO_SOLUTION)
+        return;
+    if (!is_cut)
+        snprintf(reason, sizeof reason, "part %zu, whose shape has a share of the tolerance %g: %.120s",
+                 how->at.part + 1, whole, error->message);
+    else if (error->value > cut->tolerance) /* what is needed beside laps, which are in proportion */
+        snprintf(reason, sizeof reason, "the tolerance %g is too small for parts and their shapes, %g may do", whole,
+                 whole * (error->value - lap) / (cut->tolerance - lap));
+    else
+        snprintf(reason, sizeof reason, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+    memcpy(error->message, reason, sizeof reason);
+}
+
 /* With a tolerance both kinds of distances share it. Parts that are approximated go on beyond their cuts by twice the
  * distance of their shapes: with a number of arcs that is known only when they have been fitted once. */
 static bool fit_parts(fitting *how, const outline *of, narc_fit_request request, collider *out, narc_error *error) {
+    const double extent = measure_extent(of);
     const bool approximates = request.goal > NARC_FIT_BOUND_DISTANCE;
-    narc_parts_request cut = {
-        .most = how->parts, .tolerance = SHARE_OF_CUTS * request.tolerance, .flatness = request.flatness};
+    const double whole = request.tolerance, share = approximates ? SHARE_OF_LAPPED_PARTS : SHARE_OF_PARTS;
+    narc_parts_request cut = {.most = how->parts, .tolerance = share * whole, .flatness = request.flatness};
     if (approximates)
-        cut.lap = 2 * (request.tolerance - cut.tolerance);
+        cut.lap = 2 * (whole - cut.tolerance);
     for (int tries = approximates && request.arc_count ? 2 : 1; tries > 0; tries--) {
         narc_parts parts;
-        if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK)
+        if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK) {
+            explain(how, &cut, true, error);
             return false;
+        }
         free(out->fits);
         *out = (collider){.count = parts.count, .outline_area = parts.area};
-        if (request.arc_count == 0)
-            request.tolerance = fmax(DBL_MIN, request.tolerance - parts.distance);
+        if (!(parts.area > LEAST_AREA * extent * extent)) {
+            narc_release_parts(&parts);
+            snprintf(error->message, sizeof error->message, "its lines enclose no area");
+            return false;
+        }
+        if (request.arc_count == 0) /* more than half a lap would open seams */
+            request.tolerance = approximates ? cut.lap / 2 : whole - parts.distance;
         const bool done = fit_each(how, parts.paths, request, out, error);
+        if (!done)
+            explain(how, &cut, false, error);
         cut.lap = 2 * out->distance;
         out->distance += parts.distance;
         narc_release_parts(&parts);
@@ -344,6 +387,10 @@ static void print_parts(FILE *file, const outline_list *outlines, const collider
         fprintf(file, " %5zu %5zu %5zu %11.6g %12.6g %8.5f %12.4g %8.2f\n", f->count, arcs, edges, f->area,
                 f->outline_area, f->area / f->outline_area, f->distance, f->seconds);
     }
+    for (size_t i = 0; i < outlines->count; i++)
+        if (fits[i].unasked)
+            fprintf(file, "smooth arcs do not come near enough, straight edges do: %zu of the parts of %s\n",
+                    fits[i].unasked, outlines->items[i].name);
 }
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
@@ -438,6 +485,7 @@ static void run(int argc, char **argv) {
                                [EDGES] = {"--edges", false, NULL},
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
+                               [NO_EDGES] = {"--no-edges", false, NULL},
                                [CHARACTERS] = {"--characters", true, NULL},
                                [IDS] = {"--ids", true, NULL},
                                [SILHOUETTE] = {"--silhouette", true, NULL},
@@ -473,8 +521,10 @@ static void run(int argc, char **argv) {
     if (options[CHAIN].value)
         make_chains(&outlines, request.tolerance, options[OPEN].value, shapes_file, picture, picture_file);
     else
-        make_shapes(&outlines, (fitting){.request = request, .parts = parts, .flatness = flatness}, shapes_file,
-                    picture, picture_file);
+        make_shapes(
+            &outlines,
+            (fitting){.request = request, .parts = parts, .no_edges = options[NO_EDGES].value, .flatness = flatness},
+            shapes_file, picture, picture_file);
     if (count_reports())
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);

@@ -43,7 +43,7 @@ static size_t next_index(uint64_t *state, size_t count) { return (size_t)(next_u
 
 static void run(int argc, char **argv) {
     enum { SHAPES, BODIES, DENSITY, SEED, OUT, OPTIONS };
-    option options[OPTIONS] = {{"--shapes", true, NULL},
+    option options[OPTIONS] = {{"--shapes", INPUT_FILE, NULL},
                                {"--bodies", true, NULL},
                                {"--density", true, NULL},
                                {"--seed", true, NULL},

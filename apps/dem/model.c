@@ -255,6 +255,15 @@ static double round_width(dem *d, const char *axis, double width) {
     return (double)(float)width;
 }
 
+/* narc's tasks in the team of all other loops. */
+static void run_in_team(void *context, unsigned task_count, void (*task)(void *argument, unsigned index),
+                        void *argument) {
+    (void)context;
+#pragma omp parallel for schedule(static, 1) num_threads((int)task_count)
+    for (unsigned index = 0; index < task_count; index++)
+        task(argument, index);
+}
+
 void dem_start(dem *d) {
     dem_settings *s = &d->settings;
     const double shortest = dem_find_shortest_contact(d), rate = s->shear;
@@ -270,7 +279,7 @@ void dem_start(dem *d) {
     if (s->periodic_y)
         s->high.y = s->low.y + round_width(d, "y", s->high.y - s->low.y);
     add_walls(d);
-    d->workers = narc_openmp_workers(dem_team(d));
+    d->workers = (narc_workers){.count = dem_team(d), .run = run_in_team};
     s->shear = 0;
     dem_set_shear(d, rate);
     d->shear_work = 0; /* grains begin so */

@@ -20,8 +20,10 @@ struct bench_row {
     size_t pairs;                           /* set by prepare */
     void (*prepare)(struct bench_row *row); /* before every repetition, outside the time; makes the scene, checks */
     void (*run)(struct bench_row *row);
-    void *context;      /* of these two functions */
-    bool threaded;      /* timed by the clock on the wall; else by the processor time of the calling thread */
+    void *context;  /* of these two functions */
+    bool threaded;  /* timed by the clock on the wall; else by the processor time of the calling thread */
+    bool own_clock; /* timed by what `run` sets `seconds` to */
+    double seconds;
     bool must_be_right; /* wrong answers of this row fail the program */
     double colliding;   /* set by prepare: the fraction of pairs said to collide */
     double wrong;       /* set by prepare: the number of wrong answers */

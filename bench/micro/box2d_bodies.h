@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// box2d_bodies.h - the bodies of a workload in a world of Box2D.
+// box2d_bodies.h - the bodies of a workload in a world of Box2D 2.
 #ifndef NARC_BENCH_BOX2D_BODIES_H
 #define NARC_BENCH_BOX2D_BODIES_H
 
 #include <box2d/box2d.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "workload.h"
+
+inline const char *name_box2d() {
+    static char name[32];
+    std::snprintf(name, sizeof name, "Box2D %d.%d.%d", b2_version.major, b2_version.minor, b2_version.revision);
+    return name;
+}
 
 inline b2World *create_box2d_bodies(const workload *workload, b2BodyType type) {
     auto *world = new b2World(b2Vec2(0, 0));

@@ -9,6 +9,7 @@
 #include "bench.h"
 #include "common.h"
 #include "list.h"
+#include "peers.h"
 #include "report.h"
 
 enum { DEFAULT_PAIRS = 65536, DEFAULT_PACKING = 1000000 };
@@ -51,6 +52,7 @@ int main(int argc, char **argv) {
     bench_describe("compiler", compiler_name);
     bench_describe("flags", compiler_flags);
     bench_describe("best_isa", best);
+    bench_describe("box2d", box2d_name());
     const struct row_choice choice = {.best_isa = best,
                                       .pair_count = pair_count,
                                       .packing_count = (size_t)((double)pair_count * DEFAULT_PACKING / DEFAULT_PAIRS),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// peer_box2d.cc - Box2D's two tests for a pair of polygons.
+// peer_box2d.cc - Box2D 2: its two tests for a pair of polygons.
 #include "peers.h"
 
 #include <box2d/box2d.h>
@@ -62,5 +62,5 @@ void overlap(void *argument, const pair *pairs, size_t count, uint8_t *out_colli
 
 } // namespace
 
-const peer box2d_collide = {"box2d-collide", "contact", nullptr, true, b2_maxPolygonVertices, create, collide};
-const peer box2d_overlap = {"box2d-overlap", "overlap", nullptr, true, b2_maxPolygonVertices, create, overlap};
+const peer box2d_collide = {"box2d-collide", "contact", nullptr, true, false, b2_maxPolygonVertices, create, collide};
+const peer box2d_overlap = {"box2d-overlap", "overlap", nullptr, true, false, b2_maxPolygonVertices, create, overlap};

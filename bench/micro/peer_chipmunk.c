@@ -35,5 +35,10 @@ static void run(void *context, const struct pair *pairs, size_t count, uint8_t *
         out_colliding[k] = cpShapesCollide(shapes[pairs[k].a], shapes[pairs[k].b]).count > 0;
 }
 
-const struct peer chipmunk_collide = {
-    .name = "chipmunk", .query = "contact", .polygons = true, .max_edges = MAX_EDGES, .create = create, .run = run};
+const struct peer chipmunk_collide = {.name = "chipmunk",
+                                      .query = "contact",
+                                      .polygons = true,
+                                      .capsules = true,
+                                      .max_edges = MAX_EDGES,
+                                      .create = create,
+                                      .run = run};

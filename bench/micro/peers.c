@@ -13,6 +13,7 @@
 const struct peer box2d_collide = {.name = "box2d-collide", .query = "contact", .missing = "built without Box2D"};
 const struct peer box2d_overlap = {.name = "box2d-overlap", .query = "overlap", .missing = "built without Box2D"};
 const struct world_peer box2d_world = {.name = "box2d-world", .missing = "built without Box2D"};
+const char *box2d_name(void) { return "no Box2D"; }
 #endif
 #ifndef BENCH_CHIPMUNK
 const struct peer chipmunk_collide = {.name = "chipmunk", .query = "contact", .missing = "built without Chipmunk"};
@@ -65,7 +66,7 @@ struct bench_row *make_peer_row(const char *name, const struct peer *peer, const
     row->key = *key;
     if (peer->polygons && key->family == FAMILY_N_ARCS)
         row->key.family = FAMILY_POLYGONS;
-    if (peer == &box2d_collide && key->family == FAMILY_CAPSULES) /* this version has none */
+    if (!peer->capsules && key->family == FAMILY_CAPSULES)
         row->key.family = FAMILY_CAPSULE_BOXES;
     bench_set(&row->row, name, prepare, run, row, peer == &plain_exact);
     return &row->row;
@@ -82,7 +83,7 @@ struct world_row {
 
 static void step_world(struct bench_row *bench_row) {
     struct world_row *row = bench_row->context;
-    row->peer->step(row->context);
+    bench_row->seconds = row->peer->step(row->context);
 }
 
 /* Steps that have pairs to find and contacts to make are outside the time. */
@@ -104,5 +105,6 @@ struct bench_row *make_world_row(const char *name, const struct world_peer *peer
     row->key = *key;
     row->key.family = FAMILY_POLYGONS;
     bench_set(&row->row, name, prepare_world, step_world, row, false);
+    row->row.own_clock = peer->own_clock;
     return &row->row;
 }

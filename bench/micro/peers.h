@@ -16,6 +16,7 @@ struct peer {
     const char *query;   /* "overlap": one bit; "contact": points and normal as well */
     const char *missing; /* NULL, or why it can't run */
     bool polygons;       /* it answers for the polygon of the junctions, not for the n-arc */
+    bool capsules;       /* it has capsules; else boxes as large stand for them */
     unsigned max_edges;
     void *(*create)(const struct workload *workload); /* shapes and poses in the form it wants them */
     void (*run)(void *context, const struct pair *pairs, size_t count, uint8_t *out_colliding);
@@ -25,14 +26,16 @@ struct peer {
 struct world_peer {
     const char *name;    /* of its rows: "step/n8/settled/few/sorted/NAME" */
     const char *missing; /* NULL, or why it can't run */
+    bool own_clock;      /* step() does more than find pairs and contacts, and returns the seconds of these alone */
     unsigned max_edges;
     void *(*create)(const struct workload *workload); /* the bodies of a pile, at rest */
-    void (*step)(void *context);                      /* its boxes, pairs and contacts */
+    double (*step)(void *context);                    /* its boxes, pairs and contacts */
     size_t (*count_touching)(void *context);
 };
 
 extern const struct peer plain_paper, plain_exact; /* plain.c */
 extern const struct peer box2d_collide, box2d_overlap;
+const char *box2d_name(void); /* with its version */
 extern const struct peer chipmunk_collide;
 extern const struct peer ccd_gjk, ccd_mpr;
 

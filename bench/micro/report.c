@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "common.h"
+#include "peers.h"
 
 /* ------------------------------------------------------------------------------------------------ times against n */
 
@@ -25,7 +26,7 @@ static const struct series series[] = {
     {"narc contact", "contact", "BEST"},
     {"narc contact, AVX2", "contact", "avx2"},
     {"Box2D b2CollidePolygons", "contact", "box2d-collide"},
-    {"Box2D b2TestOverlap", "overlap", "box2d-overlap"},
+    {"Box2D GJK", "overlap", "box2d-overlap"},
     {"Chipmunk cpShapesCollide", "contact", "chipmunk"},
     {"libccd GJK", "overlap", "ccd-gjk"},
     {"libccd MPR", "overlap", "ccd-mpr"},
@@ -71,8 +72,8 @@ void print_report(const struct report *report, FILE *out) {
         any |= report->rows[k]->ns > 0;
     if (!any)
         return;
-    fprintf(out, "\n%s, %s, %s; %s unless said otherwise; one thread\n\n", processor_name(), compiler_name,
-            compiler_flags, report->best_isa);
+    fprintf(out, "\n%s, %s, %s; %s unless said otherwise; one thread; beside %s\n\n", processor_name(), compiler_name,
+            compiler_flags, report->best_isa, box2d_name());
     print_settled_targets(report, out);
     print_settled_times(report, out);
     print_targets(report, out);

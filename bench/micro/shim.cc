@@ -50,8 +50,11 @@ void bench_add(bench_row *row) {
     const auto measure = [row](benchmark::State &state) {
         using benchmark::Counter;
         row->prepare(row);
-        for (auto _ : state)
+        for (auto _ : state) {
             row->run(row);
+            if (row->own_clock)
+                state.SetIterationTime(row->seconds);
+        }
         // The reciprocal of a rate of pairs: seconds, shown as nanoseconds.
         state.counters["per_pair"] =
             Counter(static_cast<double>(row->pairs), Counter::kIsIterationInvariantRate | Counter::kInvert);
@@ -62,6 +65,8 @@ void bench_add(bench_row *row) {
     auto *registered = benchmark::RegisterBenchmark(row->name, measure)->Unit(benchmark::kMicrosecond);
     if (row->threaded)
         registered->UseRealTime();
+    if (row->own_clock)
+        registered->UseManualTime();
 }
 
 void bench_skip(const char *name, const char *reason) {

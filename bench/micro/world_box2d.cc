@@ -15,7 +15,10 @@ void *create(const workload *workload) {
     return world;
 }
 
-void step(void *world) { static_cast<b2World *>(world)->Step(0, 0, 0); }
+double step(void *world) {
+    static_cast<b2World *>(world)->Step(0, 0, 0);
+    return 0;
+}
 
 size_t count_touching(void *world) {
     size_t count = 0;
@@ -27,4 +30,6 @@ size_t count_touching(void *world) {
 
 } // namespace
 
-const world_peer box2d_world = {"box2d-world", nullptr, b2_maxPolygonVertices, create, step, count_touching};
+const char *box2d_name() { return name_box2d(); }
+
+const world_peer box2d_world = {"box2d-world", nullptr, false, b2_maxPolygonVertices, create, step, count_touching};

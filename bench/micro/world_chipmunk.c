@@ -26,7 +26,7 @@ static void *create(const struct workload *workload) {
     return space;
 }
 
-static void step(void *context) {
+static double step(void *context) {
     cpSpace *space = context;
     space->stamp++;
     space->arbiters->num = 0;
@@ -35,6 +35,7 @@ static void step(void *context) {
     cpSpatialIndexEach(space->dynamicShapes, (cpSpatialIndexIteratorFunc)cpShapeUpdateFunc, NULL);
     cpSpatialIndexReindexQuery(space->dynamicShapes, (cpSpatialIndexQueryFunc)cpSpaceCollideShapes, space);
     cpSpaceUnlock(space, cpFalse);
+    return 0;
 }
 
 static size_t count_touching(void *context) { return (size_t)((cpSpace *)context)->arbiters->num; }

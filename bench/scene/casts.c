@@ -159,7 +159,8 @@ int main(int argc, char **argv) {
     const struct setting s = read_setting(argc, argv, "--pairs=", 1000, 25);
     struct kind kinds[KINDS];
     make_kinds(kinds);
-    printf("%s, %s, %s; one thread, ns a pair\n\n", processor_name(), compiler_name, choose_best_isa());
+    printf("%s, %s, %s; one thread, ns a pair; beside %s\n\n", processor_name(), compiler_name, choose_best_isa(),
+           box2d_name());
     printf("| Shapes | Motion | Hit (unfinished), Box2D | Contact | Cast (times contact) | one by one | Box2D (times "
            "batch, one by one) |\n| --- | --- | --- | --- | --- | --- | --- |\n");
     for (int k = 0; k < KINDS; k++) {

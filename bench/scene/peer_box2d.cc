@@ -29,4 +29,6 @@ void cast(void *scene, const peer_ray *rays, size_t count, float *out_fractions)
 
 } // namespace
 
+const char *box2d_name() { return name_box2d(); }
+
 const scene_peer box2d_scene = {"Box2D", create, cast, nullptr};

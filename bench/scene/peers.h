@@ -26,6 +26,7 @@ struct scene_peer {
                          float *out_separations);
 };
 
+const char *box2d_name(void); /* with its version */
 extern const struct scene_peer box2d_scene, chipmunk_scene;
 
 /* GEOS' tree has the polygons: the distances of the nearest ones, 0 within them. */

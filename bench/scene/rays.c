@@ -134,7 +134,8 @@ int main(int argc, char **argv) {
     const struct setting s = read_setting(argc, argv, "--rays=", 10800, 7);
     if (s.questions < FAN)
         fail("--rays=%d or more", FAN);
-    printf("%s, %s, %s; one thread, ns a ray\n\n", processor_name(), compiler_name, choose_best_isa());
+    printf("%s, %s, %s; one thread, ns a ray; beside %s\n\n", processor_name(), compiler_name, choose_best_isa(),
+           box2d_name());
     printf("| Scene | Rays | Hit | n-arcs | Polygons | one by one | Box2D (times batch, one by one) | Chipmunk | "
            "Differ |\n");
     printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");

@@ -98,7 +98,7 @@ static void compare(const struct setting *s, const char *name, size_t bodies, do
 
 int main(int argc, char **argv) {
     const struct setting s = read_setting(argc, argv, "--regions=", 10000, 7);
-    printf("%s, %s, %s\n\n", processor_name(), compiler_name, choose_best_isa());
+    printf("%s, %s, %s; beside %s\n\n", processor_name(), compiler_name, choose_best_isa(), box2d_name());
     printf("| Scene, ns a region | Found | Batch | one by one | two workers, times | Box2D (times batch, one by one) | "
            "Chipmunk | GEOS | Differ |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     compare_scenes(&s, compare);

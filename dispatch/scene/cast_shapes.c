@@ -3,6 +3,7 @@
  * cast_shapes.c - narc_cast_shapes(): boxes that hold the movers all the way, the bodies of an index in them, and casts of
  * these pairs, of which each mover keeps the first impact.
  */
+#include <float.h>
 #include <math.h>
 
 #include "casts.h"
@@ -23,51 +24,56 @@ struct job {
 
 /* ------------------------------------------------------------------------------------------------ boxes */
 
-/* A float that is not above a number. */
+/* A float that is not above a number, and finite: what moves out of range is in the way of all that is there. */
 static float round_down(double x) {
     const float rounded = (float)x;
+    if (x < -(double)FLT_MAX)
+        return -FLT_MAX;
     return (double)rounded > x ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
-static double at_or_0(narc_float_column column, size_t item) {
-    return column.base ? (double)narc_float_at(column, item) : 0;
-}
-
-/* From the least to the largest coordinate on a way, with so much room. */
-static void sweep(double from, double motion, double room, float *out_min, float *out_max) {
-    *out_min = round_down((motion < 0 ? from + motion : from) - room);
-    *out_max = -round_down(-((motion > 0 ? from + motion : from) + room));
-}
-
 /* What turns lies in the circle about its position that holds its bounding circle, whatever its angle. */
-static narc_box sweep_circle(const struct job *job, size_t k) {
-    const narc_motions *const motions = &job->casts.motions[0];
+static narc_box turn_box(const struct job *job, size_t k) {
     const narc_shape_header *const header = &job->boxes.shapes->headers[narc_index_at(job->movers->shape, k)];
-    const double x = (double)header->bound_x, y = (double)header->bound_y;
-    const double scale = job->movers->scale.base ? (double)narc_float_at(job->movers->scale, k) : 1;
-    const double radius = (double)header->bound_radius, tolerance = (double)job->casts.tolerance;
-    const double room =
-        scale * (radius + sqrt(x * x + y * y)) + (double)job->boxes.margin +
-        (tolerance > 0 ? tolerance : NARC_TURNING_TOLERANCE * scale * radius); /* as far as a hit may be */
-    narc_box box;
-    sweep(narc_position_at(job->movers->x, k), at_or_0(motions->x, k), room, &box.min_x, &box.max_x);
-    sweep(narc_position_at(job->movers->y, k), at_or_0(motions->y, k), room, &box.min_y, &box.max_y);
-    return box;
+    const double x = narc_position_at(job->movers->x, k), y = narc_position_at(job->movers->y, k);
+    const double bound_x = (double)header->bound_x, bound_y = (double)header->bound_y;
+    const double scale = (double)narc_float_or(job->movers->scale, k, 1);
+    const double bound = (double)header->bound_radius, tolerance = (double)job->casts.tolerance;
+    const double radius =
+        scale * (bound + sqrt(bound_x * bound_x + bound_y * bound_y)) +
+        (tolerance > 0 ? tolerance : NARC_TURNING_TOLERANCE * scale * bound); /* as far as a hit may be */
+    return (narc_box){round_down(x - radius), round_down(y - radius), -round_down(-x - radius),
+                      -round_down(-y - radius)};
+}
+
+/* The box of a mover all the way, with its target. */
+static narc_box sweep_box(const struct job *job, size_t k, narc_box still, float motion_x, float motion_y) {
+    const double target = (double)narc_float_or(job->casts.targets, k, job->casts.target),
+                 room = target > 0 ? target * (1 + 0x1p-20) : 0, x = (double)motion_x, y = (double)motion_y;
+    return (narc_box){round_down((double)still.min_x + (x < 0 ? x : 0) - room),
+                      round_down((double)still.min_y + (y < 0 ? y : 0) - room),
+                      -round_down(-(double)still.max_x - (x > 0 ? x : 0) - room),
+                      -round_down(-(double)still.max_y - (y > 0 ? y : 0) - room)};
 }
 
 static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
     const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     struct job *const job = argument;
     narc_box *const boxes = job->index->sweeps;
-    const narc_float_column angle = job->casts.motions[0].angle;
+    const narc_motions *const motions = &job->casts.motions[0];
     size_t skipped = job->casts.kernels->box(&job->boxes, NULL, first, end - first, boxes);
     (void)part;
-    for (size_t k = first; angle.base && k < end; k++) {
-        const float turn = narc_float_at(angle, k);
-        if (turn == 0 || !(boxes[k].min_x <= boxes[k].max_x)) /* broken, and counted */
+    for (size_t k = first; k < end; k++) {
+        const float x = narc_float_or(motions->x, k, 0), y = narc_float_or(motions->y, k, 0),
+                    angle = narc_float_or(motions->angle, k, 0);
+        if (!(boxes[k].min_x <= boxes[k].max_x)) /* broken, and counted */
             continue;
-        skipped += isfinite(turn) ? 0 : 1;
-        boxes[k] = isfinite(turn) ? sweep_circle(job, k) : empty;
+        if (!isfinite(x) || !isfinite(y) || !isfinite(angle)) {
+            skipped++;
+            boxes[k] = empty;
+            continue;
+        }
+        boxes[k] = sweep_box(job, k, angle == 0 ? boxes[k] : turn_box(job, k), x, y);
     }
     atomic_fetch_add_explicit(&job->casts.skipped, skipped, memory_order_relaxed);
 }
@@ -91,7 +97,7 @@ static narc_status check_arguments(const narc_index *index, const narc_shapes *s
     size_t all_movers = 0;
     if (!index || !shapes || !bodies || !movers)
         return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "movers");
-    narc_status status = narc_check_reserved(search->reserved, 4, "search", error);
+    narc_status status = narc_check_search(index, search, "search", error);
     if (status == NARC_OK)
         status = narc_check_indexed(index, bodies, error);
     if (status == NARC_OK)
@@ -119,6 +125,8 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
     narc_status status = narc_check_casts(motions, NULL, o, &job.casts, error);
     if (status == NARC_OK)
         status = check_arguments(index, shapes, bodies, movers, q, out_rows, capacity, error);
+    if (status == NARC_OK)
+        status = narc_check_targets(&job.casts, movers->count, error);
     if (status == NARC_OK && !(job.casts.kernels = narc_kernels(&status, error)))
         return status;
     if (status == NARC_OK && narc_reserve_sweeps(index, movers->count) != NARC_OK)
@@ -127,8 +135,7 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
         return status;
     job.index = index;
     job.movers = movers;
-    job.boxes =
-        (narc_box_batch){shapes, movers, o->target > 0 ? o->target : 0, job.casts.motions[0].x, job.casts.motions[0].y};
+    job.boxes = (narc_box_batch){.shapes = shapes, .bodies = movers};
     narc_run_ranges(q->workers, movers->count, PART, find_boxes, &job);
     status = narc_query_index(index, index->sweeps, movers->count, q, &pairs, error);
     pairs.other_bodies = bodies;

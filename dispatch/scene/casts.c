@@ -18,8 +18,7 @@ enum { FEW = 2 };
 
 struct slots {
     size_t count;
-    uint32_t pair[NARC_CAST_SLOTS], body[NARC_CAST_SLOTS]; /* B's */
-    uint32_t hint[NARC_CAST_SLOTS];
+    uint32_t pair[NARC_CAST_SLOTS], hint[NARC_CAST_SLOTS];
     narc_bodies a, b;
     narc_pairs pairs;
     narc_query query;
@@ -62,14 +61,12 @@ static void open_slots(const narc_cast_job *job, struct slots *slots) {
     slots->batch.count = slots->batch.asked = NARC_CAST_SLOTS;
     slots->batch.manifolds = false;
     slots->batch.whole = true;
-    slots->casts.target = job->target;
     slots->casts.tolerance = job->tolerance;
 }
 
 static void move_slot(struct slots *slots, size_t from, size_t to) {
     narc_casts *const c = &slots->casts;
     slots->pair[to] = slots->pair[from];
-    slots->body[to] = slots->body[from];
     slots->hint[to] = slots->hint[from];
     for (int k = 0; k < 2; k++) {
         struct narc_cast_side *const side = &c->side[k];
@@ -84,6 +81,7 @@ static void move_slot(struct slots *slots, size_t from, size_t to) {
     c->y[to] = c->y[from];
     c->motion_x[to] = c->motion_x[from];
     c->motion_y[to] = c->motion_y[from];
+    c->target[to] = c->target[from];
     c->end[to] = c->end[from];
     c->enough[to] = c->enough[from];
     c->turning[to] = c->turning[from];
@@ -112,11 +110,19 @@ static void write_miss(const narc_cast_job *job, size_t pair) {
         job->rows[pair] = (narc_impact){.pair = (uint32_t)pair};
 }
 
+/* The number of a pair's A or B in its set; bodies 2 k and 2 k + 1 if the pairs bring their own (check.c). */
+static size_t find_body(const narc_cast_job *job, int side, size_t pair) {
+    const narc_pairs *const pairs = job->batch->pairs;
+    const narc_index_column column = side ? pairs->b : pairs->a;
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
+    return own ? 2 * pair + (size_t)side : column.base ? narc_index_at(column, pair) : pair;
+}
+
 /* Writes the row of a pair, unless its mover hits another body before, or one with a lower number then. */
 static void write_row(const narc_cast_job *job, const struct slots *slots, size_t slot, int outcome) {
     const narc_contact *const c = &slots->casts.contact[slot];
     const size_t pair = slots->pair[slot];
-    const uint32_t body = slots->body[slot];
+    const uint32_t body = (uint32_t)find_body(job, 1, pair);
     const float time = slots->casts.time[slot];
     narc_impact *const row = find_row(job, pair);
     if (job->nearest && row->count != NARC_CAST_MISS &&
@@ -138,17 +144,12 @@ static void write_row(const narc_cast_job *job, const struct slots *slots, size_
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-static float item_or(narc_float_column column, size_t item, float none) {
-    return column.base ? narc_float_at(column, item) : none;
-}
-
 /* Copies what the caller says of a pair. */
 static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot, size_t pair) {
     const narc_batch *const batch = job->batch;
     const narc_pairs *const pairs = batch->pairs;
     const narc_bodies *const sets[2] = {batch->a, batch->b};
     const narc_index_column columns[2] = {pairs->a, pairs->b};
-    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* bodies 2 k and 2 k + 1; see check.c */
     narc_casts *const casts = &slots->casts;
     size_t item[2];
     double motion_x[2], motion_y[2];
@@ -156,22 +157,22 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
         const narc_motions *const m = &job->motions[k];
         struct narc_cast_side *const side = &casts->side[k];
         item[k] = columns[k].base ? narc_index_at(columns[k], pair) : pair;
-        const size_t body = own ? 2 * pair + (size_t)k : item[k];
+        const size_t body = find_body(job, k, pair);
         side->shape[slot] = narc_index_at(sets[k]->shape, item[k]);
         side->cosine[slot] = narc_float_at(sets[k]->cosine, item[k]);
         side->sine[slot] = narc_float_at(sets[k]->sine, item[k]);
-        side->scale[slot] = item_or(sets[k]->scale, item[k], 1);
-        side->angle[slot] = item_or(m->angle, body, 0);
-        motion_x[k] = (double)item_or(m->x, body, 0);
-        motion_y[k] = (double)item_or(m->y, body, 0);
-        slots->body[slot] = (uint32_t)body;
+        side->scale[slot] = narc_float_or(sets[k]->scale, item[k], 1);
+        side->angle[slot] = narc_float_or(m->angle, body, 0);
+        motion_x[k] = (double)narc_float_or(m->x, body, 0);
+        motion_y[k] = (double)narc_float_or(m->y, body, 0);
     }
     casts->x[slot] = narc_position_at(sets[1]->x, item[1]) - narc_position_at(sets[0]->x, item[0]) +
-                     (double)item_or(pairs->shift_x, pair, 0);
+                     (double)narc_float_or(pairs->shift_x, pair, 0);
     casts->y[slot] = narc_position_at(sets[1]->y, item[1]) - narc_position_at(sets[0]->y, item[0]) +
-                     (double)item_or(pairs->shift_y, pair, 0);
+                     (double)narc_float_or(pairs->shift_y, pair, 0);
     casts->motion_x[slot] = motion_x[1] - motion_x[0];
     casts->motion_y[slot] = motion_y[1] - motion_y[0];
+    casts->target[slot] = narc_float_or(job->targets, job->nearest ? item[0] : pair, job->target);
     slots->pair[slot] = (uint32_t)pair;
     slots->hint[slot] = 0;
 }
@@ -202,7 +203,8 @@ static int cast_alone(const narc_cast_job *job, struct slots *slots, size_t slot
 static bool is_in_front(const narc_cast_job *job, const struct slots *slots, size_t slot) {
     const narc_shape_header *const a = find_header(job, slots, slot, 0), *const b = find_header(job, slots, slot, 1);
     const narc_contact *const c = &slots->casts.contact[slot];
-    const bool starts = !(slots->casts.time[slot] > 0), deep = c->separation < 0 && (starts || job->target < 0);
+    const bool starts = !(slots->casts.time[slot] > 0),
+               deep = c->separation < 0 && (starts || slots->casts.target[slot] < 0);
     return narc_touches(a, c->feature & 0xff) && narc_touches(b, c->feature >> 8) &&
            !(deep && (narc_is_piece(a) || narc_is_piece(b)));
 }
@@ -287,6 +289,15 @@ static narc_status check_number(float number, const char *name, narc_error *erro
                : narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)number, "options.%s is %g", name, (double)number);
 }
 
+narc_status narc_check_targets(const narc_cast_job *job, size_t count, narc_error *error) {
+    for (size_t k = 0; job->targets.base && k < count; k++) {
+        const double target = (double)narc_float_at(job->targets, k);
+        if (!isfinite(target))
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, k, target, "options.targets[%zu] is %g", k, target);
+    }
+    return NARC_OK;
+}
+
 narc_status narc_check_casts(const narc_motions *motions, const narc_motions *other_motions,
                              const narc_cast_options *options, narc_cast_job *out_job, narc_error *error) {
     static const narc_motions none = {.x = {0}};
@@ -298,13 +309,15 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
         status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->tolerance,
                            "options.tolerance is %g, less than 0", (double)options->tolerance);
     if (status == NARC_OK)
-        status = narc_check_reserved(options->reserved, 4, "options", error);
+        status = narc_check_reserved(options->reserved, 2, "options", error);
     if (status == NARC_OK)
         status = narc_check_reserved(both[0]->reserved, 2, "motions", error);
     if (status == NARC_OK)
         status = narc_check_reserved(both[1]->reserved, 2, "other_motions", error);
-    *out_job =
-        (narc_cast_job){.motions = {*both[0], *both[1]}, .target = options->target, .tolerance = options->tolerance};
+    *out_job = (narc_cast_job){.motions = {*both[0], *both[1]},
+                               .target = options->target,
+                               .tolerance = options->tolerance,
+                               .targets = options->targets};
     return status;
 }
 
@@ -334,6 +347,9 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
     if (capacity < pairs->count)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)pairs->count, "%zu rows, but there is room for %zu",
                          pairs->count, capacity);
+    status = narc_check_targets(&job, pairs->count, error);
+    if (status != NARC_OK)
+        return status;
     if (!pairs->other_bodies)
         job.motions[1] = job.motions[0];
     job.batch = &batch;

@@ -104,12 +104,12 @@ narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bo
 
 /* ------------------------------------------------------------------------------------------------ nearest */
 
-static narc_status check_options(const narc_nearest_options *options, narc_error *error) {
+static narc_status check_options(const narc_index *index, const narc_nearest_options *options, narc_error *error) {
     if (isnan(options->distance))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)options->distance,
                          "options.distance is not a number");
     const narc_status status = narc_check_reserved(options->reserved, 4, "options", error);
-    return status == NARC_OK ? narc_check_reserved(options->search.reserved, 4, "options.search", error) : status;
+    return status == NARC_OK ? narc_check_search(index, &options->search, "options.search", error) : status;
 }
 
 narc_status narc_find_nearest(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
@@ -121,7 +121,7 @@ narc_status narc_find_nearest(const narc_index *index, const narc_shapes *shapes
         return narc_fail_missing(error, "index");
     narc_status status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
-        status = check_options(o, error);
+        status = check_options(index, o, error);
     if (status == NARC_OK)
         status = narc_check_indexed(index, bodies, error);
     if (status != NARC_OK)

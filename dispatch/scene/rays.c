@@ -35,11 +35,11 @@ static narc_status check_rays(const narc_rays *rays, narc_error *error) {
     return status == NARC_OK ? narc_check_reserved(rays->reserved, 2, "rays", error) : status;
 }
 
-static narc_status check_options(const narc_ray_options *options, narc_error *error) {
+static narc_status check_options(const narc_index *index, const narc_ray_options *options, narc_error *error) {
     if ((unsigned)options->inside > NARC_INSIDE_IGNORES)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->inside, "options.inside is %d",
                          (int)options->inside);
-    const narc_status status = narc_check_reserved(options->search.reserved, 4, "options.search", error);
+    const narc_status status = narc_check_search(index, &options->search, "options.search", error);
     return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
 }
 
@@ -53,7 +53,7 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
         return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "rays");
     narc_status status = check_rays(rays, error);
     if (status == NARC_OK)
-        status = check_options(o, error);
+        status = check_options(index, o, error);
     if (status == NARC_OK)
         status = narc_check_indexed(index, bodies, error);
     if (status != NARC_OK)

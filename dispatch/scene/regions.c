@@ -157,7 +157,7 @@ static narc_status check_arguments(const narc_index *index, const narc_box *boxe
     if (!index || (!boxes && count > 0) || !out_pairs)
         return narc_fail_missing(error, !index ? "index" : !out_pairs ? "out_pairs" : "boxes");
     const narc_status status = narc_check_count(count, UINT32_MAX - 1, "queries in one call", error);
-    return status == NARC_OK ? narc_check_reserved(query->reserved, 4, "query", error) : status;
+    return status == NARC_OK ? narc_check_search(index, query, "query", error) : status;
 }
 
 narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_query *query,
@@ -165,7 +165,7 @@ narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t co
     static const narc_index_query defaults = {0};
     const narc_index_query *const q = query ? query : &defaults;
     narc_status status = check_arguments(index, boxes, count, q, out_pairs, error);
-    search s = {.batch = {index, boxes, q->mask, q->ignored}, .index = index, .count = count};
+    search s = {.batch = {index, boxes, q}, .index = index, .count = count};
     uint64_t total = 0;
     if (status == NARC_OK && !(s.kernels = narc_kernels(&status, error)))
         return status;

@@ -8,8 +8,9 @@
 #include "narc_fit.h"
 #include "outline/vector.h"
 
-/* Pieces whose tangents differ by less than this have a common one. */
-static const double SMOOTH = 1e-6;
+/* Where the tangent has turned by less than this since the arc before, it goes on. What turns by more is a corner, and one
+ * turns by NARC_TOLERANCE at least; so it may turn too far, by half of what normals of an edge and its arcs may differ. */
+static const double SMOOTH = NARC_TOLERANCE / 2, LEAST_TURN = NARC_TOLERANCE * (1 + 0x1p-4);
 
 /* The angle of the normal to the right of a piece at its start. */
 static double find_normal(const narc_curve_arc *piece) {
@@ -29,20 +30,22 @@ typedef struct writer {
 
 /* A corner or valley where a piece begins, if it turns there, or a plain point. */
 static void put_corner(writer *to, narc_point at, double next, bool is_end) {
-    const double turn = remainder(next - to->normal, 2 * PI);
-    if (fabs(turn) > SMOOTH || is_end)
-        to->arcs[to->count++] =
-            (narc_arc){at.x, at.y, turn < 0 ? -0.0 : 0.0, to->normal, is_end ? to->normal : to->normal + turn};
+    double turn = remainder(next - to->normal, 2 * PI);
+    turn = fabs(turn) > SMOOTH && !is_end ? copysign(fmax(fabs(turn), LEAST_TURN), turn) : 0;
+    if (turn != 0 || is_end)
+        to->arcs[to->count++] = (narc_arc){at.x, at.y, turn < 0 ? -0.0 : 0.0, to->normal, to->normal + turn};
     to->normal += turn;
 }
 
+/* An arc, in two halves if it turns by more than half a turn. */
 static void put_piece(writer *to, const narc_curve_arc *piece) {
-    if (piece->turn == 0)
-        return;
-    to->arcs[to->count++] =
-        (narc_arc){piece->center.x, piece->center.y, piece->turn < 0 ? -piece->radius : piece->radius, to->normal,
-                   to->normal + piece->turn};
-    to->normal += piece->turn;
+    const int parts = piece->turn == 0 ? 0 : fabs(piece->turn) > PI + SMOOTH ? 2 : 1;
+    const double first = find_normal(piece), start = to->normal + remainder(first - to->normal, 2 * PI);
+    for (int k = 0; k < parts; k++)
+        to->arcs[to->count++] =
+            (narc_arc){piece->center.x, piece->center.y, piece->turn < 0 ? -piece->radius : piece->radius,
+                       start + piece->turn * k / parts, start + piece->turn * (k + 1) / parts};
+    to->normal = parts ? start + piece->turn : to->normal;
 }
 
 narc_status narc_describe_chain(const narc_curve_arc *pieces, size_t count, bool closed, narc_arc *out_arcs,

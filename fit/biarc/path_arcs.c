@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * path_arcs.c - the contours of a path as chains of arcs: narc_fit_bezier() for each line and curve, and
- * narc_fit_polyline() for lines one after the other.
+ * narc_fit_polyline() for lines one after the other. What comes out is shown to the store first.
  */
 #include <math.h>
 #include <stdlib.h>
 
 #include "biarc/polyline.h"
 #include "error.h"
+#include "narc_chains.h"
+#include "outline/crossings.h"
 #include "outline/path.h"
 
 struct builder {
@@ -15,6 +17,10 @@ struct builder {
     size_t arc_capacity, end_capacity;
     double tolerance;
     bool open;
+    narc_contours drawn; /* flattened */
+    narc_aabb *boxes;    /* of its contours */
+    narc_crossings crossings;
+    narc_shapes *store; /* that is asked what it takes */
     narc_error *error;
 };
 
@@ -110,19 +116,6 @@ static narc_status add_lines(struct builder *builder, const narc_point *points, 
     return status;
 }
 
-/* Ends a chain, if it has any arcs. */
-static narc_status end_chain(struct builder *builder) {
-    narc_arc_chains *chains = &builder->chains;
-    if (chains->arc_count == (chains->count ? chains->ends[chains->count - 1] : 0))
-        return NARC_OK;
-    size_t *ends = narc_grow(chains->ends, &builder->end_capacity, chains->count + 1, sizeof *ends);
-    if (!ends)
-        return fail_memory(builder);
-    chains->ends = ends;
-    ends[chains->count++] = chains->arc_count;
-    return NARC_OK;
-}
-
 /* A contour's moves after the first, `count` of them, and the line that closes it. */
 static narc_status add_contour(struct builder *builder, const unsigned char *degrees, size_t count,
                                const narc_point *points, double slack) {
@@ -143,26 +136,10 @@ static narc_status add_contour(struct builder *builder, const unsigned char *deg
             points += degrees[k++];
         }
     }
-    return status ? status : end_chain(builder);
-}
-
-static narc_status add_moves(struct builder *builder, const narc_path *path) {
-    const narc_point *points = path->points;
-    narc_status status = NARC_OK;
-    for (size_t k = 0; k < path->move_count && !status;) {
-        size_t count = 0, point_count = 1;
-        for (; k + 1 + count < path->move_count && path->degrees[k + 1 + count] > 0; count++)
-            point_count += path->degrees[k + 1 + count];
-        status = add_contour(builder, path->degrees + k + 1, count, points, path->slack);
-        points += point_count;
-        k += 1 + count;
-    }
     return status;
 }
 
 /* ---------------------------------------------------------------------------- directions */
-
-static size_t begin_of(const narc_arc_chains *chains, size_t k) { return k ? chains->ends[k - 1] : 0; }
 
 /* A place in the middle of a piece. */
 static narc_point find_middle(const narc_curve_arc *piece) {
@@ -170,25 +147,11 @@ static narc_point find_middle(const narc_curve_arc *piece) {
     return along(along(piece->start, 0.5, chord), -0.5 * tangent(piece->turn / 4), turned(chord));
 }
 
-/* By the chain's ends and middles of pieces, which is right but for chains closer to each other than their chords. */
-static bool is_around(const narc_arc_chains *chains, size_t k, narc_point p) {
-    bool inside = false;
-    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
-        const narc_curve_arc *piece = &chains->arcs[i];
-        const narc_point corners[3] = {piece->start, find_middle(piece), piece->end};
-        for (int half = 0; half < 2; half++) {
-            const narc_point a = corners[half], b = corners[half + 1];
-            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-                inside = !inside;
-        }
-    }
-    return inside;
-}
-
-static double measure_chain(const narc_arc_chains *chains, size_t k) {
+/* The area inside the pieces from `begin` on. */
+static double measure_chain(const narc_arc_chains *chains, size_t begin) {
     double twice = 0;
-    const narc_point base = chains->arcs[begin_of(chains, k)].start;
-    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
+    const narc_point base = chains->arcs[begin].start;
+    for (size_t i = begin; i < chains->arc_count; i++) {
         const narc_curve_arc *piece = &chains->arcs[i];
         const narc_point middle = minus(find_middle(piece), base);
         twice += cross(minus(piece->start, base), middle) + cross(middle, minus(piece->end, base));
@@ -196,31 +159,253 @@ static double measure_chain(const narc_arc_chains *chains, size_t k) {
     return 0.5 * twice;
 }
 
-static void reverse_chain(narc_arc_chains *chains, size_t k) {
-    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
+static void reverse_chain(narc_arc_chains *chains, size_t begin) {
+    for (size_t i = begin; i < chains->arc_count; i++) {
         narc_curve_arc *piece = &chains->arcs[i];
         const narc_point end = piece->end;
         piece->end = piece->start;
         piece->start = end;
         piece->turn = -piece->turn;
     }
-    for (size_t i = begin_of(chains, k), j = chains->ends[k] - 1; i < j; i++, j--) {
+    for (size_t i = begin, j = chains->arc_count - 1; i < j; i++, j--) {
         const narc_curve_arc piece = chains->arcs[i];
         chains->arcs[i] = chains->arcs[j];
         chains->arcs[j] = piece;
     }
 }
 
-/* Outer chains go counter-clockwise, holes clockwise. */
-static void turn_chains(narc_arc_chains *chains) {
-    for (size_t k = 0; k < chains->count; k++) {
-        bool hole = false;
-        for (size_t other = 0; other < chains->count; other++)
-            if (other != k && is_around(chains, other, chains->arcs[begin_of(chains, k)].start))
-                hole = !hole;
-        if (hole ? measure_chain(chains, k) > 0 : measure_chain(chains, k) < 0)
-            reverse_chain(chains, k);
+static size_t begin_of(const narc_contours *drawn, size_t contour) { return contour ? drawn->ends[contour - 1] : 0; }
+
+/* Is a contour inside an odd number of others? */
+static bool is_hole(const struct builder *builder, size_t contour) {
+    const narc_contours *drawn = &builder->drawn;
+    const narc_point p = drawn->points[begin_of(drawn, contour)];
+    bool inside = false;
+    for (size_t k = 0, begin = 0; k < drawn->count; begin = drawn->ends[k++]) {
+        const narc_aabb *box = &builder->boxes[k];
+        if (k == contour || p.x < box->min_x || p.x > box->max_x || p.y < box->min_y || p.y > box->max_y)
+            continue;
+        for (size_t i = begin; i < drawn->ends[k]; i++) {
+            const narc_point a = drawn->points[i], b = drawn->points[i + 1 < drawn->ends[k] ? i + 1 : begin];
+            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+                inside = !inside;
+        }
     }
+    return inside;
+}
+
+/* ---------------------------------------------------------------------------- what the store takes */
+
+/* An arc is too flat if its radius is more than this many times its chord, at first: 128 times is what the store takes of
+ * concave ones, and less of arcs that it must cut. Each time that it refuses one they are flat sooner. */
+static const double FLAT = 100, FLATTER = 0.25;
+
+/* Of the tolerance, what arcs get if flat ones become lines, and what must be left for these. */
+static const double SHARE_OF_ARCS = 0.75, LEAST_SHARE = 1.0 / 8;
+
+/* So often a contour is fitted anew: nearer, where its arcs meet and it does not, or with more lines. */
+enum { MOST_TRIES = 10 };
+
+/* How many chords serve an arc within `room`; 0: it may stay. */
+static size_t count_chords(const narc_curve_arc *arc, double flat, double room, double *out_distance) {
+    const double chord = length(minus(arc->end, arc->start)), height = chord * fabs(tangent(arc->turn / 4)) / 2;
+    if (arc->turn == 0 || (arc->radius <= flat * chord && fabs(arc->turn) >= 2 * NARC_TOLERANCE))
+        return 0;
+    const double chords = fmax(1, ceil(sqrt(height / room)));
+    *out_distance = fmax(*out_distance, height / (chords * chords));
+    return (size_t)chords;
+}
+
+/* Puts chords in the place of flat arcs from piece `begin` on. */
+static narc_status cut_flat_arcs(struct builder *builder, size_t begin, double flat, double room) {
+    narc_arc_chains *chains = &builder->chains;
+    double distance = 0;
+    size_t count = chains->arc_count;
+    for (size_t i = begin; i < chains->arc_count; i++) {
+        const size_t chords = count_chords(&chains->arcs[i], flat, room, &distance);
+        count += chords ? chords - 1 : 0;
+    }
+    narc_curve_arc *arcs = narc_grow(chains->arcs, &builder->arc_capacity, count, sizeof *arcs);
+    if (!arcs)
+        return fail_memory(builder);
+    chains->arcs = arcs;
+    for (size_t i = chains->arc_count, to = count; i-- > begin;) {
+        const narc_curve_arc arc = arcs[i];
+        const size_t chords = count_chords(&arc, flat, room, &distance);
+        narc_point end = arc.end;
+        for (size_t k = chords; k-- > 0;) { /* the chord up to the angle a has the length 2 r sin(a / 2) */
+            const double turn = arc.turn * (double)k / (double)chords,
+                         part = narc_sin(turn / 2) / narc_sin(arc.turn / 2);
+            const narc_point way = unit_at((turn - arc.turn) / 2), chord = minus(arc.end, arc.start);
+            const narc_point start = {arc.start.x + part * (way.x * chord.x - way.y * chord.y),
+                                      arc.start.y + part * (way.x * chord.y + way.y * chord.x)};
+            arcs[--to] = (narc_curve_arc){.start = k ? start : arc.start, .end = end, .radius = INFINITY};
+            arcs[to].center = arcs[to].start;
+            end = start;
+        }
+        if (!chords)
+            arcs[--to] = arc;
+    }
+    chains->arc_count = count;
+    chains->distance += distance;
+    return NARC_OK;
+}
+
+static narc_status ask_store(const struct builder *builder, size_t begin) {
+    const narc_arc_chains *chains = &builder->chains;
+    const size_t pieces = chains->arc_count - begin;
+    const narc_chain_options options = {.closed = !builder->open};
+    narc_arc *arcs = malloc((3 * pieces + 1) * sizeof *arcs);
+    size_t count;
+    if (!arcs)
+        return fail_memory(builder);
+    narc_status status =
+        narc_describe_chain(chains->arcs + begin, pieces, !builder->open, arcs, &count, builder->error);
+    if (!status)
+        status = narc_add_chain(builder->store, arcs, count, &options, NULL, 0, &count, builder->error);
+    free(arcs);
+    return status == NARC_ERROR_CAPACITY ? NARC_OK : status; /* it takes it, but there is no room for entries */
+}
+
+/* The first crossing of a contour, of its own lines if they meet anyhow, or with another one's; NULL: there is none. */
+static const narc_crossing *find_crossing(const struct builder *builder, size_t contour, bool anyhow) {
+    const narc_contours *drawn = &builder->drawn;
+    for (size_t k = 0; k < builder->crossings.count; k++) {
+        const narc_crossing *at = &builder->crossings.items[k];
+        const bool own = narc_find_contour(drawn->ends, drawn->count, at->other) == contour;
+        if (narc_find_contour(drawn->ends, drawn->count, at->line) == contour && (at->crosses || (own && anyhow)))
+            return at;
+    }
+    return NULL;
+}
+
+static narc_status fail_crossing(const struct builder *builder, const narc_path *path, const narc_crossing *at) {
+    const narc_contours *drawn = &builder->drawn;
+    size_t contours[2], lines[2];
+    for (int k = 0; k < 2; k++) {
+        const size_t point = k ? at->other : at->line;
+        contours[k] = narc_find_contour(drawn->ends, drawn->count, point);
+        lines[k] = narc_find_drawn_line(path, drawn, contours[k], point - begin_of(drawn, contours[k]));
+    }
+    return narc_fail(builder->error, NARC_ERROR_NOT_SIMPLE, contours[0], (double)lines[0],
+                     "contour %zu: line %zu %s line %zu of contour %zu at (%.6g, %.6g)", contours[0], lines[0],
+                     at->crosses ? "crosses" : "meets", lines[1], contours[1], at->at.x, at->at.y);
+}
+
+/* What is wrong with a contour whatever arcs are fitted to it. */
+static narc_status check_contour(const struct builder *builder, const narc_path *path, size_t contour) {
+    const size_t begin = begin_of(&builder->drawn, contour), last = builder->drawn.ends[contour] - 1;
+    const narc_point *points = builder->drawn.points;
+    const narc_crossing *crossing = find_crossing(builder, contour, false);
+    double size = 0;
+    for (size_t k = begin; k <= last; k++)
+        size = fmax(size, length(minus(points[k], points[begin])));
+    if (size > 0 && size < NARC_MIN_SIZE)
+        return narc_fail(builder->error, NARC_ERROR_SIZE, contour, size,
+                         "contour %zu: its size is %g, at least %g is possible", contour, size, NARC_MIN_SIZE);
+    return crossing ? fail_crossing(builder, path, crossing) : NARC_OK;
+}
+
+/* Fits a contour, which begins with `points[0]`, and asks the store; no arcs come of a point. */
+static narc_status fit_contour(struct builder *builder, const narc_path *path, size_t contour,
+                               const unsigned char *degrees, size_t count, const narc_point *points) {
+    narc_arc_chains *chains = &builder->chains;
+    const size_t begin = chains->arc_count;
+    const double whole = builder->tolerance, before = chains->distance;
+    const bool hole = !builder->open && is_hole(builder, contour);
+    double flat = FLAT;
+    narc_status status = check_contour(builder, path, contour);
+    narc_error *const error = builder->error, reason;
+    const narc_crossing *crossing = NULL;
+    if (status)
+        return status;
+    builder->error = &reason;
+    for (int tries = 0; tries < MOST_TRIES; tries++) {
+        chains->arc_count = begin;
+        chains->distance = 0;
+        status = add_contour(builder, degrees, count, points, path->slack);
+        if (status || chains->arc_count == begin)
+            break;
+        if (!builder->open && (hole ? measure_chain(chains, begin) > 0 : measure_chain(chains, begin) < 0))
+            reverse_chain(chains, begin);
+        const double room = whole - chains->distance;
+        bool any = false;
+        for (size_t i = begin; i < chains->arc_count; i++)
+            any = any || count_chords(&chains->arcs[i], flat, whole, &(double){0});
+        if (any && room < LEAST_SHARE * whole) {
+            builder->tolerance = SHARE_OF_ARCS * whole;
+            continue;
+        }
+        status = any ? cut_flat_arcs(builder, begin, flat, room) : NARC_OK;
+        status = status ? status : ask_store(builder, begin);
+        crossing = status == NARC_ERROR_NOT_SIMPLE ? find_crossing(builder, contour, true) : NULL;
+        if (status == NARC_ERROR_NOT_SIMPLE && !crossing)
+            builder->tolerance /= 2;
+        else if (status == NARC_ERROR_RADIUS)
+            flat *= FLATTER;
+        else
+            break;
+    }
+    builder->error = error;
+    builder->tolerance = whole;
+    chains->distance = fmax(chains->distance, before);
+    if (status == NARC_OK && chains->arc_count > begin) {
+        size_t *ends = narc_grow(chains->ends, &builder->end_capacity, chains->count + 1, sizeof *ends);
+        if (!ends)
+            return fail_memory(builder);
+        chains->ends = ends;
+        ends[chains->count++] = chains->arc_count;
+    }
+    if (crossing)
+        return fail_crossing(builder, path, crossing);
+    const bool is_round = status == NARC_ERROR_NOT_SIMPLE && builder->open &&
+                          is_same(chains->arcs[begin].start, chains->arcs[chains->arc_count - 1].end);
+    return status ? narc_fail(error, status, contour, reason.value, "contour %zu: %s", contour,
+                              is_round ? "it ends where it begins, as no open stroke does" : reason.message)
+                  : NARC_OK;
+}
+
+static narc_status add_moves(struct builder *builder, const narc_path *path) {
+    const narc_point *points = path->points;
+    narc_status status = NARC_OK;
+    for (size_t k = 0, contour = 0; k < path->move_count && !status;) {
+        size_t count = 0, point_count = 1;
+        for (; k + 1 + count < path->move_count && path->degrees[k + 1 + count] > 0; count++)
+            point_count += path->degrees[k + 1 + count];
+        if (count > 0)
+            status = fit_contour(builder, path, contour++, path->degrees + k + 1, count, points);
+        points += point_count;
+        k += 1 + count;
+    }
+    return status;
+}
+
+/* Contours that cross by so little, in parts of the largest coordinate, or by half of the tolerance, only touch. */
+static const double CROSSING = 1e-6;
+
+/* All that contours are compared with. */
+static narc_status prepare(struct builder *builder, const narc_path *path) {
+    narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
+    const narc_contours *drawn = &builder->drawn;
+    double largest = 0;
+    builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
+    for (size_t k = 0, i = 0; builder->boxes && k < drawn->count; k++) {
+        narc_aabb *box = &builder->boxes[k];
+        for (*box = (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY}; i < drawn->ends[k]; i++) {
+            const narc_point p = drawn->points[i];
+            *box =
+                (narc_aabb){fmin(box->min_x, p.x), fmin(box->min_y, p.y), fmax(box->max_x, p.x), fmax(box->max_y, p.y)};
+            largest = fmax(largest, fmax(fabs(p.x), fabs(p.y)));
+        }
+    }
+    if (!status && !builder->boxes)
+        status = fail_memory(builder);
+    if (!status)
+        status = narc_find_crossings(&builder->drawn, !builder->open, fmin(builder->tolerance / 2, CROSSING * largest),
+                                     &builder->crossings, builder->error);
+    if (!status && narc_create_shapes(NULL, &builder->store))
+        status = fail_memory(builder);
+    return status;
 }
 
 narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
@@ -228,11 +413,15 @@ narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, 
     if (!path || !out_chains)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", path ? "out_chains" : "path");
     struct builder builder = {.tolerance = tolerance, .open = open, .error = error};
-    narc_status status = add_moves(&builder, path);
+    narc_status status = prepare(&builder, path);
+    if (!status)
+        status = add_moves(&builder, path);
     if (!status && builder.chains.count == 0)
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
-    if (!status && !open)
-        turn_chains(&builder.chains);
+    narc_release_contours(&builder.drawn);
+    free(builder.crossings.items);
+    free(builder.boxes);
+    narc_destroy_shapes(builder.store);
     if (status)
         narc_release_chains(&builder.chains);
     else

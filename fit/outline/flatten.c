@@ -254,6 +254,20 @@ narc_status narc_flatten_path(const narc_path *path, double flatness, narc_conto
     return NARC_OK;
 }
 
+size_t narc_find_drawn_line(const narc_path *path, const narc_contours *contours, size_t contour, size_t chord) {
+    size_t line = 0;
+    for (struct drawn move = {0}; next_drawn(path, &move);) {
+        if (move.contour != contour)
+            continue;
+        const size_t chords = count_chords(move.controls, move.degree, contours->flatness - path->slack);
+        if (chord < chords)
+            break;
+        chord -= chords;
+        line++;
+    }
+    return line;
+}
+
 void narc_release_contours(narc_contours *contours) {
     if (contours) {
         free(contours->points);

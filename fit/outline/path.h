@@ -33,6 +33,10 @@ typedef struct narc_path_mark {
 narc_path_mark narc_mark_path(const narc_path *path);
 void narc_rewind_path(narc_path *path, narc_path_mark mark);
 
+/* Of a flattened path: the number of the line or curve in its contour, from 0, whose chord begins `chord` points behind
+ * the contour's first one. `contour` is that of the flattened ones. */
+size_t narc_find_drawn_line(const narc_path *path, const narc_contours *contours, size_t contour, size_t chord);
+
 /* Is anything drawn since the mark: a line or curve? */
 bool narc_is_drawn_since(const narc_path *path, narc_path_mark mark);
 

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "outline/crossings.h"
 #include "outline/path.h"
 #include "outline/vector.h"
 
@@ -379,7 +380,8 @@ static narc_status add_piece(narc_pieces *pieces, narc_piece added) {
 
 /* Adds points of the contour from one node to the next; NULL: only counts them. */
 static size_t list_points(const narc_region *region, node from, node to, narc_point *out_points) {
-    const size_t contour = narc_find_contour(region, from.point), begin = begin_of(region->ends, contour);
+    const size_t contour = narc_find_contour(region->ends, region->count, from.point),
+                 begin = begin_of(region->ends, contour);
     size_t count = 0;
     for (size_t k = from.point; count == 0 || (k != to.point && !from.is_cut);
          k = k + 1 < region->ends[contour] ? k + 1 : begin) {

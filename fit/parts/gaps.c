@@ -341,14 +341,20 @@ struct search {
     double best;    /* largest distance of a point of the polygon that was met */
     double precision;
     bool over;
+    bool is_whole; /* no side is left out */
 };
 
-/* How far a point is outside the polygon's furthest side, at most its distance; `enough` if it is that or more. */
+/* How far a point is outside the polygon: less than 0 inside, and perhaps less than its distance if that is `enough` or
+ * if sides are left out. */
 static double find_outside(const struct search *s, narc_point p, double enough) {
-    double outside = -INFINITY;
+    double outside = -INFINITY, square = INFINITY;
     for (size_t k = 0; k < s->count && outside < enough; k++)
         outside = fmax(outside, dot(minus(p, s->corners[k]), s->normals[k]));
-    return outside;
+    if (outside <= 0 || outside >= enough || !s->is_whole) /* beyond a sharp tip no side is far */
+        return outside;
+    for (size_t k = 0; k < s->count; k++)
+        square = fmin(square, line_distance(p, s->corners[k], s->corners[k + 1 < s->count ? k + 1 : 0]));
+    return sqrt(square);
 }
 
 static void search_cell(struct search *s, narc_point center, double half) {
@@ -414,7 +420,7 @@ static struct search begin_search(const narc_region *region, const narc_point *c
         points[sides] = corners[k];
         normals[sides++] = size > 0 ? (narc_point){side.y / size, -side.x / size} : (narc_point){0, 0};
     }
-    return (struct search){region, points, normals, sides, allowed, 0, precision, false};
+    return (struct search){region, points, normals, sides, allowed, 0, precision, false, step == 1};
 }
 
 bool narc_is_within_limit(const narc_region *region, const narc_point *corners, size_t count) {

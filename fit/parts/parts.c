@@ -26,6 +26,10 @@ static const double THIN = 2e-4, WIDER = 4e-4;
 
 /* ---------------------------------------------------------------------------- laps */
 
+/* What is near a corner is bounded by lines that turn by no more than this: at 30 degrees nothing is further away than
+ * NARC_LAP_REACH laps. */
+static const double LAP_TURN = PI / 6;
+
 /* The part of a polygon that is not further than `reach` outside the line from a to b. */
 static size_t clip(const narc_point *corners, size_t count, narc_point a, narc_point b, double reach,
                    narc_point *out_corners) {
@@ -43,12 +47,32 @@ static size_t clip(const narc_point *corners, size_t count, narc_point a, narc_p
     return kept;
 }
 
-/* The hull of a piece and of what others have within `lap` of it. */
+/* The part of a polygon that is near a convex one: within `lap` of its sides, and of its corners. */
+static size_t clip_near(const narc_piece *piece, double lap, narc_point *halves[2], size_t count) {
+    size_t from = 0;
+    for (size_t k = 0; k < piece->count && count; k++) {
+        const narc_point a = piece->corners[k], b = piece->corners[(k + 1) % piece->count];
+        const narc_point side = minus(b, a), next = minus(piece->corners[(k + 2) % piece->count], b);
+        const double turn = narc_atan2(cross(side, next), dot(side, next)), steps = ceil(turn / LAP_TURN);
+        for (double step = 0; step < fmax(1, steps) && count; step++, from = !from) {
+            const narc_point way = unit_at(turn * (step / fmax(1, steps)));
+            const narc_point along_step = {way.x * side.x - way.y * side.y, way.x * side.y + way.y * side.x};
+            count = clip(halves[from], count, b, plus(b, along_step), lap, halves[!from]);
+        }
+    }
+    if (from)
+        memcpy(halves[0], halves[1], count * sizeof *halves[0]);
+    return count;
+}
+
+/* The hull of a piece and of what others have within `lap` of it: so it reaches no further than that, rounded up, beyond
+ * the piece. */
 static narc_status lap_piece(const narc_pieces *pieces, size_t k, double lap, narc_piece *out_piece) {
     const narc_piece *piece = &pieces->items[k];
+    const size_t lines = piece->count + (size_t)(2 * PI / LAP_TURN) + 1; /* each may add a corner */
     size_t most = piece->count;
     for (size_t i = 0; i < pieces->count; i++)
-        most += pieces->items[i].count + piece->count;
+        most += pieces->items[i].count + lines;
     narc_point *points = malloc(most * sizeof *points), *corners = malloc((most + 1) * sizeof *corners);
     narc_point *halves[2] = {malloc(most * sizeof *points), malloc(most * sizeof *points)};
     narc_status status = points && corners && halves[0] && halves[1] ? NARC_OK : NARC_ERROR_MEMORY;
@@ -57,12 +81,10 @@ static narc_status lap_piece(const narc_pieces *pieces, size_t k, double lap, na
         memcpy(points, piece->corners, count * sizeof *points);
     for (size_t i = 0; i < pieces->count && !status && piece->count > 2; i++) {
         const narc_piece *other = &pieces->items[i];
-        size_t left = i == k ? 0 : other->count, from = 0;
+        size_t left = i == k ? 0 : other->count;
         memcpy(halves[0], other->corners, left * sizeof *points);
-        for (size_t side = 0; side < piece->count && left; side++, from = !from)
-            left = clip(halves[from], left, piece->corners[side], piece->corners[(side + 1) % piece->count], lap,
-                        halves[!from]);
-        memcpy(points + count, halves[from], left * sizeof *points);
+        left = clip_near(piece, lap, halves, left);
+        memcpy(points + count, halves[0], left * sizeof *points);
         count += left;
     }
     if (status)
@@ -206,8 +228,8 @@ static narc_status find_pieces(narc_region *region, const narc_parts_request *re
     status = tolerance > 0 ? cut_and_join(region, tolerance - 2 * region->slack, request->most, out_pieces)
                            : find_limit(region, request->most, out_pieces);
     if (status == NARC_ERROR_CAPACITY)
-        return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, (double)request->most,
-                         "the tolerance %g is not reached with %zu parts", request->tolerance, request->most);
+        return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, 0, "the tolerance %g is not reached with %zu parts",
+                         request->tolerance, request->most);
     if (!status && request->lap > 0)
         status = lap_pieces(out_pieces, request->lap);
     for (size_t k = 0; k < out_pieces->count && !status; k++)
@@ -233,8 +255,8 @@ static narc_status check_request(const narc_path *path, const narc_parts_request
     return NARC_OK;
 }
 
-static narc_status cut_contours(const narc_contours *contours, const narc_parts_request *request, narc_parts *out_parts,
-                                narc_error *error) {
+static narc_status cut_contours(const narc_contours *contours, bool crosses, const narc_parts_request *request,
+                                narc_parts *out_parts, narc_error *error) {
     narc_region region = {0};
     narc_pieces pieces = {0};
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
@@ -243,11 +265,11 @@ static narc_status cut_contours(const narc_contours *contours, const narc_parts_
         box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
     }
     const double extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
-    const double tolerance = request->tolerance - contours->flatness;
+    const double lap = NARC_LAP_REACH * request->lap, tolerance = request->tolerance - contours->flatness - lap;
+    const double least = contours->flatness + lap + LEAST_TOLERANCE * extent;
     if (request->tolerance > 0 && !(tolerance >= LEAST_TOLERANCE * extent))
-        return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, request->tolerance,
-                         "the tolerance %g is too small for parts, at least %g is possible", request->tolerance,
-                         contours->flatness + LEAST_TOLERANCE * extent);
+        return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, least,
+                         "the tolerance %g is too small for parts, at least %g is possible", request->tolerance, least);
     const double slack = LARGEST_SLACK * extent;
     narc_status status =
         narc_make_region(contours, request->tolerance > 0 ? fmin(slack, SLACK * tolerance) : slack, &region, error);
@@ -256,18 +278,21 @@ static narc_status cut_contours(const narc_contours *contours, const narc_parts_
     status = find_pieces(&region, request, request->tolerance > 0 ? tolerance : 0, &pieces, error);
     /* The hulls are those of the outline's own points, which may be further out than the simpler ones by the slack. */
     if (!status && request->tolerance > 0)
-        narc_limit_region(&region, tolerance - region.slack);
+        narc_limit_region(&region, tolerance + lap - region.slack);
     const double distance = status ? 0 : measure_gaps(&region, &pieces) + contours->flatness;
-    if (!status && request->lap == 0 && request->tolerance > 0 && distance > request->tolerance)
+    if (!status && request->tolerance > 0 && distance > request->tolerance)
         status = narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, distance,
                            "the tolerance %g is not reached: parts were found that are within %g", request->tolerance,
                            distance);
+    double area = status ? 0 : narc_measure_region(&region);
+    if (!status && crosses)
+        status = narc_measure_crossing(&region, &area, error);
     narc_parts parts;
     if (!status && draw_pieces(&pieces, contours->flatness, &parts))
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for the parts of an outline");
     if (!status) {
         parts.distance = distance;
-        parts.area = narc_measure_region(&region);
+        parts.area = area;
         *out_parts = parts;
     }
     narc_release_pieces(&pieces);
@@ -280,12 +305,17 @@ narc_status narc_cut_path(const narc_path *path, const narc_parts_request *reque
     narc_status status = check_request(path, request, out_parts, error);
     if (status)
         return status;
-    narc_contours contours;
+    narc_contours contours, loops;
+    bool crosses;
     status = narc_flatten_path(path, request->flatness, &contours, error);
     if (status)
         return status;
-    status = cut_contours(&contours, request, out_parts, error);
+    status = narc_split_contours(&contours, &loops, &crosses, error);
     narc_release_contours(&contours);
+    if (status)
+        return status;
+    status = cut_contours(&loops, crosses, request, out_parts, error);
+    narc_release_contours(&loops);
     return status;
 }
 

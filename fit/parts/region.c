@@ -17,18 +17,6 @@ static const double LONGEST_LINE = 1.0 / 32;
 
 static size_t begin_of(const size_t *ends, size_t k) { return k ? ends[k - 1] : 0; }
 
-size_t narc_find_contour(const narc_region *region, size_t point) {
-    size_t low = 0, high = region->count;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (region->ends[middle] <= point)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* ---------------------------------------------------------------------------- contours */
 
 static void find_extent(narc_region *region, const narc_contours *contours) {
@@ -180,14 +168,22 @@ static narc_aabb bound_contour(const narc_region *region, size_t k) {
     return box;
 }
 
+/* Contours are compared next to their points, by this part of their lines: loops of one contour touch at points. */
+static const double NEXT_TO = 0x1p-20;
+
 /* Is contour k inside contour `around` with all its points? Contours that cross are both outer ones. */
 static bool is_within(const narc_region *region, size_t k, size_t around, const narc_aabb *boxes) {
     const narc_aabb a = boxes[k], b = boxes[around];
     if (k == around || a.min_x < b.min_x || a.min_y < b.min_y || a.max_x > b.max_x || a.max_y > b.max_y)
         return false;
-    for (size_t i = begin_of(region->kept_ends, k); i < region->kept_ends[k]; i++)
-        if (!is_inside(region, around, region->points[region->kept[i]]))
+    const size_t begin = begin_of(region->kept_ends, k), end = region->kept_ends[k];
+    for (size_t i = begin; i < end; i++) {
+        const narc_point p = region->points[region->kept[i]];
+        const narc_point side = minus(region->points[region->kept[i + 1 < end ? i + 1 : begin]], p);
+        if (!is_inside(region, around, along(p, NEXT_TO, side)) ||
+            !is_inside(region, around, along(p, 1 - NEXT_TO, side)))
             return false;
+    }
     return true;
 }
 

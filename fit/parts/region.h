@@ -38,8 +38,10 @@ typedef struct narc_region {
     double limit;                                                /* what the sums are for */
 } narc_region;
 
-/* The contour that a point belongs to. */
-size_t narc_find_contour(const narc_region *region, size_t point);
+/* Contours as loops that do not cross themselves, but may touch. `out_crosses`: are there lines that cross, touch or lie on
+ * each other? NARC_ERROR_MEMORY; NARC_ERROR_NOT_SIMPLE: millions. */
+narc_status narc_split_contours(const narc_contours *contours, narc_contours *out_loops, bool *out_crosses,
+                                narc_error *error);
 
 /* Makes the contours; `slack` > 0. NARC_ERROR_COUNT: no points; NARC_ERROR_SIZE: all in one place; NARC_ERROR_MEMORY. */
 narc_status narc_make_region(const narc_contours *contours, double slack, narc_region *out_region, narc_error *error);
@@ -62,8 +64,9 @@ bool narc_may_be_within_limit(const narc_region *region, const narc_point *corne
 /* The largest distance of its points, or up to a 2048th of the extent more. */
 double narc_measure_gap(const narc_region *region, const narc_point *corners, size_t count);
 
-/* The area inside. */
+/* The area inside, of contours that do not cross; of others that of their union. NARC_ERROR_MEMORY. */
 double narc_measure_region(const narc_region *region);
+narc_status narc_measure_crossing(const narc_region *region, double *out_area, narc_error *error);
 
 void narc_release_region(narc_region *region);
 

@@ -24,6 +24,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "lines.h"
 #include "outline/path.h"
 #include "read/trace.h"
 
@@ -377,7 +378,8 @@ static narc_status find_element(RsvgHandle *handle, const char *id, char **out_e
     snprintf(element, size, "#%s", id);
     if (!rsvg_handle_has_sub(handle, element)) {
         free(element);
-        return narc_fail(error, NARC_ERROR_INDEX, 0, 0, "the SVG file has no element with the id '%s'", id);
+        return narc_fail(error, NARC_ERROR_INDEX, 0, 0, "the SVG file has no element with the id '%s'",
+                         narc_make_excerpt(id).text);
     }
     *out_element = element;
     return NARC_OK;

@@ -226,13 +226,17 @@ INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum p
 
 /* ------------------------------------------------------------------------------------------------ ranges */
 
-/* Makes a rotation's length 1, which it nearly is: one step of Newton's method for the inverse root of the square, from
- * 1, which leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where the square is off by more than
- * NARC_ROTATION_TOLERANCE, `out_valid` is false. */
+/* In lanes what soa/broken.h says of one body. Here a rotation's length becomes 1 by one step of Newton's method for the
+ * inverse root of its square, from 1, which leaves 3/8 of the square's error squared, 1.5 e at most. */
+INLINE vf find_square_error(vec2 rotation) { return v_sub(v2_dot(rotation, rotation), v_set(1)); }
+
+INLINE vm is_rotation(vec2 rotation) {
+    return v_le(v_abs(find_square_error(rotation)), v_set((float)NARC_ROTATION_TOLERANCE));
+}
+
 INLINE vec2 normalise_rotation(vec2 rotation, vm *out_valid) {
-    const vf error = v_sub(v2_dot(rotation, rotation), v_set(1));
-    *out_valid = v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE));
-    return v2_scale(rotation, v_sub(v_set(1), v_mul(v_set(0.5f), error)));
+    *out_valid = is_rotation(rotation);
+    return v2_scale(rotation, v_sub(v_set(1), v_mul(v_set(0.5f), find_square_error(rotation))));
 }
 
 INLINE vm is_distance_in_range(vec2 difference) {

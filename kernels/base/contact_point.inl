@@ -56,18 +56,17 @@ INLINE vm is_parallel(vec2 junction, vec2 n) {
     return vm_and(v_le(v_abs(v2_cross(junction, n)), v_set(PARALLEL)), v_lt(v_set(0), v2_dot(junction, n)));
 }
 
-/* The feature of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the
- * normal of the junction with it. */
-INLINE struct feature find_feature_at(const narc_record *records, struct ring ring, vi record, const struct pose *pose,
-                                      vec2 n, bool is_b) {
+/* The feature of the shape with this arc, the one in `record`: a point, or up to the end of a neighbouring arc where n is
+ * the normal of the junction with it. */
+INLINE struct feature find_feature_beside(const narc_record *records, struct ring ring, vi record,
+                                          const struct arcs *arc, const struct pose *pose, vec2 n, bool is_b) {
     const vi next = step_record(ring, record, vi_set(1)), last = step_record(ring, record, vi_set(-1));
-    const struct arcs arc = load_arcs(records, record, pose, is_b);
     const struct arcs before_arc = load_arcs(records, last, pose, is_b),
                       after_arc = load_arcs(records, next, pose, is_b);
-    const vm starts = is_parallel(arc.start, n), ends = is_parallel(arc.end, n);
+    const vm starts = is_parallel(arc->start, n), ends = is_parallel(arc->end, n);
     const vf before = v2_cross(n, find_point(&before_arc, n, is_b));
     const vf after = v2_cross(n, find_point(&after_arc, n, is_b));
-    struct feature f = find_feature(&arc, &arc, n, vi_select(ends, next, record), is_b);
+    struct feature f = find_feature(arc, arc, n, vi_select(ends, next, record), is_b);
     f.along_min = v_select(starts, v_min(f.along_min, before), f.along_min);
     f.along_max = v_select(starts, v_max(f.along_max, before), f.along_max);
     f.along_min = v_select(ends, v_min(f.along_min, after), f.along_min);
@@ -76,8 +75,14 @@ INLINE struct feature find_feature_at(const narc_record *records, struct ring ri
     f.start = v2_select(ends, after_arc.start, f.start);
     f.end = v2_select(ends, after_arc.end, f.end);
     const vf other = v_select(ends, find_magnitude(&after_arc), find_magnitude(&before_arc));
-    f.magnitude = v_select(vm_or(starts, ends), v_add(find_magnitude(&arc), other), f.magnitude);
+    f.magnitude = v_select(vm_or(starts, ends), v_add(find_magnitude(arc), other), f.magnitude);
     return f;
+}
+
+INLINE struct feature find_feature_at(const narc_record *records, struct ring ring, vi record, const struct pose *pose,
+                                      vec2 n, bool is_b) {
+    const struct arcs arc = load_arcs(records, record, pose, is_b);
+    return find_feature_beside(records, ring, record, &arc, pose, n, is_b);
 }
 
 /* A stretch longer than this part of its magnitude is an edge: four times what two radii may differ by along a normal
@@ -98,17 +103,6 @@ INLINE vec2 find_contact_place(const struct feature *on_a, const struct feature 
     const vf along =
         v_mul(half, v_add(v_max(on_a->along_min, on_b->along_min), v_min(on_a->along_max, on_b->along_max)));
     return (vec2){across, along};
-}
-
-/* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */
-INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
-                              struct feature *out_a, struct feature *out_b) {
-    const narc_record *records = call->batch->shapes->records;
-    const vec2 n = v2_divide(gap->normal, gap->length);
-    const struct pose pose = get_pose(queue, k);
-    *out_a = find_feature_at(records, get_ring_a(queue, k), gap->record_a, &pose, n, false);
-    *out_b = find_feature_at(records, get_ring_b(queue, k), gap->record_b, &pose, n, true);
-    return n;
 }
 
 /* ------------------------------------------------------------------------------------------------ what a row says */

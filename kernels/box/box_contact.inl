@@ -136,7 +136,7 @@ INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left,
         const vec2 w = v2_select(beyond, u_beyond, v2_select(before, u_before, u));
         const vf length = v2_length(w);
         const vf room = v_select(beyond, v2_dot(w, f), v_select(before, v2_dot(w, g), length));
-        left = vm_or(left, vm_and_not(corners, v_lt(slack, room)));
+        left = vm_or(left, vm_and_not(corners, v_lt(v_add(slack, slack), room)));
         c.separation = v_select(corners, v_sub(length, radii), c.separation);
         c.normal = v2_select(corners, v2_divide(w, length), c.normal);
     }
@@ -157,6 +157,9 @@ INLINE vec2 find_side_normal(const struct box_pair *pair, vi edge, bool is_b) {
     return is_b ? v2_rotate_opposite(get_box_vec2(pair, BOX_ROTATION), normal) : normal;
 }
 
+/* Of a capsule, the edge before the end that a corner is: there its arc starts. */
+INLINE vi find_own_edge(vi corner) { return vi_add(vi_and(vi_add(corner, vi_set(3)), vi_set(2)), vi_set(1)); }
+
 /* The edge next to a corner that is closer to n; of equals the one behind the corner. A capsule has two, opposite to
  * each other, at either of its ends. */
 INLINE struct box_side find_closest_side(const struct box_pair *pair, vi corner, vec2 n, bool is_b) {
@@ -164,7 +167,7 @@ INLINE struct box_side find_closest_side(const struct box_pair *pair, vi corner,
     vm behind;
     vi edge;
     if (pair->capsules) {
-        const vi own = vi_add(vi_and(vi_add(corner, vi_set(3)), vi_set(2)), vi_set(1));
+        const vi own = find_own_edge(corner);
         behind = v_lt(v_set(0), v2_dot(find_side_normal(pair, own, is_b), n));
         edge = vi_select(behind, own, vi_sub(vi_set(4), own));
     } else {

@@ -17,6 +17,7 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "box/box_contact.inl"
+#include "sat/faces.inl"
 #include "sat/normal_fan.inl"
 #include "simd/simd.h"
 
@@ -63,6 +64,36 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
     return found.rises;
 }
 
+/* What is told of the largest gap: a normal of unit length (sat/faces.inl). */
+INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
+    const vf radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B)),
+             slack = get_box_field(pair, BOX_SLACK);
+    best->normal = v2_divide(best->normal, best->length);
+    if (!vm_any(v_lt(v_add(best->separation, radii), v_add(slack, slack)))) /* |u| is no less */
+        return;
+    const struct pose pose = get_box_pose(pair);
+    const vi one = vi_set(1), own_a = best->record_a, own_b = best->record_b;
+    vi edge[JUNCTIONS] = {own_a, own_b, vi_add(own_a, one), vi_add(own_b, one)};
+    for (int k = 0; pair->capsules && k < 2; k++) {
+        edge[k] = find_own_edge(edge[k]);
+        edge[k + 2] = vi_sub(vi_set(4), edge[k]);
+    }
+    const struct arc_pair arcs = {
+        {.center = find_box_corner(pair, BOX_HALF_A, own_a),
+         .radius = get_box_field(pair, BOX_RADIUS_A),
+         .start = find_side_normal(pair, edge[0], false),
+         .end = find_side_normal(pair, edge[2], false)},
+        {.center = place_center_b(find_box_corner(pair, BOX_HALF_B, own_b), &pose),
+         .radius = get_box_field(pair, BOX_RADIUS_B),
+         .start = find_side_normal(pair, edge[1], true),
+         .end = find_side_normal(pair, edge[3], true)},
+    };
+    const vm all = vm_front(V_WIDTH), none = vm_front(0), faces[JUNCTIONS] = {all, all, all, all};
+    const vm loose = is_loose(&arcs, pose.position);
+    if (vm_any(loose))
+        best->normal = choose_face(&arcs, pose.position, loose, faces, none, none, best->normal);
+}
+
 /* The largest gap, with the numbers of the corners in place of records. */
 NOINLINE void walk_boxes(const struct box_pair *given, struct gap *out_best) {
     const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes;
@@ -88,7 +119,7 @@ NOINLINE void walk_boxes(const struct box_pair *given, struct gap *out_best) {
     }
     if (vm_any(wraps))
         try_interval(pair, &before, &first, first.high, false, wraps, rises, &best);
-    best.normal = v2_divide(best.normal, best.length);
+    tell_box_normal(pair, &best);
     *out_best = best;
 }
 

@@ -113,7 +113,7 @@ NOINLINE void walk_capsules(const struct box_pair *given, struct gap *out_best) 
     rises = try_interval(pair, &last, &first, last.low, true, all, rises, &best);
     rises = try_interval(pair, &first, &last, last.high, false, all, rises, &best);
     try_interval(pair, &first, &last, first.low, true, all, rises, &best);
-    best.normal = v2_divide(best.normal, best.length);
+    tell_box_normal(pair, &best);
     *out_best = best;
 }
 

@@ -93,7 +93,8 @@ INLINE void take_corners(const narc_record *records, const struct queue *queue, 
     const vf length = v2_length(u), radii = v_add(corners.a.radius, corners.b.radius);
     const vf starts = v_min(v2_cross(corners.a.start, u), v2_cross(corners.b.start, u));
     const vf ends = v_min(v2_cross(u, corners.a.end), v2_cross(u, corners.b.end));
-    const vm inside = v_lt(get(queue, SLACK, k), v_min(starts, ends));
+    const vf slack = get(queue, SLACK, k);
+    const vm inside = vm_and(v_lt(slack, v_min(starts, ends)), v_lt(v_add(slack, slack), length));
     const vec2 n = v2_divide(u, length);
     const struct polygon_touch a =
         find_polygon_touch(records, get_ring_a(queue, k), record_a, &corners.a, n, &pose, false);

@@ -30,6 +30,7 @@
 #include "polygon/polygon_rows.inl"
 #include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
+#include "sat/faces.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/normal_fan.inl"
 #include "sat/search.inl"
@@ -252,28 +253,28 @@ static void answer_polygons(const struct call *call, struct queue *queue, int be
     answer_edges(call, queue, begin, next);
 }
 
-/* The deciding formula, or a part of it that has its answer for certain. */
-INLINE struct gap decide_gap(const narc_shapes *shapes, const struct queue *queue, int k, vm live) {
-    vm certain;
-    if (!NARC_SHORTCUTS)
-        return find_gap(shapes, queue, k, live, true);
-    const struct gap near = walk_near(shapes->records, queue, k, live, &certain);
-    if (!vm_any(vm_and_not(live, certain)))
-        return near;
+/* The deciding formula, or a part of it that has its answer for certain. Its stack is not under that of what follows. */
+NOINLINE void decide_gap(const narc_shapes *shapes, const struct queue *queue, int k, vm live, struct gap *out_gap) {
+    vm certain = vm_front(0);
+    if (NARC_SHORTCUTS)
+        *out_gap = walk_near(shapes->records, queue, k, live, &certain);
+    if (NARC_SHORTCUTS && !vm_any(vm_and_not(live, certain)))
+        return;
     const struct gap gap = find_gap(shapes, queue, k, vm_and_not(live, certain), true);
-    return select_gap(certain, &near, &gap);
+    *out_gap = NARC_SHORTCUTS ? select_gap(certain, out_gap, &gap) : gap;
 }
 
 static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
-        const struct gap gap = decide_gap(call->batch->shapes, queue, k, live);
+        struct gap gap;
+        decide_gap(call->batch->shapes, queue, k, live, &gap);
         store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
         if (vm_any(keep)) {
             struct feature on_a, on_b;
-            const vec2 n = find_gap_features(call, queue, k, &gap, &on_a, &on_b);
+            const vec2 n = find_gap_features(call, queue, k, keep, &gap, &on_a, &on_b);
             const vm kept = store_rows(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
             collect_edges(call, queue, k, kept, gap.separation, n, &on_a, &on_b);
         }

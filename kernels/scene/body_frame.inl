@@ -16,6 +16,7 @@
 
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "broken.h"
 #include "column.h"
 #include "kernels.h"
 #include "simd/simd.h"
@@ -38,28 +39,27 @@ struct body_frame {
     const narc_record *arcs; /* header->count of them */
 };
 
-/* 1 / sqrt(1 + e), of the error that a rotation's square may have: the next term, 63/256 e^5, is below 2^-57. So what is
- * far away is not off in proportion. */
-INLINE double find_inverse_length(double e) { return 1 - e * (0.5 - e * (0.375 - e * (0.3125 - e * 0.2734375))); }
+INLINE place find_rotation(float cosine, float sine) {
+    const place given = {(double)cosine, (double)sine};
+    const double error = find_dot(given, given) - 1, factor = NARC_INVERSE_LENGTH(error);
+    return (place){given.x * factor, given.y * factor};
+}
 
 /* False for a body that nothing meets: one with broken numbers, or whose shape does not exist. */
 INLINE bool load_body_frame(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, struct body_frame *out) {
     const uint32_t shape = narc_index_at(bodies->shape, body);
     if (shape >= shapes->count)
         return false;
-    const double cosine = (double)narc_float_at(bodies->cosine, body), sine = (double)narc_float_at(bodies->sine, body);
-    const double scale = bodies->scale.base ? (double)narc_float_at(bodies->scale, body) : 1;
-    const double square_error = cosine * cosine + sine * sine - 1, factor = find_inverse_length(square_error);
+    const float cosine = narc_float_at(bodies->cosine, body), sine = narc_float_at(bodies->sine, body);
+    const float scale = bodies->scale.base ? narc_float_at(bodies->scale, body) : 1;
     const narc_shape_header *const header = &shapes->headers[shape];
-    const float size = (float)scale * header->bound_radius;
     out->position = (place){narc_position_at(bodies->x, body), narc_position_at(bodies->y, body)};
-    out->rotation = (place){cosine * factor, sine * factor};
-    out->scale = scale;
-    out->inverse_scale = 1 / scale;
+    out->rotation = find_rotation(cosine, sine);
+    out->scale = (double)scale;
+    out->inverse_scale = 1 / out->scale;
     out->header = header;
     out->arcs = narc_arcs_of(shapes, header);
-    return fabs(square_error) <= NARC_ROTATION_TOLERANCE && (float)NARC_MIN_SIZE <= size &&
-           size <= (float)NARC_MAX_BOUND_RADIUS; /* all false for NaN */
+    return narc_is_rotation(cosine, sine) && narc_is_size(scale * header->bound_radius);
 }
 
 /* Is the shape a piece of a chain, with one of these marks (store.h)? */

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/shape.inl"
+#include "broken.h"
 #include "kernels.h"
 #include "narc_scene.h"
 #include "simd/doubles.h"
@@ -42,13 +43,11 @@ INLINE vd round_down(vd time) {
     return d_of_floats(lane);
 }
 
-/* Rotations at the start. The factor is Newton's step for the root, as in base/pair_setup.inl. */
+/* Rotations at the start. */
 INLINE spot find_rotation(const float *cosine, const float *sine) {
-    float square[V_WIDTH];
-    for (int l = 0; l < D_WIDTH; l++)
-        square[l] = cosine[l] * cosine[l] + sine[l] * sine[l] - 1.0f;
-    const vd factor = d_set(1) - d_set(0.5) * d_of_floats(square);
-    return (spot){factor * d_of_floats(cosine), factor * d_of_floats(sine)};
+    const spot given = get_spot(cosine, sine);
+    const vd error = find_dot(given, given) - d_set(1), factor = NARC_INVERSE_LENGTH(error);
+    return (spot){factor * given.x, factor * given.y};
 }
 
 /* The slots k ...; lanes behind the last one repeat the first. */

@@ -26,7 +26,7 @@ INLINE vl find_touch(const narc_casts *casts, const struct touch *touch, size_t 
                      const struct held_arcs arcs[2], const struct outline_part parts[2], vd *out_duration) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), radii = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h),
-             goal = radii + d_set((double)casts->target), way = radii + d_of_floats(touch->separation + h);
+             goal = radii + d_of_floats(casts->target + slot), way = radii + d_of_floats(touch->separation + h);
     const spot n = get_spot(touch->normal_x + h, touch->normal_y + h), u = {way * n.x, way * n.y},
                motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
     const vd across = find_cross(u, motion), height = goal * goal * find_dot(motion, motion) - across * across;
@@ -51,7 +51,7 @@ INLINE void advance_line(const narc_casts *casts, const struct touch *touch, siz
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), back = d_of_floats(casts->back + slot),
              rounds = d_of_floats(casts->rounds + slot) + d_set(1), enough = d_load(casts->enough + slot);
-    const vd gap = d_of_floats(touch->separation + h) - d_set((double)casts->target),
+    const vd gap = d_of_floats(touch->separation + h) - d_of_floats(casts->target + slot),
              slope = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
     const vl parts = d_le(zero, slope), tried = d_le(zero, back), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));

@@ -211,7 +211,7 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), end = d_load(casts->end + slot),
              back = d_of_floats(casts->back + slot), rounds = d_of_floats(casts->rounds + slot) + d_set(1),
              enough = d_load(casts->enough + slot);
-    const vd gap = d_of_floats(touch->separation + h) - d_set((double)casts->target);
+    const vd gap = d_of_floats(touch->separation + h) - d_of_floats(casts->target + slot);
     const vd along = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
     const vd turning = d_load(a->lever + slot) * d_abs(d_of_floats(a->angle + slot)) +

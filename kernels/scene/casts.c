@@ -8,7 +8,9 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/bodies.inl"
 #include "base/shape.inl"
+#include "base/vec2.inl"
 #include "elementary.h"
 #include "kernels.h"
 #include "narc_scene.h"
@@ -22,9 +24,14 @@
  * rounding may do to it (NARC_ERROR_BOUND). */
 #define ROUNDING 0x1p-21
 
+/* Where turning moves outlines, a hit is by default no further from the target than this part of what it moves them by,
+ * nor than this part of the radius of a circle within a body. */
+#define MOVED_PART     0x1p-4
+#define THICKNESS_PART 0x1p-6
+
 /* ------------------------------------------------------------------------------------------------ the start */
 
-/* A body: its header, and whether it is a circle, 1 or 0. */
+/* A body: its bounding circle, a circle within it, and whether it is a circle, 1 or 0: then that is the one within. */
 struct outline {
     float bound_x[V_WIDTH], bound_y[V_WIDTH], bound[V_WIDTH], inner_x[V_WIDTH], inner_y[V_WIDTH], inner[V_WIDTH];
     float round[V_WIDTH];
@@ -35,41 +42,45 @@ INLINE void load_outline(const narc_shapes *shapes, const struct narc_cast_side 
     int32_t shape[V_WIDTH];
     vi_store(shape, get_shapes(side, slot));
     const struct headers h = load_headers(shapes->headers, shape);
+    const vm round = has_flag(h.info, NARC_SHAPE_CIRCLE);
+    vf arc[4] = {h.inner_center.x, h.inner_center.y, h.inner_radius, h.inner_radius};
+    if (vm_any(round)) {
+        vi_store(shape, find_first_arc(h.first_record, h.info));
+        v_rows(shapes->records, sizeof *shapes->records, shape, arc);
+    }
     v_store(out->bound_x, h.bound_center.x);
     v_store(out->bound_y, h.bound_center.y);
     v_store(out->bound, h.bound_radius);
-    v_store(out->inner_x, h.inner_center.x);
-    v_store(out->inner_y, h.inner_center.y);
-    v_store(out->inner, h.inner_radius);
-    v_store(out->round, v_select(has_flag(h.info, NARC_SHAPE_CIRCLE), v_set(1), v_set(0)));
+    v_store(out->inner_x, v_select(round, arc[0], h.inner_center.x));
+    v_store(out->inner_y, v_select(round, arc[1], h.inner_center.y));
+    v_store(out->inner, v_select(round, arc[2], h.inner_radius));
+    v_store(out->round, v_select(round, v_set(1), v_set(0)));
 }
 
-/* Which bodies have no broken numbers, by the kernels' rules (base/pair_setup.inl)? */
+/* Which bodies have no broken numbers? */
 INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct outline *outline) {
-    const vf c = v_load(side->cosine + k), s = v_load(side->sine + k), one = v_set(1);
-    const vf error = v_sub(v_add(v_mul(c, c), v_mul(s, s)), one);
-    const vf size = v_mul(v_load(side->scale + k), v_load(outline->bound));
-    const vm in_range =
-        vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_BOUND_RADIUS)));
-    return vm_and(vm_and(in_range, v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE))),
-                  v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
+    const vm turned = is_rotation((vec2){v_load(side->cosine + k), v_load(side->sine + k)});
+    const vm sized = is_size_in_range(v_mul(v_load(side->scale + k), v_load(outline->bound)));
+    return vm_and(vm_and(sized, turned), v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
 }
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape
  * turns by a radian. A point p of the outline is no further from the centre q of a circle in the shape than R, and
  * along its normal p - q is no shorter than that circle's radius r, so that |p x n| <= |q| + sqrt(R^2 - r^2). Of boxes
- * and regular polygons about their origins it is half an edge, and no less will do. */
+ * and regular polygons about their origins it is half an edge, and no less will do. Of a circle it is |q|: the bounding
+ * circle, which has room for rounding, says nothing there. */
 INLINE vd find_lever(const struct outline *outline, int h) {
     const spot inner = get_spot(outline->inner_x + h, outline->inner_y + h);
     const spot bound = get_spot(outline->bound_x + h, outline->bound_y + h);
     const vd off = find_length(inner), zero = d_set(0), radius = d_of_floats(outline->inner + h);
     const vd r = d_select(d_lt(zero, radius), radius, zero);
     const vd far = d_of_floats(outline->bound + h) + find_length((spot){bound.x - inner.x, bound.y - inner.y});
-    const vl disc = d_lt(zero, d_of_floats(outline->round + h)) & d_le(off, zero);
-    return d_select(disc, zero, off + d_sqrt(far * far - r * r));
+    const vl round = d_lt(zero, d_of_floats(outline->round + h));
+    return off + d_select(round, zero, d_sqrt(far * far - r * r));
 }
 
-/* Circles that hold the bodies all the time: their radii, and their centres from the positions. */
+/* Circles that hold the bodies all the time: their radii, and their centres from the positions. What turns but moves
+ * nothing by it does not turn from here on. */
 INLINE vd find_circle(struct narc_cast_side *side, size_t k, const struct outline *outline, int h, spot *out_center) {
     const vd scale = d_of_floats(side->scale + k), angle = d_of_floats(side->angle + k), zero = d_set(0);
     const vd radius = scale * d_of_floats(outline->bound + h);
@@ -82,8 +93,22 @@ INLINE vd find_circle(struct narc_cast_side *side, size_t k, const struct outlin
         lever = d_select(still, zero, scale * find_lever(outline, h));
     const vl rests = d_le(lever, zero);
     d_store(side->lever + k, lever);
+    d_put_floats(side->angle + k, d_select(rests, zero, angle));
     *out_center = (spot){d_select(rests, turned.x, zero), d_select(rests, turned.y, zero)};
     return d_select(rests, radius, radius + find_length(center));
+}
+
+/* By how much turning moves an outline, at most. */
+INLINE vd find_moved(const struct narc_cast_side *side, size_t k) {
+    return d_load(side->lever + k) * d_abs(d_of_floats(side->angle + k));
+}
+
+/* What a hit may be away from the target by default, as far as it is up to one of the bodies: a small part of its size,
+ * and of its thickness. */
+INLINE vd find_tolerance(const struct narc_cast_side *side, size_t k, const struct outline *outline, int h) {
+    const vd by_size = d_set(NARC_TURNING_TOLERANCE) * d_of_floats(outline->bound + h),
+             by_thickness = d_set(THICKNESS_PART) * d_of_floats(outline->inner + h);
+    return d_of_floats(side->scale + k) * d_min(by_size, by_thickness);
 }
 
 /* When are two circles, that far apart, as near as `reach`? */
@@ -103,10 +128,9 @@ INLINE vl meet_circles(spot apart, spot motion, vd reach, vd *out_start, vd *out
 }
 
 INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outline[2], float *out_outcome) {
-    const float *const sizes[2] = {outline[0].bound + h, outline[1].bound + h};
     const spot from = {d_load(casts->x + k), d_load(casts->y + k)},
                motion = {d_load(casts->motion_x + k), d_load(casts->motion_y + k)};
-    const vd far = d_set(NARC_MAX_DISTANCE), zero = d_set(0), target = d_set((double)casts->target);
+    const vd far = d_set(NARC_MAX_DISTANCE), zero = d_set(0), target = d_of_floats(casts->target + k);
     spot center_a, center_b;
     vd start, end;
     const vd radius_a = find_circle(&casts->side[0], k, &outline[0], h, &center_a),
@@ -114,13 +138,18 @@ INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outlin
              reach = radius_a + radius_b + target;
     const spot apart = {from.x + center_b.x - center_a.x, from.y + center_b.y - center_a.y};
     const vl meet = d_le(zero, reach) & meet_circles(apart, motion, reach, &start, &end);
-    const vl turns = d_lt(zero, d_load(casts->side[0].lever + k) + d_load(casts->side[1].lever + k));
-    const vd smaller = d_min(d_of_floats(casts->side[0].scale + k) * d_of_floats(sizes[0]),
-                             d_of_floats(casts->side[1].scale + k) * d_of_floats(sizes[1]));
-    const vd given = d_set((double)casts->tolerance),
-             enough = d_select(d_lt(zero, given), given, d_set(NARC_TURNING_TOLERANCE) * smaller);
+    const vd moved = find_moved(&casts->side[0], k) + find_moved(&casts->side[1], k);
+    const vl turns = d_lt(zero, moved);
+    vd enough = d_set(ROUNDING) * (radius_a + radius_b + d_abs(target));
+    if (d_any(turns)) {
+        const vd given = d_set((double)casts->tolerance),
+                 sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
+                               find_tolerance(&casts->side[1], k, &outline[1], h)),
+                 usual = d_min(d_set(MOVED_PART) * moved, sizes), named = d_select(d_lt(zero, given), given, usual);
+        enough = d_select(turns & d_lt(enough, named), named, enough);
+    }
     d_store(casts->end + k, end);
-    d_store(casts->enough + k, d_select(turns, enough, d_set(ROUNDING) * (radius_a + radius_b + d_abs(target))));
+    d_store(casts->enough + k, enough);
     d_put_floats(casts->time + k, round_down(start));
     d_put_floats(casts->turning + k, d_select(turns, d_set(1), zero));
     const vd longest = d_set(INFINITY);

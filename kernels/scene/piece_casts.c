@@ -68,15 +68,14 @@ static bool reach_each_other(const struct body_frame *a, const struct body_frame
 static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
                        struct body_frame *out) {
     const struct narc_cast_side *const of = &casts->side[side];
-    const double cosine = (double)of->cosine[slot], sine = (double)of->sine[slot];
-    const double factor = find_inverse_length(cosine * cosine + sine * sine - 1);
-    double turn_x = 1, turn_y = 0;
+    const place rotation = find_rotation(of->cosine[slot], of->sine[slot]);
+    place turn = {1, 0};
     if (of->angle[slot] != 0)
-        narc_find_cosine((double)of->angle[slot] * time, &turn_x, &turn_y);
+        narc_find_cosine((double)of->angle[slot] * time, &turn.x, &turn.y);
     out->position = side == 0 ? (place){0, 0}
                               : (place){casts->x[slot] + time * casts->motion_x[slot],
                                         casts->y[slot] + time * casts->motion_y[slot]};
-    out->rotation = (place){factor * (turn_x * cosine - turn_y * sine), factor * (turn_y * cosine + turn_x * sine)};
+    out->rotation = (place){turn.x * rotation.x - turn.y * rotation.y, turn.y * rotation.x + turn.x * rotation.y};
     out->scale = (double)of->scale[slot];
     out->header = &shapes->headers[of->shape[slot]];
     out->arcs = narc_arcs_of(shapes, out->header);
@@ -282,7 +281,7 @@ static double find_entering(const struct scene *scene, int arc, double target, p
 }
 
 static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
-    const double sign = side == 0 ? 1 : -1, target = (double)casts->target;
+    const double sign = side == 0 ? 1 : -1, target = (double)casts->target[slot];
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
@@ -344,7 +343,7 @@ typedef struct outlook looker(const narc_shapes *shapes, narc_casts *casts, size
  * and this one. */
 static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
     float after = casts->time[slot];
-    const double enough = (double)casts->target + casts->enough[slot];
+    const double enough = (double)casts->target[slot] + casts->enough[slot];
     for (int halving = 0; halving < HALVINGS; halving++) {
         const float middle = (float)(((double)before + (double)after) / 2);
         const struct outlook o = look(shapes, casts, slot, (double)middle);
@@ -356,9 +355,10 @@ static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t
 
 static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, double speed,
                            double size) {
-    const double target = (double)casts->target, enough = casts->enough[slot],
+    const double target = (double)casts->target[slot], enough = casts->enough[slot],
                  least = NARC_TURNING_TOLERANCE * size / speed;
-    const double end = casts->target < 0 ? 1 : casts->end[slot]; /* circles say nothing of how deep it is in a hollow */
+    const double end =
+        casts->target[slot] < 0 ? 1 : casts->end[slot]; /* circles say nothing of how deep it is in a hollow */
     double time = (double)casts->time[slot];
     float before = casts->time[slot];
     bool behind = false, told = false;
@@ -414,7 +414,7 @@ static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *cas
     const struct speeds s = find_speeds(both, casts, slot);
     const struct nearest nearest = find_nearest(&scene, false);
     const bool reached = nearest.separation < INFINITY;
-    const double target = (double)casts->target, between = find_circle_gap(&scene);
+    const double target = (double)casts->target[slot], between = find_circle_gap(&scene);
     struct outlook out = {INFINITY, !reached && nearest.unreached ? -INFINITY : nearest.separation, reached};
     for (int arc = 0; arc < scene.body.header->count; arc++)
         if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
@@ -625,7 +625,8 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
     }
     const struct gaps g = find_gaps(bodies, &outlines[0], &outlines[1]);
     const struct speeds s = find_speeds(bodies, casts, slot);
-    const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1], target = (double)casts->target;
+    const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1],
+                 target = (double)casts->target[slot];
     struct outlook out = {(g.most - target) / speed, INFINITY, true};
     bool told = true;
     for (int side = 0; side < 2; side++) {

@@ -27,6 +27,7 @@
 #include "scene/body_frame.inl"
 #include "scene/concave.inl"
 #include "scene/piece_places.inl"
+#include "scene/things.inl"
 #include "simd/simd.h"
 
 /* ------------------------------------------------------------------------------------------------ separations */
@@ -295,8 +296,7 @@ struct search {
     const narc_point_batch *batch;
     place point;
     float x, y, room; /* the point in single precision, and what that may be off by */
-    uint32_t ignored;
-    uint64_t mask;
+    struct chosen chosen;
     narc_distance *rows; /* the nearest so far, in their order: point, body and separation */
     size_t found;
     float limit, limit_key; /* of a separation that still counts */
@@ -309,8 +309,12 @@ INLINE float find_limit_key(float separation) {
     return key + fabsf(key) * KEY_ROOM + 0x1p-120f;
 }
 
+/* Below the key of any separation, and still finite with a slot's number in its lowest bits. */
+#define LEAST_KEY (-0x1p126f)
+
 /* Lower bounds of the separations in a node's slots, as keys: within a box the distance to its nearest side, negative,
- * outside the distance to the box. Infinite, or NaN where the point is too far away, for empty slots. */
+ * outside the distance to the box; infinite, or NaN, for empty slots and those that are too far away. Of a box that a
+ * body far away has made large the square may be more than any float. */
 INLINE vf find_keys(const struct search *search, const narc_index_node *node, int k) {
     const vf zero = v_set(0), at_x = v_set(search->x), at_y = v_set(search->y);
     const vf min_x = v_load(node->min_x + k), max_x = v_load(node->max_x + k);
@@ -321,7 +325,7 @@ INLINE vf find_keys(const struct search *search, const narc_index_node *node, in
     const vf y = v_sub(v_max(v_sub(min_y, at_y), v_sub(at_y, max_y)), room);
     const vf depth = v_max(x, y);
     const vec2 outside = {v_max(x, zero), v_max(y, zero)};
-    return v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth)));
+    return v_max(v_set(LEAST_KEY), v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth))));
 }
 
 INLINE void enter_node(const struct search *search, unsigned level, uint32_t node, struct step *step) {
@@ -335,7 +339,7 @@ INLINE void enter_node(const struct search *search, unsigned level, uint32_t nod
     }
     step->node = node;
     for (unsigned k = 0; k < NARC_NODE_SLOTS && index->masks; k++)
-        if (!(index->masks[NARC_NODE_SLOTS * at + k] & search->mask))
+        if (!(index->masks[NARC_NODE_SLOTS * at + k] & search->chosen.mask))
             step->key[k] = INFINITY;
 }
 
@@ -347,18 +351,27 @@ INLINE float find_least_key(const float *key) {
     return find_lower(low, find_lower(find_lower(key[4], key[5]), find_lower(key[6], key[7])));
 }
 
-/* Puts a body among the nearest ones if it belongs there. */
+INLINE bool is_nearer(uint32_t body, float separation, const narc_distance *row) {
+    return separation < row->separation || (separation == row->separation && body < row->body);
+}
+
+/* Puts a body among the nearest ones if it belongs there: of a thing the nearest part alone. */
 INLINE void add_body(struct search *search, uint32_t body, float separation) {
     narc_distance *const rows = search->rows;
     const size_t most = search->batch->most;
-    size_t k = search->found;
-    if (!(separation < search->limit) &&
-        !(k == most && separation == rows[most - 1].separation && body < rows[most - 1].body))
+    const uint32_t owner = find_owner(&search->chosen, body);
+    if (!(separation < search->limit) && !(search->found == most && is_nearer(body, separation, &rows[most - 1])))
         return;
+    for (size_t k = 0; owner != UINT32_MAX && k < search->found; k++)
+        if (find_owner(&search->chosen, rows[k].body) == owner) {
+            if (!is_nearer(body, separation, &rows[k]))
+                return;
+            for (search->found--; k < search->found; k++)
+                rows[k] = rows[k + 1];
+        }
+    size_t k = search->found;
     k -= k == most;
-    for (; k > 0 &&
-           (separation < rows[k - 1].separation || (separation == rows[k - 1].separation && body < rows[k - 1].body));
-         k--)
+    for (; k > 0 && is_nearer(body, separation, &rows[k - 1]); k--)
         rows[k] = rows[k - 1];
     rows[k] = (narc_distance){.body = body, .separation = separation};
     search->found += search->found < most;
@@ -381,10 +394,12 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     struct body_frame frame;
     struct piece_place nearest;
     float x, y;
-    if (body != search->ignored && find_piece(search->batch, body, search->point, &frame, &nearest))
+    if (!is_chosen(&search->chosen, body))
+        return;
+    if (find_piece(search->batch, body, search->point, &frame, &nearest))
         add_body(search, body, (float)(frame.scale * nearest.distance));
-    if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
-        narc_is_piece(frame.header) || !place_point(&frame, search->point, &x, &y))
+    if (!load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) || narc_is_piece(frame.header) ||
+        !place_point(&frame, search->point, &x, &y))
         return;
     const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
@@ -439,18 +454,16 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
     struct questions waiting;
     waiting.count = 0;
     for (size_t k = first; k < end; k++) {
-        struct search search = {.batch = batch, .point = load_point(batch->points, k), .ignored = UINT32_MAX};
+        struct search search = {.batch = batch, .point = load_point(batch->points, k), .chosen = read_chosen(query, k)};
         search.x = (float)search.point.x;
         search.y = (float)search.point.y;
         search.room =
             (float)((fabs(search.point.x - (double)search.x) + fabs(search.point.y - (double)search.y)) * 1.001);
-        search.mask = query->mask.base ? narc_word_at(query->mask, k) : UINT64_MAX;
-        if (query->ignored.base)
-            search.ignored = narc_index_at(query->ignored, k);
         search.rows = batch->out + k * batch->most;
-        search.limit = batch->distance < FARTHEST ? batch->distance : FARTHEST;
+        search.limit = -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance));
         search.limit_key = find_limit_key(search.limit);
-        if (batch->index->level_count > 0 && search.mask != 0)
+        const bool has_answer = fabsf(search.x) <= FLT_MAX && fabsf(search.y) <= FLT_MAX; /* or all boxes are too far */
+        if (batch->index->level_count > 0 && search.chosen.mask != 0 && has_answer)
             find_nearest(&search);
         ask_nearest(&search, k, &waiting);
     }

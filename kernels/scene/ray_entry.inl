@@ -14,6 +14,11 @@
  *
  * Which feature it is, is decided in single precision, a lane for each arc. What is said of it, in double precision. So
  * a point is on its feature and on the ray up to one rounding, and beyond the feature's ends by no more than s is off.
+ *
+ * A touch counts. A line that enters nowhere, but passes some place by little, is asked again nearer to the middle by TOUCH,
+ * which is more than s is off; or through the middle, if that is nearer. A convex shape is met by all lines between one
+ * that meets it and its middle. So nothing that meets the shape misses it, and no ray through a point that two bodies
+ * hold passes one of them. What is said of the feature is that of the ray's own line: the end of it that is near.
  */
 #ifndef NARC_SCENE_RAY_ENTRY_INL
 #define NARC_SCENE_RAY_ENTRY_INL
@@ -28,6 +33,17 @@
 #include "scene/body_frame.inl"
 #include "simd/simd.h"
 
+/* How near counts as met, relative to what the extent is at most, which is less than twice the extent. With what s is off
+ * by, some 6 e of the extent, it stays below NARC_ERROR_BOUND. */
+#define TOUCH (12.0 / 16777216.0)
+
+/* Of pieces nothing: they overlap, and what closes a run behind may be nearer to the middle than its front. An extent
+ * that is not known counts as the radius. */
+INLINE double find_touch(const narc_shape_header *header) {
+    const double ratio = header->extent_ratio < UINT8_MAX ? (double)header->extent_ratio : 1;
+    return narc_is_piece(header) ? 0 : TOUCH * ratio * (double)header->bound_radius;
+}
+
 /* The place on a ray's line, behind the foot, where it enters. */
 struct entry {
     double along;
@@ -36,20 +52,20 @@ struct entry {
     bool on_edge;
 };
 
-/* A bit for each arc: signs at its ends and whether it is entered itself. */
-struct outline_signs {
-    uint64_t faces;       /* does the normal where it starts face the ray? */
-    uint64_t starts_left; /* s >= 0 where it starts */
-    uint64_t ends_left;   /* and where it ends */
-    uint64_t entered;
+/* The features by which a line enters. */
+struct entries {
+    uint64_t edges; /* a bit for each arc: the edge before it */
+    uint64_t all;   /* that edge, or the arc */
+    bool near;      /* is what is leftmost or rightmost of the outline near to the line? */
 };
 
-INLINE struct outline_signs find_signs(const struct body_frame *frame, place foot, place direction) {
+INLINE struct entries find_entries(const struct body_frame *frame, place foot, place direction, double touch) {
     const int count = frame->header->count;
     const vec2 o = {v_set((float)foot.x), v_set((float)foot.y)};
     const vec2 v = {v_set((float)direction.x), v_set((float)direction.y)};
     const vf zero = v_set(0);
-    struct outline_signs signs = {0, 0, 0, 0};
+    uint64_t faces_at_start = 0, starts_left = 0, ends_left = 0, arcs = 0;
+    vf nearest = v_set(INFINITY);
     for (int k = 0; k < count; k += V_WIDTH) {
         const struct own_arcs arc = load_own_arcs(frame, k);
         const vf h = v2_cross(v, v2_sub(arc.center, o)), turn = v2_cross(v, arc.start);
@@ -61,12 +77,16 @@ INLINE struct outline_signs find_signs(const struct body_frame *frame, place foo
         const vm faces = vm_or(vm_xor(start_faces, end_faces), middle_faces);
         const vf from = v_select(start_faces, start, v_add(h, arc.radius));
         const vf to = v_select(end_faces, end, v_sub(h, arc.radius));
-        signs.faces |= (uint64_t)vm_bits(start_faces) << k;
-        signs.starts_left |= (uint64_t)vm_bits(v_le(zero, start)) << k;
-        signs.ends_left |= (uint64_t)vm_bits(v_le(zero, end)) << k;
-        signs.entered |= (uint64_t)vm_bits(vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)))) << k;
+        nearest = v_min(nearest, v_min(v_abs(from), v_abs(to)));
+        faces_at_start |= (uint64_t)vm_bits(start_faces) << k;
+        starts_left |= (uint64_t)vm_bits(v_le(zero, start)) << k;
+        ends_left |= (uint64_t)vm_bits(v_le(zero, end)) << k;
+        arcs |= (uint64_t)vm_bits(vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)))) << k;
     }
-    return signs;
+    const uint64_t left_before = ends_left << 1 | (ends_left >> (count - 1) & 1);
+    const uint64_t edges = faces_at_start & left_before & ~starts_left;
+    return (struct entries){edges, (arcs | edges) & UINT64_MAX >> (64 - count),
+                            vm_any(v_le(nearest, v_set((float)(2 * touch))))};
 }
 
 /* Where the line crosses an arc's circle: the place nearest to the centre, and half a chord before that. What is beyond
@@ -96,20 +116,77 @@ INLINE void enter_edge(const narc_stored_arc *before, const narc_stored_arc *aft
     out->normal = n;
 }
 
+/* The line of a ray, in the shape's coordinates. */
+struct line {
+    place foot;      /* of the bounding circle's middle */
+    place direction; /* a unit vector */
+    double beside;   /* how far the middle is to the left */
+    double touch;    /* see find_touch() */
+};
+
+/* A shape that has no width beside the line, as far as rounding can tell, such as a segment along it: the end that the line
+ * meets first. */
+INLINE void enter_end(const struct body_frame *frame, const struct line *line, struct entry *out) {
+    const place back = {-line->direction.x, -line->direction.y};
+    *out = (struct entry){.along = INFINITY};
+    for (int k = 0; k < (int)frame->header->count; k++) {
+        const narc_stored_arc *const arc = &frame->arcs[k].arc;
+        const place center = {(double)arc->center_x - line->foot.x, (double)arc->center_y - line->foot.y};
+        const place start = {(double)arc->start_x, (double)arc->start_y},
+                    end = {(double)arc->end_x, (double)arc->end_y};
+        const bool holds = find_cross(start, back) >= 0 && find_cross(back, end) >= 0;
+        const place n = holds ? back : find_dot(start, back) > find_dot(end, back) ? start : end;
+        const double along = -find_dot(back, center) - (double)arc->radius * find_dot(back, n);
+        if (along < out->along)
+            *out = (struct entry){along, n, k, false};
+    }
+}
+
+/* Does all of the shape lie so near to the line? */
+INLINE bool is_thin(const struct body_frame *frame, const struct line *line) {
+    bool thin = true;
+    for (int k = 0; thin && k < (int)frame->header->count; k++) {
+        const narc_stored_arc *const arc = &frame->arcs[k].arc;
+        const place center = {(double)arc->center_x - line->foot.x, (double)arc->center_y - line->foot.y};
+        thin = fabs(find_cross(line->direction, center)) + (double)arc->radius <= line->touch;
+    }
+    return thin;
+}
+
+/* What a line touches, or nothing. A shape beside a line through its middle has an end at least. */
+NOINLINE struct entries find_touched(const struct body_frame *frame, const struct line *line,
+                                     const struct entries *entries, struct entry *out) {
+    const double touch = line->touch, beside = line->beside;
+    const place v = line->direction;
+    const bool in_middle = fabs(beside) <= touch;
+    struct entries found = *entries;
+    const double nearer = beside < 0 ? find_least(touch, -beside) : -find_least(touch, beside);
+    if (found.all == 0)
+        found = find_entries(frame, (place){line->foot.x + nearer * v.y, line->foot.y - nearer * v.x}, v, touch);
+    if (in_middle && (found.all == 0 || is_thin(frame, line))) {
+        found.all = 0;
+        enter_end(frame, line, out);
+    }
+    return found;
+}
+
 /* Does the line enter the shape, and where? It leaves where the one the other way round enters. */
-INLINE bool find_entry(const struct body_frame *frame, place foot, place direction, struct entry *out) {
-    const int count = frame->header->count;
-    const struct outline_signs signs = find_signs(frame, foot, direction);
-    const uint64_t before = signs.ends_left << 1 | (signs.ends_left >> (count - 1) & 1);
-    const uint64_t edges = signs.faces & before & ~signs.starts_left;
-    const uint64_t entered = (signs.entered | edges) & UINT64_MAX >> (64 - count);
-    if (entered == 0)
+INLINE bool find_entry(const struct body_frame *frame, const struct line *line, struct entry *out) {
+    const place foot = line->foot, direction = line->direction;
+    struct entries entries = find_entries(frame, foot, direction, line->touch);
+    if (entries.near && (entries.all == 0 || fabs(line->beside) <= line->touch)) {
+        out->along = -INFINITY;
+        entries = find_touched(frame, line, &entries, out);
+        if (entries.all == 0)
+            return out->along > -INFINITY;
+    }
+    if (entries.all == 0)
         return false;
-    out->arc = FIND_LOWEST_64(entered);
-    out->on_edge = edges >> out->arc & 1;
+    out->arc = FIND_LOWEST_64(entries.all);
+    out->on_edge = entries.edges >> out->arc & 1;
     const narc_stored_arc *const arc = &frame->arcs[out->arc].arc;
     if (out->on_edge)
-        enter_edge(&frame->arcs[out->arc > 0 ? out->arc - 1 : count - 1].arc, arc, foot, direction, out);
+        enter_edge(&frame->arcs[out->arc > 0 ? out->arc - 1 : frame->header->count - 1].arc, arc, foot, direction, out);
     else
         enter_arc(arc, foot, direction, out);
     return true;
@@ -132,11 +209,11 @@ INLINE bool enter_concave(const struct body_frame *frame, place foot, place v, s
 }
 
 /* The same as find_entry() for any shape. Of a run only what lies in front is met (store.h). */
-INLINE bool find_first_entry(const struct body_frame *frame, place foot, place v, struct entry *out) {
+INLINE bool find_first_entry(const struct body_frame *frame, const struct line *line, struct entry *out) {
     const narc_shape_header *const header = frame->header;
     if (has_any_mark(frame, NARC_PIECE_CONCAVE))
-        return enter_concave(frame, foot, v, out);
-    if (!find_entry(frame, foot, v, out))
+        return enter_concave(frame, line->foot, line->direction, out);
+    if (!find_entry(frame, line, out))
         return false;
     return !NARC_PIECES || narc_touches(header, find_feature_number(header, out->arc, out->on_edge));
 }
@@ -151,40 +228,20 @@ struct ray {
     double inverse_length;
 };
 
-/* Where the line is within a box: from .. to, along the direction. */
-struct stretch {
-    double from, to;
+/* Where a ray meets a body. */
+struct meeting {
+    struct line line;
+    struct entry entry;
+    double ahead;    /* the middle, along the line, from the start */
+    double distance; /* in the world's unit */
+    bool is_within;  /* the ray starts in the body */
+    bool is_start;   /* and stops there */
 };
 
-INLINE void cut_stretch(double low, double high, double origin, double inverse, struct stretch *stretch) {
-    const double a = (low - origin) * inverse, b = (high - origin) * inverse; /* NaN on a side that the line lies in */
-    const double from = inverse < 0 ? b : a, to = inverse < 0 ? a : b;
-    stretch->from = from > stretch->from ? from : stretch->from;
-    stretch->to = to < stretch->to ? to : stretch->to;
-}
-
-INLINE struct stretch find_box_stretch(const struct ray *ray, const narc_box *box) {
-    struct stretch stretch = {-INFINITY, INFINITY};
-    cut_stretch((double)box->min_x, (double)box->max_x, ray->origin.x, ray->inverse.x, &stretch);
-    cut_stretch((double)box->min_y, (double)box->max_y, ray->origin.y, ray->inverse.y, &stretch);
-    return stretch;
-}
-
-/* The ray starts in the body. */
-INLINE void stop_inside(place way, narc_ray_hit *out) {
-    out->fraction = 0;
-    out->feature = 0;
-    out->normal_x = out->normal_y = out->radius = 0;
-    out->point_x = (float)-way.x;
-    out->point_y = (float)-way.y;
-}
-
-/* Fills a row, but for the ray and the body, if the ray meets the body at no more than `limit` of its motion. What a body
- * is made of counts within its box alone: it should not reach beyond, but for rounding, and so boxes that the line
- * misses, or meets later, can never hold an answer. A ray that starts in the ground does not meet it. */
-INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, narc_inside inside, const narc_box *box,
-                         float limit, narc_ray_hit *out) {
-    struct entry entry;
+/* False if it does not. A ray that starts in the ground does not meet it. `passes`: where it leaves counts, wherever it
+ * starts. */
+INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
+                         struct meeting *out) {
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
     const place v = turn_to_shape(frame, ray->direction), turned = turn_to_shape(frame, way);
@@ -195,43 +252,56 @@ INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, 
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    if (!find_first_entry(frame, foot, v, &entry))
+    out->line = (struct line){foot, v, beside, find_touch(header)};
+    out->ahead = ahead;
+    out->is_within = out->is_start = false;
+    if (!find_first_entry(frame, &out->line, &out->entry))
         return false;
-    const struct stretch in_box = find_box_stretch(ray, box);
-    double distance = find_most((ahead + entry.along) * frame->scale, in_box.from);
-    if (!(in_box.from <= in_box.to && distance <= in_box.to))
+    out->distance = (ahead + out->entry.along) * frame->scale;
+    if (out->distance > 0 && !passes)
+        return true;
+    if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
         return false;
-    if (distance <= 0) {
-        if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
-            return false;
-        struct entry exit;
-        const double from = distance;
-        const bool leaves = find_entry(frame, foot, (place){-v.x, -v.y}, &exit);
-        distance = find_least(leaves ? (ahead - exit.along) * frame->scale : from, in_box.to);
-        if (!(distance >= 0))
-            return false;
-        if (inside == NARC_INSIDE_STOPS) {
-            stop_inside(way, out);
-            return true;
-        }
-        if (leaves)
-            entry = exit;
+    struct entry exit;
+    const struct line back = {foot, {-v.x, -v.y}, -beside, out->line.touch};
+    const bool leaves = find_entry(frame, &back, &exit);
+    out->distance = leaves ? (ahead - exit.along) * frame->scale : out->distance;
+    if (leaves)
+        out->entry = exit;
+    out->is_within = true;
+    out->is_start = inside == NARC_INSIDE_STOPS;
+    return out->distance >= 0;
+}
+
+/* Fills a row, but for the ray and the body. False if the meeting is beyond `limit` of the ray's motion. */
+INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
+                        narc_ray_hit *out) {
+    const struct entry *const entry = &met->entry;
+    const place foot = met->line.foot, v = met->line.direction;
+    if (met->is_start) {
+        out->fraction = 0;
+        out->feature = 0;
+        out->normal_x = out->normal_y = out->radius = 0;
+        out->point_x = (float)-(frame->position.x - ray->origin.x);
+        out->point_y = (float)-(frame->position.y - ray->origin.y);
+        return true;
     }
-    const double fraction = distance * ray->inverse_length, along = distance * frame->inverse_scale - ahead;
-    if (!(fraction <= (double)FLT_MAX) || !(fabs(along) <= 2 * radius)) /* or its box is another's */
+    const double fraction = met->distance * ray->inverse_length;
+    const double along = met->distance * frame->inverse_scale - met->ahead;
+    if (!(fraction <= (double)FLT_MAX))
         return false;
     out->fraction = (float)fraction;
     if (out->fraction > limit)
         return false;
-    const bool is_edge = entry.on_edge && is_edge_before(frame, entry.arc);
+    const bool is_edge = entry->on_edge && is_edge_before(frame, entry->arc);
     const place point = turn_to_world(frame, (place){foot.x + along * v.x, foot.y + along * v.y});
-    const place normal = turn_to_world(frame, entry.normal);
-    out->feature = (uint16_t)find_feature_number(header, entry.arc, is_edge);
+    const place normal = turn_to_world(frame, entry->normal);
+    out->feature = (uint16_t)find_feature_number(frame->header, entry->arc, is_edge);
     out->normal_x = (float)normal.x;
     out->normal_y = (float)normal.y;
     out->point_x = (float)(point.x * frame->scale);
     out->point_y = (float)(point.y * frame->scale);
-    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry.arc].arc.radius * frame->scale);
+    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry->arc].arc.radius * frame->scale);
     return true;
 }
 

@@ -4,7 +4,7 @@
  *
  * The lanes are a node's eight slots. A slot's box is met from `near` to `far` along the ray, which are computed in
  * single precision with room, so that nothing is lost that ray_entry.inl would find; then it makes no difference which
- * boxes are met besides, or in which order. Rays that start outside of all boxes are moved to where they meet them
+ * boxes are met besides, in which order, and how large they are. Rays that start outside of all boxes are moved to where they meet them
  * first: so the room is in proportion to the scene. A near, a far err by three roundings in proportion, and by the
  * rounding of the start, up to 2^-24 of it.
  */
@@ -17,7 +17,9 @@
 #include "column.h"
 #include "index.h"
 #include "kernels.h"
+#include "scene/part_walk.inl"
 #include "scene/ray_entry.inl"
+#include "scene/things.inl"
 #include "simd/simd.h"
 
 /* Relative to all that near and far are computed from, eight times their error. */
@@ -55,8 +57,7 @@ struct walk {
     float room;  /* of a distance */
     float limit; /* no body whose near is above is wanted */
     float limit_fraction;
-    uint64_t mask;
-    uint32_t ignored;
+    struct chosen chosen;
     size_t found;
     narc_ray_hit *rows;
 };
@@ -133,23 +134,38 @@ static bool read_ray(const narc_rays *rays, size_t k, struct ray *out, float *ou
            out->length <= DBL_MAX && fraction >= 0;
 }
 
-/* Sets a ray out from where it meets the scene. False if it never does. */
-static bool begin_walk(const narc_box *scene, struct walk *w) {
-    const struct stretch stretch = find_box_stretch(&w->ray, scene);
-    if (!(stretch.to >= 0)) /* it is behind, or empty */
-        return false;
-    w->base = find_least(find_most(stretch.from, 0), DBL_MAX);
-    const place start = {w->ray.origin.x + w->base * w->ray.direction.x,
-                         w->ray.origin.y + w->base * w->ray.direction.y};
+/* A ray meets a body that it passes by TOUCH, and what rounding adds, perhaps beside its box. For each unit of the
+ * extent's ratio to the bounding radius, which is less than 1.42 times the scene's largest coordinate. */
+#define TOUCH_ROOM 0x1p-19
+
+/* Cuts from .. to down to where a line lies between two sides. NaN on a side that it lies in. */
+INLINE void cut_stretch(double low, double high, double origin, double inverse, double *from, double *to) {
+    const double a = (low - origin) * inverse, b = (high - origin) * inverse;
+    const double first = inverse < 0 ? b : a, last = inverse < 0 ? a : b;
+    *from = first > *from ? first : *from;
+    *to = last < *to ? last : *to;
+}
+
+/* Sets a ray out from where it meets the scene, with room. False if it never does. */
+static bool begin_walk(const narc_box *scene, const narc_shapes *shapes, struct walk *w) {
+    const place origin = w->ray.origin, inverse = w->ray.inverse;
     const double size = find_most(find_most(-(double)scene->min_x, (double)scene->max_x),
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
-    const double far = fabs(w->ray.origin.x) + fabs(w->ray.origin.y);
-    const double room = (fabs(start.x) + fabs(start.y) + size) * (double)ROOM + far * 0x1p-48;
+    const double touch = size * ((double)ROOM + (double)shapes->largest_ratio * TOUCH_ROOM) +
+                         (fabs(origin.x) + fabs(origin.y)) * 0x1p-48;
+    double from = 0, to = INFINITY;
+    cut_stretch((double)scene->min_x - touch, (double)scene->max_x + touch, origin.x, inverse.x, &from, &to);
+    cut_stretch((double)scene->min_y - touch, (double)scene->max_y + touch, origin.y, inverse.y, &from, &to);
+    if (!(to >= 0)) /* it is behind, or empty */
+        return false;
+    w->base = find_least(from, DBL_MAX);
+    const place start = {origin.x + w->base * w->ray.direction.x, origin.y + w->base * w->ray.direction.y};
+    const double room = (fabs(start.x) + fabs(start.y)) * (double)ROOM + touch;
     w->room = clip_to_float(room);
     w->x = set_axis(offsetof(narc_index_node, min_x) / sizeof(float), offsetof(narc_index_node, max_x) / sizeof(float),
-                    start.x, room, w->ray.inverse.x);
+                    start.x, room, inverse.x);
     w->y = set_axis(offsetof(narc_index_node, min_y) / sizeof(float), offsetof(narc_index_node, max_y) / sizeof(float),
-                    start.y, room, w->ray.inverse.y);
+                    start.y, room, inverse.y);
     return true;
 }
 
@@ -184,11 +200,25 @@ INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
     return a->fraction < b->fraction || (a->fraction == b->fraction && a->body < b->body);
 }
 
-/* Puts a hit among a ray's rows, if it is one of the first. */
-INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
-    size_t k = w->found;
-    if (k == most && !is_before(hit, &w->rows[most - 1]))
+/* Takes a thing's row out, if it has one. False if that is before the hit. */
+INLINE bool replace_row(struct walk *w, uint32_t owner, const narc_ray_hit *hit) {
+    for (size_t k = 0; k < w->found; k++)
+        if (find_owner(&w->chosen, w->rows[k].body) == owner) {
+            if (!is_before(hit, &w->rows[k]))
+                return false;
+            for (w->found--; k < w->found; k++)
+                w->rows[k] = w->rows[k + 1];
+        }
+    return true;
+}
+
+/* Puts a hit among a ray's rows, if it is one of the first, and of its thing the first. */
+INLINE void keep_hit(struct walk *w, size_t most, uint32_t owner, const narc_ray_hit *hit) {
+    if (w->found == most && !is_before(hit, &w->rows[most - 1]))
         return;
+    if (owner != UINT32_MAX && !replace_row(w, owner, hit))
+        return;
+    size_t k = w->found;
     for (k = k == most ? most - 1 : k; k > 0 && is_before(hit, &w->rows[k - 1]); k--)
         w->rows[k] = w->rows[k - 1];
     w->rows[k] = *hit;
@@ -197,15 +227,69 @@ INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
         set_limit(w, w->rows[most - 1].fraction);
 }
 
+/* ------------------------------------------------------------------------------------------------ things */
+
+/* Does the ray start within a part of the thing? */
+NOINLINE bool starts_in(const narc_ray_batch *batch, const struct walk *w, uint32_t owner) {
+    struct part_walk parts = begin_part_walk(batch->index, &w->chosen, owner, w->ray.origin, 4 * (double)w->room);
+    struct body_frame frame;
+    struct meeting met;
+    uint32_t body;
+    while (find_next_part(&parts, batch->shapes, batch->bodies, &body, &frame))
+        if (find_meeting(&frame, &w->ray, NARC_INSIDE_STOPS, false, &met) && met.is_within)
+            return true;
+    return false;
+}
+
+/* Where the ray leaves a thing, from where it leaves a part that it starts in (`out`, at this distance): from part to part, as
+ * long as one that holds the place, or lies within a seam of it, goes on further. False if that is too far. */
+NOINLINE bool leave_thing(const narc_ray_batch *batch, const struct walk *w, uint32_t owner, double distance,
+                          narc_ray_hit *out) {
+    const struct ray *const ray = &w->ray;
+    for (double at = -1; at < distance;) {
+        at = distance;
+        const place from = {ray->origin.x + at * ray->direction.x, ray->origin.y + at * ray->direction.y};
+        struct part_walk parts = begin_part_walk(batch->index, &w->chosen, owner, from, 4 * (double)w->room);
+        struct body_frame frame;
+        struct meeting met;
+        uint32_t body;
+        while (find_next_part(&parts, batch->shapes, batch->bodies, &body, &frame))
+            if (find_meeting(&frame, ray, NARC_INSIDE_LEAVES, true, &met) &&
+                (met.distance > distance || (met.distance == distance && body < out->body)) &&
+                find_depth_in(&frame, find_place_in(&frame, from)) * frame.scale <= find_seam(&frame) &&
+                put_meeting(&frame, ray, &met, INFINITY, out)) {
+                distance = met.distance;
+                out->body = body;
+            }
+    }
+    return out->fraction <= w->limit_fraction;
+}
+
+/* A row for a part. Of a thing that the ray starts in, that of its end, or none. */
+INLINE bool cast_at_part(const narc_ray_batch *batch, const struct walk *w, const struct body_frame *frame,
+                         uint32_t owner, narc_ray_hit *out) {
+    const narc_inside inside = batch->options->inside;
+    const bool is_part = owner != UINT32_MAX;
+    struct meeting met;
+    if (!find_meeting(frame, &w->ray, is_part && inside == NARC_INSIDE_IGNORES ? NARC_INSIDE_LEAVES : inside, false,
+                      &met))
+        return false;
+    if (is_part && met.is_within && inside == NARC_INSIDE_IGNORES)
+        return false;
+    if (is_part && met.is_within && inside == NARC_INSIDE_LEAVES)
+        return put_meeting(frame, &w->ray, &met, INFINITY, out) && leave_thing(batch, w, owner, met.distance, out);
+    return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
+           (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner));
+}
+
 /* Casts a ray at the body in a leaf's slot. Is it done? */
 INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
                          unsigned slot) {
-    const narc_index_node *const node = &batch->index->nodes[leaf];
-    const narc_box box = {node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
     narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
-    if (hit.body == w->ignored || !cast_at_body(frame, &w->ray, batch->options->inside, &box, w->limit_fraction, &hit))
+    const uint32_t owner = find_owner(&w->chosen, hit.body);
+    if (!is_chosen(&w->chosen, hit.body) || !cast_at_part(batch, w, frame, owner, &hit))
         return false;
-    keep_hit(w, batch->most, &hit);
+    keep_hit(w, batch->most, owner, &hit);
     return batch->options->any;
 }
 
@@ -224,17 +308,6 @@ INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf,
             return true;
     }
     return false;
-}
-
-/* Those of a node's slots that a mask meets. */
-INLINE uint32_t mask_slots(const narc_index *index, size_t node, uint32_t slots, uint64_t mask) {
-    if (!index->masks)
-        return mask ? slots : 0;
-    for (uint32_t bits = slots; bits; bits &= bits - 1) {
-        const unsigned slot = (unsigned)FIND_LOWEST(bits);
-        slots &= ~((uint32_t) !(index->masks[NARC_NODE_SLOTS * node + slot] & mask) << slot);
-    }
-    return slots;
 }
 
 INLINE void begin_visits(const narc_index *index, struct visits *visits) {
@@ -262,7 +335,7 @@ static void walk_alone(const narc_ray_batch *batch, struct walk *w) {
             continue;
         const size_t node = (size_t)index->first_node[visit.level] + visit.node;
         float near[NARC_NODE_SLOTS + V_WIDTH];
-        uint32_t slots = mask_slots(index, node, find_slots(w, &index->nodes[node], near), w->mask);
+        uint32_t slots = mask_slots(index, node, find_slots(w, &index->nodes[node], near), w->chosen.mask);
         const unsigned flips = narc_find_flips(index->order[node], w->x.backwards, w->y.backwards);
         slots = flip_slots(slots, flips);
         if (visit.level > 0)
@@ -290,7 +363,7 @@ static void begin_bundle(struct bundle *b) {
         b->inverse_x[k] = w->x.inverse;
         b->inverse_y[k] = w->y.inverse;
         b->limit = w->limit > b->limit ? w->limit : b->limit;
-        b->mask |= w->mask;
+        b->mask |= w->chosen.mask;
     }
     b->left_x = (float)b->walks[left].ray.direction.x;
     b->left_y = (float)b->walks[left].ray.direction.y;
@@ -362,7 +435,7 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
             continue;
         for (; rays; rays &= rays - 1) {
             struct walk *const w = &b->walks[FIND_LOWEST(rays)];
-            if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->mask)
+            if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
                 cast_at_slot(batch, w, &frame, leaf, slot);
             b->limits[FIND_LOWEST(rays)] = w->limit;
         }
@@ -428,7 +501,6 @@ static bool is_open(const narc_box *scene, const struct walk *w) {
 
 /* Empties a ray's rows and gathers it. False if it has no answer. */
 static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k, struct bundle *b) {
-    const narc_index_query *const search = &batch->options->search;
     narc_ray_hit *const rows = batch->out + k * batch->most;
     struct ray ray;
     float fraction;
@@ -442,14 +514,13 @@ static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k,
     struct walk *const w = &b->walks[b->count];
     w->ray = ray;
     if (!joins) {
-        if (!begin_walk(scene, w))
+        if (!begin_walk(scene, batch->shapes, w))
             return true;
         b->open = is_open(scene, w) && !batch->options->any; /* which hit is found of any depends on the way */
     }
     w->rows = rows;
     w->found = 0;
-    w->mask = search->mask.base ? narc_word_at(search->mask, k) : UINT64_MAX;
-    w->ignored = search->ignored.base ? narc_index_at(search->ignored, k) : UINT32_MAX;
+    w->chosen = read_chosen(&batch->options->search, k);
     set_limit(w, fraction);
     if (++b->count == MOST_TOGETHER)
         walk(batch, b);

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "kernels.h"
+#include "scene/things.inl"
 #include "simd/simd.h"
 
 /* Nodes that are taken from a list in one go. */
@@ -20,8 +21,7 @@ _Static_assert((int)NARC_REGION_ROOM >= NODES * NARC_NODE_SLOTS + 16, "what so m
 /* What a query asks, in vectors and out of them. */
 struct region {
     vf min_x, min_y, max_x, max_y;
-    uint64_t mask;
-    vi ignored;
+    struct chosen chosen;
 };
 
 INLINE vm meet_slots(const struct region *region, const narc_index_node *node, int slot) {
@@ -48,6 +48,21 @@ INLINE vm match_masks(vm hit, const uint64_t *masks, uint64_t mask) {
     return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));
 }
 
+/* Of some bodies those that are not ignored. */
+INLINE vm leave_out(const struct chosen *chosen, vm hit, vi body) {
+    const vi ignored = vi_set((int32_t)chosen->ignored);
+    hit = vm_and(hit, vm_or(vi_lt(body, ignored), vi_lt(ignored, body)));
+    if (chosen->ignored_owner == UINT32_MAX)
+        return hit;
+    int32_t bodies[V_WIDTH], fine[V_WIDTH] = {0};
+    vi_store(bodies, body);
+    for (uint32_t bits = vm_bits(hit); bits > 0; bits &= bits - 1) {
+        const int lane = FIND_LOWEST(bits);
+        fine[lane] = is_chosen(chosen, (uint32_t)bodies[lane]);
+    }
+    return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));
+}
+
 /* Appends the children of nodes list[0 .. count - 1] of a level, or the bodies of leaves, whose boxes meet the
  * region. */
 INLINE uint32_t *visit(const narc_index *index, unsigned level, const struct region *region, bool masked, bool ignores,
@@ -59,12 +74,12 @@ INLINE uint32_t *visit(const narc_index *index, unsigned level, const struct reg
             vm hit = meet_slots(region, &nodes[list[k]], slot);
             if (masked)
                 hit = match_masks(hit, index->masks + (size_t)index->first_node[level] * NARC_NODE_SLOTS + below,
-                                  region->mask);
+                                  region->chosen.mask);
             vi item = vi_add(vi_set((int32_t)(uint32_t)below), vi_lanes());
             if (level == 0) {
                 item = vi_load((const int32_t *)(const void *)(index->body + below));
                 if (ignores)
-                    hit = vm_and(hit, vm_or(vi_lt(item, region->ignored), vi_lt(region->ignored, item)));
+                    hit = leave_out(&region->chosen, hit, item);
             }
             to = append(to, hit, item);
         }
@@ -104,17 +119,15 @@ INLINE void find_bodies(const narc_index *index, const struct region *region, bo
 
 void NARC_NAMED(regions)(const narc_region_batch *batch, size_t first, size_t count, narc_found_bodies *out) {
     const narc_index *const index = batch->index;
-    const bool masked = index->masks != NULL, ignores = batch->ignored.base != NULL;
+    const narc_owners *const owners = batch->query->owners;
+    const bool masked = index->masks != NULL;
+    const bool ignores = batch->query->ignored.base || (owners && owners->ignored.base);
     for (size_t k = first; k < first + count; k++) {
         const narc_box *const box = &batch->boxes[k];
-        const uint64_t mask = batch->mask.base ? narc_word_at(batch->mask, k) : ~(uint64_t)0;
-        if (narc_is_full_box(box) && mask != 0) {
-            const struct region region = {v_set(box->min_x),
-                                          v_set(box->min_y),
-                                          v_set(box->max_x),
-                                          v_set(box->max_y),
-                                          mask,
-                                          vi_set(ignores ? (int32_t)narc_index_at(batch->ignored, k) : -1)};
+        const struct chosen chosen = read_chosen(batch->query, k);
+        if (narc_is_full_box(box) && chosen.mask != 0) {
+            const struct region region = {v_set(box->min_x), v_set(box->min_y), v_set(box->max_x), v_set(box->max_y),
+                                          chosen};
             if (masked)
                 find_bodies(index, &region, true, true, out);
             else if (ignores)

@@ -522,6 +522,9 @@ void test_rays_and_points() {
     const std::vector<uint32_t> ignored = {0, 0};
     const std::vector<Vector> from = {{-5, 0.1}, {3.1, 0.1}};
     const std::vector<float> along = {20, 20}, none = {0, 0};
+    const narc_owners owners = {narc::column(ignored), {}, {}};
+    const narc_index_query of_owners = narc::index_query().owners(owners);
+    CHECK(of_owners.owners == &owners && owners.owner.base == ignored.data());
     const auto search = narc::index_query().ignored(narc::column(ignored));
 
     size_t skipped = 9;
@@ -588,6 +591,11 @@ void test_casts() {
     narc_impact impact[2];
     CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, options, impact));
     CHECK(same(impact[0], hits[0]) && same(impact[1], hits[1]));
+    const std::vector<float> targets = {0.5f, 0};
+    const auto each = narc::cast_options().target(9).targets(narc::column(targets));
+    CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, each, impact));
+    CHECK(impact[0].fraction < hits[0].fraction && impact[0].separation > 0.49f && impact[0].separation < 0.51f);
+    CHECK(impact[1].fraction == hits[1].fraction);
 }
 
 void test_poses_and_sets() {

@@ -335,6 +335,11 @@ TEST(test_selections) {
     expect_ok(run(&f.call, OVERLAPS, out, &error), &error);
     expect_ok(run(&f.call, CONTACTS, out, &error), &error);
     assert_int_equal(out->count, 4);
+    static const size_t too_many[] = {PAIRS + 1, UINT32_MAX, SIZE_MAX};
+    for (size_t k = 0; k < sizeof too_many / sizeof *too_many; k++) {
+        f.call.query.selection_count = too_many[k];
+        check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("query.selection_count", "200 pairs"));
+    }
     f.call.query.selection = (narc_index_column){0};
     f.call.query.selection_count = 0;
     f.call.query.first = 64;

@@ -66,7 +66,8 @@ static void check_pointers(void) {
     LAYOUT(narc_position_column, 24, AT(base, 0) && AT(stride, 8) && AT(precision, 16));
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
-           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(reserved, 24));
+           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
+               AT(reserved, 40));
     LAYOUT(narc_chain_options, 56,
            AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(thickness, 24) &&
                AT(both_sides, 28) && AT(reserved, 32));
@@ -96,7 +97,9 @@ static void check_pointers(void) {
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
                AT(out_skipped, 64) && AT(reserved, 72));
     LAYOUT(narc_index_options, 64, AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(reserved, 32));
-    LAYOUT(narc_index_query, 72, AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(reserved, 40));
+    LAYOUT(narc_owners, 64, AT(owner, 0) && AT(ignored, 16) && AT(reserved, 32));
+    LAYOUT(narc_index_query, 72,
+           AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(owners, 40) && AT(reserved, 48));
     LAYOUT(narc_rays, 120,
            AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(motion_x, 56) && AT(motion_y, 72) && AT(fraction, 88) &&
                AT(reserved, 104));
@@ -104,7 +107,8 @@ static void check_pointers(void) {
            AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(reserved, 96));
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
-           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(reserved, 24));
+           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
+               AT(reserved, 40));
     LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
     LAYOUT(narc_nearest_options, 120,
            AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));

@@ -45,7 +45,7 @@ static void add_row(struct rows *rows, uint32_t a, uint32_t b, double angle, siz
 
 static const double down = -1.57079632679489661923; /* the ground is below: the normal from the body to it */
 
-static size_t merge(struct rows *rows, const uint32_t *runs) {
+static size_t merge_as_told(struct rows *rows, const uint32_t *runs) {
     const narc_pairs pairs = {.count = rows->count, .a = NARC_ARRAY(rows->a), .b = NARC_ARRAY(rows->b)};
     narc_manifold *own = guard_copy(rows->manifolds, rows->count * sizeof *own);
     const narc_index_column run = {runs, runs ? sizeof *runs : 0};
@@ -53,6 +53,18 @@ static size_t merge(struct rows *rows, const uint32_t *runs) {
     memcpy(rows->manifolds, own, left * sizeof *own);
     guard_release(own);
     return left;
+}
+
+/* Entries without a run are concave arcs, whose rows say so. */
+static void make_concave(struct rows *rows, const uint32_t *runs) {
+    for (size_t k = 0; k < rows->count; k++)
+        if (!runs || runs[rows->b[k]] == NARC_NO_RUN)
+            rows->manifolds[k].radius_b = copysignf(rows->manifolds[k].radius_b, -1);
+}
+
+static size_t merge(struct rows *rows, const uint32_t *runs) {
+    make_concave(rows, runs);
+    return merge_as_told(rows, runs);
 }
 
 /* With the ground at (x, y) and the normal down, or nearly. */
@@ -229,6 +241,7 @@ TEST(keeps_what_is_not_the_same) {
     add_row(&rows, 8, 2, down, 0, left);
     add_row(&rows, 7, 1, down, 1, left);
     add_row(&rows, 9, 1, down, 1, left);
+    make_concave(&rows, runs);
     struct rows all = rows;
     assert_int_equal(merge(&rows, runs), 5);
     for (size_t k = 0; k < 5; k++)
@@ -236,6 +249,26 @@ TEST(keeps_what_is_not_the_same) {
     assert_int_equal(merge(&all, NULL), 5); /* all concave */
     rows.count = 0;
     assert_int_equal(merge(&rows, runs), 0);
+}
+
+/* Bodies that are no entries have no run, as concave arcs have none, and are known by their radius: what they tell stays,
+ * in one place with each other or with the ground. */
+TEST(keeps_rows_of_other_bodies) {
+    const uint32_t runs[MOST] = {4, NARC_NO_RUN, NARC_NO_RUN, NARC_NO_RUN};
+    const float points[][3] = {{-1, -1, -0.01f}, {1, -1, -0.01f}};
+    struct rows rows = {.count = 0};
+    add_row(&rows, 7, 0, down, 2, points);
+    add_row(&rows, 7, 1, down, 2, points);
+    add_row(&rows, 7, 2, down, 1, points);
+    add_row(&rows, 7, 3, down, 2, points);
+    rows.manifolds[3].radius_b = -3; /* a concave arc, which is one with the run */
+    const struct rows all = rows;
+    assert_int_equal(merge_as_told(&rows, runs), 3);
+    assert_memory_equal(&rows.manifolds[0], &all.manifolds[1], 2 * sizeof(narc_manifold));
+    assert_int_equal(rows.manifolds[2].pair, 3);
+    rows = all;
+    rows.manifolds[0].radius_b = rows.manifolds[3].radius_b = INFINITY;
+    assert_int_equal(merge_as_told(&rows, NULL), 4);
 }
 
 /* Contacts have one point: of one run the greatest separation, of flush rows the smaller one. Pairs without columns name
@@ -253,6 +286,7 @@ TEST(merges_contacts) {
         rows[k] = (narc_contact){.pair = k,
                                  .count = 1,
                                  .separation = separations[k],
+                                 .radius_b = runs[k] == NARC_NO_RUN ? -0.0f : 0, /* a valley */
                                  .normal_x = x,
                                  .normal_y = y,
                                  .point_x = p.x,
@@ -294,6 +328,7 @@ TEST(merges_long_lists) {
             rows[k] = (narc_contact){.pair = k,
                                      .count = random_below(&random, 9) != 0,
                                      .separation = ground[2],
+                                     .radius_b = runs[b[k]] == NARC_NO_RUN ? -1 : 1,
                                      .normal_x = x,
                                      .normal_y = y,
                                      .point_x = p.x,

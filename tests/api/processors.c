@@ -94,6 +94,21 @@ TEST(test_detection) {
     assert_int_equal(detect(), 0);
 }
 
+/* Every need of an instruction set of these processors is found on one that has all that is made up here. */
+TEST(test_all_needs) {
+    static const struct {
+        const char *processors;
+        unsigned needs;
+    } isas[] = {
+#define NARC_ISA(name, needs, processors, flags) {processors, needs},
+#include "isa.def"
+    };
+    set_processor(SSE41 | POPCNT | OSXSAVE, AVX2 | AVX512, ALL);
+    for (size_t k = 0; k < sizeof isas / sizeof *isas; k++)
+        if (strstr(isas[k].processors, "86"))
+            assert_int_equal(isas[k].needs & ~detect(), 0);
+}
+
 TEST(test_names) {
     static const char *const names[] = {"sse4.1", "popcnt", "avx2", "avx512f", "avx512dq", "avx512bw", "avx512vl"};
     set_processor(SSE41 | POPCNT | OSXSAVE, AVX2 | AVX512, ALL);

@@ -112,6 +112,133 @@ TEST(test_ball_bounces) {
     end_run(&r);
 }
 
+/* ------------------------------------------------------------------------------------------------ segments */
+
+/* A world with a segment from (-2000, 0) to (2000, 0), or with a slab so thick. */
+static world create_line(double thickness, vec gravity) {
+    world w;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    world_settings settings = world_defaults;
+    world_body line = {.cosine = 1, .kind = NARC_STATIC, .friction = 0.5f};
+    settings.gravity = gravity;
+    assert_int_equal(world_create(&w, settings, 1024), NARC_OK);
+    if (thickness > 0)
+        assert_int_equal(narc_build_box(4000, thickness, 0, arcs, &count, NULL), NARC_OK);
+    else
+        assert_int_equal(narc_build_segment((narc_point){-2000, 0}, (narc_point){2000, 0}, 0, arcs, &count, NULL),
+                         NARC_OK);
+    assert_int_equal(world_add_shape(&w, arcs, count, &line.shape), NARC_OK);
+    assert_int_equal(world_add_body(&w, line), NARC_OK);
+    return w;
+}
+
+/* Shape k of six: circles, a box, thin ones, a rod. */
+static world_body *add_body_at(world *w, size_t k, float x, float y) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    world_body body = {.position = {x, y}, .cosine = 1, .friction = 0.5f};
+    const narc_status status = k == 0   ? narc_build_circle(0.1, arcs, &count, NULL)
+                               : k == 1 ? narc_build_circle(1, arcs, &count, NULL)
+                               : k == 2 ? narc_build_box(0.3, 0.3, 0, arcs, &count, NULL)
+                               : k == 3 ? narc_build_box(0.6, 0.04, 0, arcs, &count, NULL)
+                               : k == 4 ? narc_build_capsule(0.6, 0.03, arcs, &count, NULL)
+                                        : narc_build_box(2, 0.01, 0, arcs, &count, NULL);
+    assert_int_equal(status, NARC_OK);
+    assert_int_equal(world_add_shape(w, arcs, count, &body.shape), NARC_OK);
+    assert_int_equal(world_add_body(w, body), NARC_OK);
+    return &w->bodies[w->body_count - 1];
+}
+
+enum { FLIERS = 300 };
+
+/* Bodies fly at a wall from both sides, turned and spinning: none comes through. */
+static void fly_at_line(double thickness, float speed, uint64_t seed) {
+    world w = create_line(thickness, (vec){0, 0});
+    struct test_random random = {seed};
+    for (size_t k = 0; k < FLIERS; k++) {
+        const float side = k % 2 ? 1 : -1;
+        const double angle = random_between(&random, -3, 3);
+        world_body *body = add_body_at(&w, k % 12 / 2, 4 * (float)k - 600, side * (float)random_between(&random, 2, 9));
+        body->cosine = (float)cos(angle);
+        body->sine = (float)sin(angle);
+        body->velocity = (vec){0, -side * speed};
+        body->spin = (float)random_between(&random, -15, 15);
+        body->restitution = 0.2f;
+    }
+    for (int step = 0; step < 60; step++) {
+        assert_int_equal(world_step(&w), NARC_OK);
+        for (size_t k = 1; k <= FLIERS; k++)
+            assert_true((w.bodies[k].position.y > 0) == (k % 2 == 0));
+    }
+    world_destroy(&w);
+}
+
+TEST(test_segment_is_a_wall) {
+    for (uint64_t seed = 1; seed <= test_trials(2); seed++)
+        for (float speed = 20; speed < 400; speed *= 2.6f)
+            fly_at_line(0, speed, seed);
+}
+
+TEST(test_thin_walls_hold) {
+    for (double thickness = 1e-5; thickness < 0.02; thickness *= 10)
+        fly_at_line(thickness, 60, test_trials(1));
+}
+
+/* What falls on a segment, fast and turned, comes to rest above it. */
+TEST(test_segment_is_a_floor) {
+    world w = create_line(0, (vec){0, -9.81f});
+    struct test_random random = {5};
+    for (size_t k = 0; k < 60; k++) {
+        const double angle = random_between(&random, -3, 3);
+        world_body *body = add_body_at(&w, k % 6, 5 * (float)k, 3 + (float)random_unit(&random));
+        body->cosine = (float)cos(angle);
+        body->sine = (float)sin(angle);
+        body->velocity = (vec){0, -(float)random_between(&random, 0, 100)};
+    }
+    for (int step = 0; step < 60 * 20; step++) {
+        assert_int_equal(world_step(&w), NARC_OK);
+        for (size_t k = 1; k < w.body_count; k++)
+            assert_true(w.bodies[k].position.y > 0);
+    }
+    for (size_t k = 1; k < w.body_count; k++)
+        assert_true(w.bodies[k].kind & NARC_ASLEEP);
+    world_destroy(&w);
+}
+
+/* A box slides on it by v^2 / (2 * friction * g), fast or slow. */
+TEST(test_boxes_slide_on_a_segment) {
+    for (float speed = 1; speed < 40; speed *= 2) {
+        world w = create_line(0, (vec){0, -9.81f});
+        const world_body *const box = add_body_at(&w, 2, 0, 0.15f);
+        w.bodies[1].velocity.x = speed;
+        for (int step = 0; step < 60 * 10; step++)
+            assert_int_equal(world_step(&w), NARC_OK);
+        const double way = (double)speed * (double)speed / (2 * 0.5 * 9.81);
+        print_message("%g m/s: %.3f m, expected %.3f\n", (double)speed, (double)box->position.x, way);
+        assert_true(fabs((double)box->position.x - way) < 0.05 + 0.02 * way);
+        world_destroy(&w);
+    }
+}
+
+/* Wheels roll on without slowing down, and stay on it. */
+TEST(test_wheels_roll_on_a_segment) {
+    for (float speed = 5; speed < 100; speed *= 3) {
+        world w = create_line(0, (vec){0, -9.81f});
+        world_body *const wheel = add_body_at(&w, 1, -1000, 1);
+        wheel->velocity.x = speed;
+        wheel->spin = -speed;
+        w.settings.rolling_arm = 0;
+        for (int step = 0; step < 60 * 10; step++) {
+            assert_int_equal(world_step(&w), NARC_OK);
+            assert_true(fabsf(wheel->position.y - 1) < 0.01f);
+        }
+        assert_true(fabsf(wheel->velocity.x - speed) < 1e-3f * speed);
+        assert_true(fabsf(wheel->position.x - (10 * speed - 1000)) < 1e-3f * 10 * speed);
+        world_destroy(&w);
+    }
+}
+
 /* Two that fly at each other, at 240 m/s, stay on their sides. */
 TEST(test_head_on) {
     for (uint64_t seed = 1; seed <= test_trials(20); seed++) {

@@ -258,7 +258,7 @@ TEST(test_narrow_bays) {
 TEST(test_laps) {
     struct outline of = make_outline("lapped U");
     add_corners(&of, horseshoe, 8);
-    cover plain = cut(&of, 20, 0.05, 0), lapped = cut(&of, 20, 0.05, 0.1);
+    cover plain = cut(&of, 20, 0.05, 0), lapped = cut(&of, 20, 0.2, 0.1);
     assert_int_equal(lapped.parts.count, plain.parts.count);
     double areas[2] = {0, 0};
     for (size_t k = 0; k < plain.parts.count; k++) {
@@ -267,10 +267,84 @@ TEST(test_laps) {
     }
     /* Two seams of length 1, or one of 4 and ..., each lapped from both sides. */
     assert_true(areas[1] >= areas[0] + 0.35);
+    assert_true(lapped.parts.distance <= 0.2);
     check_cover(&lapped, lapped.parts.distance, 0);
     check_fits(&lapped, NARC_FIT_DISTANCE);
     free_cover(&plain);
     free_cover(&lapped);
+    free_outline(&of);
+}
+
+/* A tolerance holds with laps, also beside sharp corners. */
+TEST(test_laps_within_tolerances) {
+    struct test_random random = test_random_named("laps");
+    for (size_t trial = 0, trials = test_trials(6); trial < trials; trial++) {
+        struct outline of = make_outline("lapped star");
+        narc_point points[14];
+        for (size_t k = 0; k < 14; k++) {
+            const double a = PI * ((double)k + 0.4 * random_unit(&random)) / 7,
+                         r = k % 2 ? 1 : 3 + 4 * random_unit(&random);
+            points[k] = (narc_point){r * cos(a), r * sin(a)};
+        }
+        add_corners(&of, points, 14);
+        const double tolerance = random_between(&random, 0.1, 0.6);
+        cover made = cut(&of, NARC_MAX_PARTS, tolerance, tolerance * random_between(&random, 0.2, 0.8));
+        assert_true(made.parts.distance <= tolerance);
+        check_cover(&made, made.parts.distance, 0);
+        free_cover(&made);
+        free_outline(&of);
+    }
+}
+
+/* Contours that cross, touch or lie on themselves or each other: the area is that of what is odd inside of one, and of
+ * the union of several. */
+TEST(test_crossings) {
+    static const narc_point bow[] = {{0, 0}, {4, 4}, {4, 0}, {0, 4}};
+    static const narc_point spike[] = {{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 20}, {5, 10}, {0, 10}};
+    static const narc_point inward[] = {{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 3}, {5, 10}, {0, 10}};
+    static const narc_point fold[] = {{0, 0}, {10, 0}, {5, 0}, {5, 5}};
+    static const narc_point twice[] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {4, 0}, {4, 4}, {0, 4}};
+    static const narc_point eight[] = {{0, 0}, {2, 2}, {4, 0}, {4, 4}, {2, 2}, {0, 4}};
+    narc_point star[5], other[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, small[] = {{0.5, 0.5}, {1, 0.5}, {1, 1}, {0.5, 1}};
+    for (size_t k = 0; k < 5; k++)
+        star[k] = (narc_point){4 * cos(0.8 * PI * (double)k), 4 * sin(0.8 * PI * (double)k)};
+    const double inner = 4 * cos(0.4 * PI) / cos(0.2 * PI);
+    const struct {
+        const char *name;
+        const narc_point *points;
+        size_t count;
+        double area;
+    } alone[] = {{"bow-tie", bow, 4, 8},
+                 {"spike", spike, 7, 100},
+                 {"inward spike", inward, 7, 100},
+                 {"fold", fold, 4, 12.5},
+                 {"walked twice", twice, 8, 16},
+                 {"eight", eight, 6, 8},
+                 {"star", star, 5, 20 * inner * sin(0.2 * PI) - 2.5 * inner * inner * sin(0.4 * PI)}};
+    for (size_t k = 0; k < sizeof alone / sizeof *alone; k++) {
+        struct outline of = make_outline(alone[k].name);
+        add_corners(&of, alone[k].points, alone[k].count);
+        for (double tolerance = 0; tolerance < 1; tolerance += 0.6) {
+            cover made = cut(&of, 20, tolerance, 0);
+            if (!(fabs(made.parts.area - alone[k].area) <= 1e-9 * alone[k].area))
+                fail_msg("%s: the area is %.12g, not %.12g", alone[k].name, made.parts.area, alone[k].area);
+            double area = 0;
+            for (size_t i = 0; i < made.parts.count; i++)
+                area += fabs(measure_area(&made.polygons[i], 0));
+            assert_true(area >= alone[k].area * (1 - 1e-9));
+            for (size_t i = 0; i < made.outline.point_count; i++)
+                assert_true(is_covered(&made, made.outline.points[i], 1e-9));
+            free_cover(&made);
+        }
+        free_outline(&of);
+    }
+    struct outline of = make_outline("two squares and a hole");
+    add_corners(&of, frame, 4);
+    add_corners(&of, other, 4);
+    add_corners(&of, small, 4);
+    cover made = cut(&of, 20, 0.05, 0);
+    assert_true(fabs(made.parts.area - 27.75) <= 1e-9);
+    free_cover(&made);
     free_outline(&of);
 }
 

@@ -5,7 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "families.h"
 #include "fit_support.h"
+#include "narc_chains.h"
 #include "narc_fit.h"
 
 static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
@@ -55,13 +57,25 @@ static void check_near(const char *name, const narc_point *points, size_t count,
     free(samples);
 }
 
+/* The store takes a chain. */
+static void expect_taken(const narc_arc *arcs, size_t count, bool closed) {
+    narc_shapes *store = empty_store();
+    narc_error error;
+    size_t entries;
+    if (narc_add_chain(store, arcs, count, &(narc_chain_options){.closed = closed}, NULL, 0, &entries, &error) !=
+        NARC_ERROR_CAPACITY)
+        fail_msg("the store refuses a chain: %s", error.message);
+    narc_destroy_shapes(store);
+}
+
 /* The closed chain in the form of shapes: arcs lie on its pieces, edges are its lines, and normals go on where an arc
  * follows. */
 static void check_arcs(const narc_arc_chains *chains) {
-    narc_arc *arcs = malloc((2 * chains->arc_count + 1) * sizeof *arcs);
+    narc_arc *arcs = malloc((3 * chains->arc_count + 1) * sizeof *arcs);
     size_t count, curved = 0, met = 0;
     assert_non_null(arcs);
     assert_int_equal(narc_describe_chain(chains->arcs, chains->arc_count, true, arcs, &count, NULL), NARC_OK);
+    expect_taken(arcs, count, true);
     double turn = 0;
     for (size_t k = 0; k < count; k++) {
         const narc_arc *arc = &arcs[k], *next = &arcs[(k + 1) % count];
@@ -173,6 +187,105 @@ TEST(test_random_rings) {
             points[k] = (narc_point){r * cos(a), r * sin(a)};
         }
         fit_ring("waves", points, COUNT, tolerance, COUNT);
+    }
+}
+
+/* Lines that are nearly one, and arcs that are nearly lines: the chain keeps the tolerance, and the store takes it. */
+TEST(test_flat_chains) {
+    static const double tolerances[] = {0.3, 0.01, 1e-4};
+    for (int bow = 0; bow < 14; bow++) {
+        const double depth = (bow % 2 ? -1 : 1) * 2 * pow(10, -bow / 2); /* from 2 % of the length to less than 1e-7 */
+        narc_point points[103];
+        for (size_t k = 0; k <= 100; k++)
+            points[k] = (narc_point){(double)k, depth * (1 - pow((double)k / 50 - 1, 2))};
+        points[101] = (narc_point){100, 50};
+        points[102] = (narc_point){0, 50};
+        for (size_t t = 0; t < 3; t++)
+            fit_ring("bow", points, 103, tolerances[t], 103);
+    }
+    const narc_point bent[] = {{0, 0}, {50, 0.1}, {100, 0}, {100, 100}, {0, 100}};
+    fit_ring("bent", bent, 5, 0.05, 5);
+}
+
+/* A slot that is narrower than arcs may be off: they come nearer. */
+TEST(test_narrow_slots) {
+    enum { SIDE = 60 };
+    narc_point points[2 * SIDE + 4] = {{0, 0}, {10, 0}};
+    size_t count = 2;
+    for (int side = 0; side < 2; side++)
+        for (size_t k = 0; k < SIDE; k++) { /* from the right to x = 1, and back */
+            const double x = 1 + 9 * (double)(side ? k : SIDE - 1 - k) / (SIDE - 1);
+            points[count++] = (narc_point){x, 5 + 0.4 * sin(x) + (side ? 0.02 : 0)};
+        }
+    points[count++] = (narc_point){10, 20};
+    points[count++] = (narc_point){0, 20};
+    fit_ring("slot", points, count, 0.05, count);
+}
+
+/* Arcs of more than half a turn become two. */
+TEST(test_large_turns) {
+    for (int way = 0; way < 2; way++) {
+        const double turn = way ? -1.5 * PI : 1.5 * PI;
+        const narc_curve_arc pieces[] = {{{1, 0}, {0, way ? 1 : -1}, {0, 0}, 1, turn},
+                                         {{0, way ? 1 : -1}, {3, way ? 1 : -1}, {0, 0}, INFINITY, 0}};
+        narc_arc arcs[7];
+        size_t count;
+        assert_int_equal(narc_describe_chain(pieces, 2, false, arcs, &count, NULL), NARC_OK);
+        assert_int_equal(count, 3); /* two halves, and the end of the line */
+        assert_true(fabs(arcs[0].end - arcs[0].start - turn / 2) <= 1e-12 && arcs[1].start == arcs[0].end);
+        expect_taken(arcs, count, false);
+    }
+}
+
+/* Lines that turn by less and less: by less than a corner must, and together by more. */
+TEST(test_slight_turns) {
+    for (double turn = 2e-7; turn < 1e-4; turn *= 1.3) {
+        narc_curve_arc pieces[40];
+        narc_arc arcs[121];
+        size_t count;
+        narc_point at = {0, 0};
+        double angle = 0.3;
+        for (size_t k = 0; k < 40; k++, angle += k % 9 < 6 ? turn : -turn) {
+            const narc_point end = {at.x + cos(angle), at.y + sin(angle)};
+            pieces[k] = (narc_curve_arc){at, end, at, INFINITY, 0};
+            at = end;
+        }
+        assert_int_equal(narc_describe_chain(pieces, 40, false, arcs, &count, NULL), NARC_OK);
+        expect_taken(arcs, count, false);
+    }
+}
+
+/* Lines that cross or lie on each other, of one contour or of two, are refused, with contour and line. */
+TEST(test_crossings) {
+    static const narc_point bow[] = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}, box[] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}},
+                            other[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, beside[] = {{4, 0}, {8, 0}, {8, 4}, {4, 4}},
+                            spike[] = {{0, 0}, {4, 0}, {4, 9}, {4, 4}, {0, 4}};
+    const struct {
+        const narc_point *first, *second;
+        size_t count;
+        const char *message;
+    } cases[] = {{bow, NULL, 4, "contour 0: line 0 crosses line 2 of contour 0 at (2, 2)"},
+                 {spike, NULL, 5, "contour 0: line 1 meets line 2 of contour 0 at (4, 4)"},
+                 {box, other, 4, "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)"},
+                 {box, beside, 4, NULL}};
+    for (size_t k = 0; k < 4; k++) {
+        narc_path *path = NULL;
+        narc_arc_chains chains;
+        narc_error error;
+        assert_int_equal(narc_create_path(&path), NARC_OK);
+        for (int c = 0; c < (cases[k].second ? 2 : 1); c++)
+            for (size_t i = 0; i < cases[k].count; i++) {
+                const narc_point p = c ? cases[k].second[i] : cases[k].first[i];
+                assert_int_equal(i ? narc_line_to(path, p, NULL) : narc_move_to(path, p, NULL), NARC_OK);
+            }
+        const narc_status status = narc_fit_chains(path, 0.05, false, &chains, &error);
+        if (cases[k].message)
+            expect_error(status, NARC_ERROR_NOT_SIMPLE, &error, cases[k].message);
+        else
+            expect_ok(status, &error);
+        if (!status)
+            narc_release_chains(&chains);
+        narc_destroy_path(path);
     }
 }
 

@@ -201,6 +201,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         change(&from, &w);
         part_ids(&w);
     }
+    for (size_t flights = take_below(&from, 4); flights > 0 && w.count > 0; flights--) { /* some are far away */
+        static const float away[] = {1e20f, 1e24f, 1e30f, 1e38f};
+        const unsigned way = take_below(&from, 8);
+        const float far = way & 4 ? -away[way & 3] : away[way & 3];
+        w.boxes[take_byte(&from) % w.count] =
+            take_below(&from, 2) ? (narc_box){far, 0, far, 1} : (narc_box){0, far, 1, far};
+    }
+    check_pairs(&w);
+    check_index(&w);
     narc_destroy_broad_phase(broad);
     return 0;
 }

@@ -21,6 +21,7 @@ struct motion {
 struct question {
     struct scene scene;
     narc_index *index;
+    narc_box boxes[BODIES];
     struct test_ray rays[RAYS];
     struct motion motions[BODIES];
     narc_ray_options rays_asked;
@@ -60,6 +61,29 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
         NARC_OK);
     assert_int_equal(narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest, 2 * RAYS, NULL),
                      NARC_OK);
+}
+
+/* The nearest of a point are those of all bodies' distances, but of what has no box. */
+static void check_nearest(const struct question *q, size_t point, const narc_distance nearest[2]) {
+    const narc_bodies bodies = scene_bodies(&q->scene);
+    narc_rays one = view_rays(q->rays + point, BODIES);
+    narc_distance all[BODIES], best[2] = {{.point = (uint32_t)point}, {.point = (uint32_t)point}};
+    one.x.stride = one.y.stride = 0;
+    const narc_points points = {.count = BODIES, .x = one.x, .y = one.y};
+    assert_int_equal(
+        narc_find_distances(q->scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, all, NULL), NARC_OK);
+    for (size_t k = 0; k < BODIES; k++) {
+        narc_distance *const row = &all[k];
+        row->point = (uint32_t)point;
+        if (row->count == 0 || !(row->separation < 5) || !(q->boxes[k].min_x <= q->boxes[k].max_x))
+            continue;
+        const size_t place = best[0].count == 0 || row->separation < best[0].separation ? 0 : 1;
+        if (place == 0)
+            best[1] = best[0];
+        if (place == 0 || best[1].count == 0 || row->separation < best[1].separation)
+            best[place] = *row;
+    }
+    assert_memory_equal(nearest, best, sizeof best);
 }
 
 /* Is a ray's hit right for the body that it tells of, and is no other body in the way? */
@@ -112,6 +136,8 @@ static void check_impact(const struct question *q, const narc_impact *impact) {
 
 static void check(const struct question *q, const struct answer *answer) {
     const narc_bodies bodies = scene_bodies(&q->scene);
+    for (size_t k = 0; k < RAYS; k++)
+        check_nearest(q, k, answer->nearest + 2 * k);
     if (narc_validate_bodies(q->scene.store, &bodies, NULL) != NARC_OK)
         return;
     if (q->rays[q->chosen].motion_x != 0 || q->rays[q->chosen].motion_y != 0)
@@ -139,7 +165,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct question q = {.chosen = take_below(&from, RAYS)};
     q.scene = take_scene(&from, 4, BODIES, PAIRS);
     const narc_bodies bodies = scene_bodies(&q.scene);
-    narc_box boxes[BODIES];
     q.rays_asked.inside = (narc_inside)take_below(&from, 3);
     q.target = (float)take_step(&from, 0.5);
     for (size_t k = 0; k < BODIES; k++)
@@ -149,9 +174,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         q.rays[k] = (struct test_ray){(double)(float)take_step(&from, 8), (double)(float)take_step(&from, 8),
                                       (float)take_step(&from, 16), (float)take_step(&from, 16), 1};
     const narc_index_options options = {.fast = take_below(&from, 2)};
-    assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
+    take_flights(&from, &q.scene);
+    assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, q.boxes, NULL), NARC_OK);
     assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
-    assert_int_equal(narc_build_index(q.index, boxes, BODIES, &options, NULL), NARC_OK);
+    assert_int_equal(narc_build_index(q.index, q.boxes, BODIES, &options, NULL), NARC_OK);
     struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
     check(&q, answer);
     free(answer);

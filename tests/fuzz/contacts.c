@@ -101,6 +101,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     q.query.flat_angle = fabs(flat) < 1.5 ? (float)flat : 0;
     for (size_t k = 0; k < PAIRS; k++)
         q.hints[k] = take_word(&from);
+    take_flights(&from, &q.scene);
     struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
     check(&q, answer);
     free(answer);

@@ -119,3 +119,10 @@ struct scene take_scene(struct bytes *from, size_t shapes, size_t bodies, size_t
         scene_add_pair(&scene, (uint32_t)(k % bodies), (uint32_t)((k + 1 + k / bodies) % bodies));
     return scene;
 }
+
+void take_flights(struct bytes *from, struct scene *scene) {
+    for (unsigned flights = take_below(from, 4); flights > 0; flights--) {
+        struct body *const body = &scene->bodies[take_below(from, (unsigned)scene->body_count)];
+        *body = fly_away(*body, take_below(from, 24), scene->precision);
+    }
+}

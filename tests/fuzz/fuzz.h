@@ -32,4 +32,7 @@ struct shape take_shape(struct bytes *from);
 /* A few shapes, and bodies of them; one in 8 bodies has broken numbers. */
 struct scene take_scene(struct bytes *from, size_t shapes, size_t bodies, size_t pairs);
 
+/* Perhaps some of the bodies have flown away. To be taken last: then what was found before it was asked stays what it is. */
+void take_flights(struct bytes *from, struct scene *scene);
+
 #endif

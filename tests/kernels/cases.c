@@ -233,4 +233,113 @@ TEST(test_last_interval_meets_first) {
     assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
 }
 
+/* ------------------------------------------------------------------------------------------------ corners */
+
+/* The outward normal of the edge before an arc, in the world; false if there is none to speak of. */
+static bool find_face(const struct reference_body *body, size_t arc, narc_point *out_normal) {
+    const narc_arc *const own = &body->arcs[arc], *const last = &body->arcs[(arc + body->count - 1) % body->count];
+    const double x = cos(own->start), y = sin(own->start);
+    *out_normal = (narc_point){body->cosine * x - body->sine * y, body->sine * x + body->cosine * y};
+    return fabs(x * (own->center_y - last->center_y) - y * (own->center_x - last->center_x)) > 1e-3;
+}
+
+/* Of all edges' normals, from A to B, the largest gap; and the sine of the angle from n to the nearest. */
+static double find_best_face(const struct reference_body *a, const struct reference_body *b, double n_x, double n_y,
+                             double *out_sine) {
+    double most = -INFINITY;
+    *out_sine = 1;
+    for (int side = 0; side < 2; side++) {
+        const struct reference_body *const body = side ? b : a;
+        narc_point n;
+        for (size_t k = 0; k < body->count; k++) {
+            if (!find_face(body, k, &n))
+                continue;
+            const double x = side ? -n.x : n.x, y = side ? -n.y : n.y;
+            most = fmax(most, reference_gap_along(a, b, x, y));
+            if (x * n_x + y * n_y > 0)
+                *out_sine = fmin(*out_sine, fabs(x * n_y - y * n_x));
+        }
+    }
+    return most;
+}
+
+/* Places B so that the centre of one of its arcs is at that of one of A, but for (x, y); what both reach over it. */
+static struct body place_corner(struct test_random *random, const struct shape *a, struct body at_a,
+                                const struct shape *b, double x, double y, double *out_radii) {
+    struct body at_b = turned_body(random_below(random, 3) ? random_between(random, -4, 4)
+                                                           : atan2((double)at_a.sine, (double)at_a.cosine) +
+                                                                 PI / 2 * (double)random_below(random, 4),
+                                   1);
+    const narc_arc *const of_a = &a->arcs[random_below(random, a->count)], *const of_b =
+                                                                               &b->arcs[random_below(random, b->count)];
+    at_b.x = x + (double)at_a.cosine * of_a->center_x - (double)at_a.sine * of_a->center_y -
+             ((double)at_b.cosine * of_b->center_x - (double)at_b.sine * of_b->center_y);
+    at_b.y = y + (double)at_a.sine * of_a->center_x + (double)at_a.cosine * of_a->center_y -
+             ((double)at_b.sine * of_b->center_x + (double)at_b.cosine * of_b->center_y);
+    at_b.shape = 1;
+    *out_radii = of_a->radius + of_b->radius;
+    return at_b;
+}
+
+/* Corner on corner within rounding: where a face has as large a gap, its normal is told, by contacts and manifolds. And
+ * corners that are further apart keep the normal between them. */
+TEST(test_corners_within_rounding) {
+    enum { PAIRS = 60 };
+    static const enum family families[] = {FAMILY_BOX, FAMILY_POLYGON, FAMILY_CAPSULE, FAMILY_ROUNDED, FAMILY_SEGMENT};
+    struct test_random random = test_random_named("corners within rounding");
+    size_t faces = 0, corners = 0;
+    for (size_t k = 0; k < test_trials(300); k++) {
+        const bool apart = k % 4 == 3;
+        const struct shape a = make_shape(&random, families[random_below(&random, 5)]),
+                           b = make_shape(&random, families[random_below(&random, 5)]);
+        struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+        scene_add_shape(&scene, &a);
+        scene_add_shape(&scene, &b);
+        double radii[PAIRS];
+        for (int pair = 0; pair < PAIRS; pair++) {
+            const struct body at_a = turned_body(random_between(&random, -4, 4), 1);
+            const double angle = random_between(&random, -4, 4), way = apart ? random_log_between(&random, 1e-3, 0.1)
+                                                                             : random_log_between(&random, 1e-10, 3e-7);
+            scene_add_two(&scene, at_a,
+                          place_corner(&random, &a, at_a, &b, random_below(&random, 9) ? way * cos(angle) : 0,
+                                       random_below(&random, 9) ? way * sin(angle) : 0, &radii[pair]));
+        }
+        struct contacts contacts = scene_contacts(&scene, INFINITY);
+        struct manifolds manifolds = scene_manifolds(&scene, INFINITY);
+        assert_true(contacts.count == PAIRS && manifolds.count == PAIRS);
+        for (size_t pair = 0; pair < PAIRS; pair++) {
+            const struct reference_body at_a = scene_reference(&scene, scene.pairs[pair].a),
+                                        at_b = scene_reference(&scene, scene.pairs[pair].b);
+            const narc_contact *const row = &contacts.rows[pair];
+            const double gap = reference_find_gap(&at_a, &at_b).gap, bound = separation_bound(&at_a, &at_b);
+            const double n_x = (double)row->normal_x, n_y = (double)row->normal_y;
+            struct fractions errors = {0};
+            double sine;
+            assert_null(check_contact(&at_a, &at_b, gap, row, &errors));
+            assert_true(row->normal_x == manifolds.rows[pair].normal_x &&
+                        row->normal_y == manifolds.rows[pair].normal_y);
+            const double best = find_best_face(&at_a, &at_b, n_x, n_y, &sine);
+            if (apart) {
+                /* Between two arcs that touch there is no gap as large elsewhere. */
+                if (gap - best > 8 * bound) {
+                    assert_true(sine > 1e-5);
+                    corners++;
+                }
+            } else if (gap - best < bound / 8 && fabs(gap + radii[pair]) < bound / 2) {
+                if (sine > 1e-6)
+                    fail_msg(
+                        "pair %zu of %zu: normal (%.9g, %.9g), %.3g off the nearest face's, of which one has a gap "
+                        "that is less by %.3g of the bound",
+                        pair, k, n_x, n_y, sine, (gap - best) / bound);
+                faces++;
+            }
+        }
+        free(contacts.rows);
+        free(manifolds.rows);
+        destroy_scene(&scene);
+    }
+    print_message("%zu told of faces, %zu of corners\n", faces, corners);
+    assert_true(faces > 0 && corners > 0);
+}
+
 TEST_MAIN("cases")

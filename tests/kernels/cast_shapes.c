@@ -3,6 +3,7 @@
  * cast_shapes.c - movers through an index against casts of all pairs, one by one; the same bits with any workers and on
  * every instruction set; casts whose answers are known; what is refused.
  */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +28,8 @@ struct stage {
     narc_index *index;
     uint64_t *category, *mask;
     uint32_t *ignored;
-    float target;
+    float target, *targets; /* of each mover, if `varied` */
+    bool varied;
 };
 
 static struct stage make_stage(struct test_random *random, narc_precision precision, size_t bodies, bool turning) {
@@ -39,6 +41,7 @@ static struct stage make_stage(struct test_random *random, narc_precision precis
     s.category = calloc(bodies + 1, sizeof *s.category);
     s.mask = calloc(MOVERS, sizeof *s.mask);
     s.ignored = calloc(MOVERS, sizeof *s.ignored);
+    s.targets = calloc(MOVERS, sizeof *s.targets);
     const double width = sqrt((double)bodies) * 2.5;
     for (size_t k = 0; k < bodies; k++) {
         struct body *const body = &s.scene.bodies[k];
@@ -46,6 +49,8 @@ static struct stage make_stage(struct test_random *random, narc_precision precis
         body->y = random_between(random, 0, width);
         body->scale *= 0.4f;
         round_position(body, precision);
+        if (k % 40 == 7)
+            *body = fly_away(*body, k / 40, precision);
         s.category[k] = (uint64_t)1 << random_below(random, 64);
     }
     for (size_t k = 0; k < MOVERS; k++) {
@@ -81,6 +86,7 @@ static void destroy_stage(struct stage *s) {
     free(s->category);
     free(s->mask);
     free(s->ignored);
+    free(s->targets);
     destroy_scene(&s->scene);
 }
 
@@ -99,7 +105,9 @@ static narc_impact *cast(const struct stage *s, bool filtered, unsigned threads)
         search.ignored = (narc_index_column){s->ignored, sizeof *s->ignored};
     }
     size_t skipped = 9;
-    const narc_cast_options options = {.target = s->target, .out_skipped = &skipped};
+    narc_cast_options options = {.target = s->target, .out_skipped = &skipped};
+    if (s->varied)
+        options.targets = (narc_float_column){s->targets, sizeof *s->targets};
     narc_impact *const rows = guard_allocate(MOVERS * sizeof *rows);
     narc_error error;
     expect_ok(
@@ -116,10 +124,10 @@ static size_t check_by_force(const struct stage *s, const narc_impact *rows, boo
     const size_t count = s->scene.body_count;
     uint32_t *const a = calloc(count, sizeof *a), *const b = calloc(count, sizeof *b);
     narc_impact *const all = calloc(count, sizeof *all);
-    const narc_cast_options options = {.target = s->target};
     size_t hits = 0;
     narc_error error;
     for (uint32_t k = 0; k < MOVERS; k++) {
+        const narc_cast_options options = {.target = s->varied ? s->targets[k] : s->target};
         narc_impact best = {.pair = k};
         for (uint32_t i = 0; i < count; i++) {
             a[i] = k;
@@ -144,11 +152,14 @@ static size_t check_by_force(const struct stage *s, const narc_impact *rows, boo
 }
 
 TEST(test_by_force) {
-    struct test_random random = test_random_named("cast shapes");
+    struct test_random random = test_random_named("cast shapes"), of_targets = test_random_named("targets");
     static const size_t counts[] = {1, 7, 64, 300};
     for (int round = 0; round < 8; round++) {
         struct stage s = make_stage(&random, (narc_precision)(round % 2), counts[round / 2], true);
         s.target = round == 3 ? -0.02f : round == 5 ? 0.1f : 0;
+        s.varied = round % 4 == 2;
+        for (size_t k = 0; k < MOVERS; k++)
+            s.targets[k] = k % 3 == 0 ? 0 : (float)random_between(&of_targets, -0.1, 0.3);
         for (int filtered = 0; filtered < 2; filtered++) {
             narc_impact *const rows = cast(&s, filtered, 1), *const shared = cast(&s, filtered, 3);
             assert_memory_equal(rows, shared, MOVERS * sizeof *rows);
@@ -160,6 +171,40 @@ TEST(test_by_force) {
         }
         destroy_stage(&s);
     }
+}
+
+/* One target for each pair: the rows of casts with that target alone, whatever the pair's bodies. */
+TEST(test_targets_of_pairs) {
+    enum { PAIRS = 2000 };
+    struct test_random random = test_random_named("targets of pairs");
+    struct stage s = make_stage(&random, NARC_FLOAT64, 40, true);
+    const narc_bodies bodies = scene_bodies(&s.scene), movers = scene_bodies(&s.movers);
+    const narc_motions motions = motions_of(&s);
+    float targets[PAIRS][2]; /* a column with a stride */
+    uint32_t a[PAIRS], b[PAIRS];
+    narc_impact rows[PAIRS], alone;
+    size_t hits = 0;
+    narc_error error;
+    for (int k = 0; k < PAIRS; k++) {
+        a[k] = (uint32_t)random_below(&random, MOVERS);
+        b[k] = (uint32_t)random_below(&random, 40);
+        targets[k][0] = random_below(&random, 4) ? (float)random_between(&random, -0.2, 4) : 0;
+    }
+    narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b), .other_bodies = &bodies};
+    const narc_cast_options options = {.target = 100, .targets = {targets[0], sizeof targets[0]}};
+    expect_ok(narc_cast_pairs(s.scene.store, &movers, &motions, &pairs, NULL, &options, rows, PAIRS, &error), &error);
+    pairs.count = 1;
+    for (uint32_t k = 0; k < PAIRS; k++) {
+        pairs.a.base = &a[k];
+        pairs.b.base = &b[k];
+        const narc_cast_options one = {.target = targets[k][0]};
+        expect_ok(narc_cast_pairs(s.scene.store, &movers, &motions, &pairs, NULL, &one, &alone, 1, &error), &error);
+        alone.pair = k;
+        assert_memory_equal(&rows[k], &alone, sizeof alone);
+        hits += alone.count == NARC_CAST_HIT && alone.fraction > 0;
+    }
+    assert_true(hits > PAIRS / 100);
+    destroy_stage(&s);
 }
 
 TEST(test_no_bodies) {
@@ -231,8 +276,12 @@ TEST(test_errors) {
             (&(narc_cast_options){.target = NAN}));
     REFUSED(NARC_ERROR_NOT_FINITE, "tolerance", s.index, store, &bodies, &movers, &motions, NULL,
             (&(narc_cast_options){.tolerance = INFINITY}));
-    REFUSED(NARC_ERROR_ARGUMENT, "options.reserved[2]", s.index, store, &bodies, &movers, &motions, NULL,
-            (&(narc_cast_options){.reserved = {NULL, NULL, rows}}));
+    REFUSED(NARC_ERROR_ARGUMENT, "options.reserved[1]", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.reserved = {NULL, rows}}));
+    s.targets[7] = NAN;
+    REFUSED(NARC_ERROR_NOT_FINITE, "options.targets[7] is nan", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.targets = NARC_ARRAY(s.targets)}));
+    s.targets[7] = 0;
     REFUSED(NARC_ERROR_ARGUMENT, "motions.reserved[0]", s.index, store, &bodies, &movers,
             (&(narc_motions){.reserved = {rows}}), NULL, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "search.reserved[0]", s.index, store, &bodies, &movers, &motions,
@@ -251,6 +300,8 @@ TEST(test_errors) {
     REFUSED(NARC_ERROR_ARGUMENT, "other_motions", store, &bodies, &motions, &pairs, &motions, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "other_motions.reserved[1]", store, &bodies, &motions, &others,
             (&(narc_motions){.reserved = {NULL, rows}}), NULL);
+    REFUSED(NARC_ERROR_NOT_FINITE, "options.targets[1] is -inf", store, &bodies, &motions, &pairs, NULL,
+            (&(narc_cast_options){.targets = NARC_ARRAY(((const float[]){0, -INFINITY}))}));
     REFUSED(NARC_ERROR_ARGUMENT, "tolerance is -2", store, &bodies, &motions, &pairs, NULL,
             (&(narc_cast_options){.tolerance = -2}));
 #undef REFUSED
@@ -348,6 +399,64 @@ TEST(test_loose_boxes) {
     }
     assert_memory_equal(&impact[0], &impact[1], sizeof impact[0]);
     narc_destroy_index(index);
+    narc_destroy_shapes(store);
+}
+
+/* However fast: through an index as of the pair, and each mover's first body. Fractions underflow, so that bodies at
+ * different places are hit at the same one: then the lower number counts. */
+TEST(test_largest_motions) {
+    enum { BODIES = 40 };
+    static const float motions[] = {10, 1e10f, 1e20f, 1e30f, 1e38f, 3e38f, FLT_MAX};
+    struct test_random random = test_random_named("largest motions");
+    narc_shapes *const store = empty_store();
+    store_shape(store, box_of(2, 2, 0));
+    store_shape(store, circle_of(1));
+    size_t same = 0;
+    for (int round = 0; round < 7 * 8; round++) {
+        const float way = (round % 2 ? -1 : 1) * motions[round % 7], turn = round % 4 ? 0 : 0.5f;
+        const float size = round / 14 % 2 ? 1e-7f : 1;
+        narc_body body[BODIES], mover = {0, 0, 1, 0, size, (uint32_t)(round / 7 % 2)};
+        narc_box boxes[BODIES];
+        uint32_t none[BODIES] = {0}, all[BODIES];
+        narc_impact pairs[BODIES], first;
+        size_t skipped[2];
+        narc_index *index;
+        narc_error error;
+        for (uint32_t k = 0; k < BODIES; k++) {
+            const double far = (double)size * random_log_between(&random, 2.2, 40);
+            body[k] = (narc_body){random_below(&random, 2) ? far : -far, 0, 1, 0, size, k % 2};
+            body[k].y = (double)size * random_between(&random, -1, 1);
+            all[k] = k;
+        }
+        const bool up = round / 7 % 3 == 0;
+        for (uint32_t k = 0; up && k < BODIES; k++)
+            body[k] = (narc_body){-body[k].y, body[k].x, 0, 1, size, body[k].shape};
+        const narc_bodies bodies = narc_view_bodies(body, BODIES), movers = narc_view_bodies(&mover, 1);
+        const narc_float_column along = {&way, 0};
+        const narc_motions moving = {
+            .x = up ? (narc_float_column){0} : along, .y = up ? along : (narc_float_column){0}, .angle = {&turn, 0}};
+        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+        expect_ok(narc_compute_boxes(store, &bodies, NULL, boxes, &error), &error);
+        expect_ok(narc_build_index(index, boxes, BODIES, NULL, &error), &error);
+        narc_cast_options options = {.out_skipped = &skipped[0]};
+        expect_ok(narc_cast_shapes(index, store, &bodies, &movers, &moving, NULL, &options, &first, 1, &error), &error);
+        options.out_skipped = &skipped[1];
+        const narc_pairs batch = {
+            .count = BODIES, .a = NARC_ARRAY(none), .b = NARC_ARRAY(all), .other_bodies = &bodies};
+        expect_ok(narc_cast_pairs(store, &movers, &moving, &batch, NULL, &options, pairs, BODIES, &error), &error);
+        assert_true(skipped[0] == 0 && skipped[1] == 0);
+        narc_impact best = {.count = NARC_CAST_MISS};
+        for (size_t k = 0; k < BODIES; k++) {
+            same += best.count && pairs[k].count && pairs[k].fraction == best.fraction;
+            if (pairs[k].count && (!best.count || pairs[k].fraction < best.fraction))
+                best = pairs[k];
+        }
+        best.pair = 0;
+        assert_int_equal(best.count, NARC_CAST_HIT);
+        assert_memory_equal(&first, &best, sizeof best);
+        narc_destroy_index(index);
+    }
+    print_message("%zu as soon as another\n", same);
     narc_destroy_shapes(store);
 }
 

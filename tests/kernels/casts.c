@@ -181,7 +181,8 @@ static void check_row(const struct moving *m, size_t pair, const narc_impact *ro
         return;
     const double smaller = fmin((double)m->scene.bodies[m->scene.pairs[pair].a].scale,
                                 (double)m->scene.bodies[m->scene.pairs[pair].b].scale);
-    double tolerance = !turns(&w) ? bound : m->tolerance > 0 ? (double)m->tolerance : smaller * 4 / 1024;
+    const double usual = fmin(smaller * 4 / 1024, turning / 16 + bound);
+    double tolerance = !turns(&w) ? bound : m->tolerance > 0 ? (double)m->tolerance : usual;
     if (row->count == NARC_CAST_HIT && now - target > bound + tolerance + rounding)
         fail_cast(m, pair, row, "not there", now - target, bound + tolerance);
     if (now - target < -1.5 * bound)
@@ -360,6 +361,152 @@ TEST(test_quarter_turn) {
         guard_release(rows);
         destroy_moving(&m);
     }
+}
+
+/* The default tolerance of thin bodies, 0.03 apart: they are not hit by a turn that does not bring them together, and are
+ * by one that does, where they touch but for a part of their thickness. So from a turn of nothing to a whole one. */
+TEST(test_thin_rods_that_turn) {
+    static const double thick[] = {0.02, 1e-4, 0};
+    for (size_t kind = 0; kind < 3; kind++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
+        struct shape rod = box_of(100, 1, 0);
+        narc_error error;
+        expect_ok(thick[kind] > 0
+                      ? narc_build_box(100, thick[kind], 0, rod.arcs, &rod.count, &error)
+                      : narc_build_segment((narc_point){-50, 0}, (narc_point){50, 0}, 0, rod.arcs, &rod.count, &error),
+                  &error);
+        scene_add_shape(&scene, &rod);
+        scene_add_two(&scene, (struct body){.cosine = 1, .scale = 1},
+                      (struct body){.y = thick[kind] + 0.03, .cosine = 1, .scale = 1});
+        struct moving m = {.scene = scene, .motion = calloc(2, sizeof *m.motion)};
+        struct tally tally = {.at_start = 0};
+        for (double turn = 1; turn > 1e-12; turn /= 3) {
+            m.motion[1].angle = (float)turn;
+            narc_impact *const row = cast_all(&m, 1, NULL);
+            check_row(&m, 0, row, &tally);
+            assert_int_equal(row->count, sin(turn) * 50 > 0.03 ? NARC_CAST_HIT : NARC_CAST_MISS);
+            assert_true(row->separation <= 1e-5f + (float)thick[kind] / 128);
+            guard_release(row);
+        }
+        destroy_moving(&m);
+    }
+}
+
+/* With next to no turn a cast is the straight one's: what becomes of it, and when, but for what turning moves. */
+TEST(test_small_turns) {
+    struct test_random random = test_random_named("small turns");
+    size_t hits = 0, others = 0;
+    for (size_t k = 0; k < test_trials(40); k++) {
+        const struct scene scene =
+            make_placed_scene(&random, (narc_precision)(k % 2), (enum family)random_below(&random, FAMILY_COUNT),
+                              (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
+        struct moving m = set_in_motion(&random, scene, 0);
+        struct tally tally = {.at_start = 0};
+        narc_impact *const straight = cast_all(&m, 1, NULL);
+        for (size_t b = 0; b < m.scene.body_count; b++)
+            m.motion[b].angle = (float)(random_between(&random, -1, 1) * random_log_between(&random, 1e-30, 1e-8));
+        narc_impact *const turning = cast_all(&m, 1, NULL);
+        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
+            const narc_impact *const a = &straight[pair], *const b = &turning[pair];
+            struct way w = find_way(&m, pair);
+            check_row(&m, pair, b, &tally);
+            go_to(&w, 0);
+            const double bound = separation_bound(&w.a, &w.b) + 0x1p-23 * hypot(w.motion_x, w.motion_y);
+            if (a->count == b->count && (a->count == NARC_CAST_MISS || separation_at(&w, (double)a->fraction) < 0))
+                continue;
+            others += a->count != b->count;
+            if (a->count == b->count)
+                assert_true(fabs(separation_at(&w, (double)a->fraction) - separation_at(&w, (double)b->fraction)) <=
+                            2 * bound);
+            hits += a->count == NARC_CAST_HIT && b->count == NARC_CAST_HIT && b->fraction > 0;
+        }
+        guard_release(straight);
+        guard_release(turning);
+        destroy_moving(&m);
+    }
+    print_message("%zu hits, %zu that only one of both makes\n", hits, others);
+    assert_true(hits > 0 && 20 * others <= hits);
+}
+
+/* A box that slides along a row of tiles, on them up to rounding, against the next one: it is hit, or not, but never
+ * between two faces. */
+TEST(test_along_tiles) {
+    enum { PAIRS = 400 };
+    struct test_random random = test_random_named("along tiles");
+    struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+    const struct shape tile = box_of(2, 1, 0), box = box_of(0.75, 0.5, 0);
+    struct tally tally = {.at_start = 0};
+    scene_add_shape(&scene, &tile);
+    scene_add_shape(&scene, &box);
+    struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+    double angle[PAIRS];
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        angle[pair] = pair % 4 ? random_between(&random, -4, 4) : 0;
+        const double c = cos(angle[pair]), s = sin(angle[pair]), way = random_between(&random, 0.5, 8);
+        const double x = -1.375 - random_between(&random, 0.01, 0.4), y = 0.75 + random_between(&random, -2e-7, 2e-7);
+        struct body on = turned_body(angle[pair], 1), next = on;
+        next.x = random_between(&random, -20, 20);
+        next.y = random_between(&random, -20, 20);
+        on.x = next.x + c * x - s * y;
+        on.y = next.y + s * x + c * y;
+        on.shape = 1;
+        m.motion[2 * pair] = (struct motion){(float)(c * way), (float)(s * way), 0};
+        scene_add_two(&m.scene, on, next);
+    }
+    narc_impact *const rows = cast_all(&m, 1, NULL);
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        const double c = cos(angle[pair]), s = sin(angle[pair]);
+        const double n_x = (double)rows[pair].normal_x, n_y = (double)rows[pair].normal_y;
+        check_row(&m, pair, &rows[pair], &tally);
+        assert_true(rows[pair].count != NARC_CAST_HIT || fmin(fabs(c * n_x + s * n_y), fabs(c * n_y - s * n_x)) < 1e-6);
+    }
+    print_tally("along tiles", &tally);
+    assert_true(tally.outcomes[NARC_CAST_HIT] > PAIRS / 3);
+    guard_release(rows);
+    destroy_moving(&m);
+}
+
+/* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
+ * beside its position turns with it. */
+TEST(test_circles_that_turn) {
+    enum { PAIRS = 64 };
+    struct test_random random = test_random_named("circles that turn");
+    size_t hits = 0, beside = 0;
+    for (size_t k = 0; k < test_trials(60); k++) {
+        struct scene scene = create_scene((narc_precision)(k % 2), 2, 2 * PAIRS, PAIRS);
+        const double radius = random_log_between(&random, 0.3, 3);
+        struct shape circle = circle_of(radius);
+        const struct shape other =
+            k % 3 ? make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT)) : circle;
+        if (k % 5 == 4)
+            circle.arcs[0].center_x = 0.25 * radius;
+        scene_add_shape(&scene, k % 4 < 2 ? &circle : &other);
+        scene_add_shape(&scene, k % 4 < 2 ? &other : &circle);
+        for (int pair = 0; pair < PAIRS; pair++)
+            scene_add_placed(&random, &scene, (enum placement)random_below(&random, PLACE_COUNT), 0, 1);
+        struct moving m = set_in_motion(&random, scene, k % 2 ? 2 : 0);
+        const int of = k % 4 < 2 ? 0 : 1;
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = (float)random_between(&random, -7, 7);
+        narc_impact *const turning = cast_all(&m, 1, NULL);
+        struct tally tally = {.at_start = 0};
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            check_row(&m, pair, &turning[pair], &tally);
+        for (size_t pair = 0; pair < scene.pair_count; pair++)
+            m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = 0;
+        narc_impact *const straight = cast_all(&m, 1, NULL);
+        for (size_t pair = 0; pair < scene.pair_count; pair++) {
+            const bool same = memcmp(&turning[pair], &straight[pair], sizeof *straight) == 0;
+            hits += same && straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
+            beside += !same;
+            assert_true(same || k % 5 == 4);
+        }
+        guard_release(turning);
+        guard_release(straight);
+        destroy_moving(&m);
+    }
+    print_message("%zu hits of circles about their positions, %zu others of those beside\n", hits, beside);
+    assert_true(hits > 0 && beside > 0);
 }
 
 /* Rotations are as long as they may be, or by a float longer. */

@@ -121,6 +121,8 @@ static struct body random_body(struct test_random *random, narc_precision precis
     }
     body.x = random_between(random, -way, way);
     body.y = random_between(random, -way, way);
+    if (random_below(random, 50) == 0)
+        body = fly_away(body, random_below(random, 24), precision);
     return body;
 }
 

@@ -140,6 +140,8 @@ static void fill_boxes(struct test_random *random, narc_box *boxes, size_t count
         boxes[k] = random_box(random, 1000, 0, random_log_between(random, 1e-3, 100));
         if (random_below(random, 4) == 0)
             boxes[k] = (narc_box){5, 5, 6, 7};
+        if (random_below(random, 100) == 0)
+            boxes[k] = far_box(random);
         if (random_below(random, 10) == 0)
             (&boxes[k].min_x)[random_below(random, 4)] = random_below(random, 2) ? NAN : -INFINITY;
     }

@@ -59,6 +59,8 @@ static struct scene make_scene(struct test_random *random, narc_precision precis
             *(random_below(random, 2) ? &body.x : &body.y) = NAN;
         else if (random_below(random, 20) == 0 && scene.body_count > 0) /* one more of the same: ties */
             body = scene.bodies[random_below(random, scene.body_count)];
+        else if (random_below(random, 50) == 0)
+            body = fly_away(body, random_below(random, 24), precision);
         scene_add_body(&scene, body);
     }
     return scene;
@@ -138,7 +140,9 @@ static size_t search_all(const struct question *q, const narc_nearest_options *o
         .y = {(const char *)q->points.y.base + (ptrdiff_t)point * q->points.y.stride, 0, q->points.y.precision}};
     const uint64_t mask = options && options->search.mask.base ? options->search.mask.base[point] : UINT64_MAX;
     const uint32_t ignored = options && options->search.ignored.base ? options->search.ignored.base[point] : UINT32_MAX;
-    size_t found = 0;
+    const narc_owners *const owners = options ? options->search.owners : NULL;
+    const uint32_t ignored_owner = owners && owners->ignored.base ? owners->ignored.base[point] : UINT32_MAX;
+    size_t found = 0, things = 0;
     assert_int_equal(
         narc_find_distances(q->scene.store, &q->bodies, &one, (narc_index_column){NULL, 0}, NULL, rows, NULL), NARC_OK);
     for (size_t k = 0; k < bodies; k++) {
@@ -146,11 +150,20 @@ static size_t search_all(const struct question *q, const narc_nearest_options *o
         row.point = (uint32_t)point;
         const bool near = !options || options->distance == 0 || row.separation < options->distance;
         if (row.count == 1 && near && !(options && options->inside && row.separation >= 0) &&
-            (q->category[k] & mask) != 0 && k != ignored)
+            (q->category[k] & mask) != 0 && k != ignored &&
+            (ignored_owner == UINT32_MAX || owners->owner.base[k] != ignored_owner))
             rows[found++] = row;
     }
     qsort(rows, found, sizeof *rows, compare_rows);
-    return found;
+    for (size_t k = 0; k < found; k++) { /* the first of each thing */
+        bool first = true;
+        for (size_t i = 0; i < things && owners; i++)
+            first = first && (owners->owner.base[rows[k].body] == UINT32_MAX ||
+                              owners->owner.base[rows[k].body] != owners->owner.base[rows[i].body]);
+        if (first)
+            rows[things++] = rows[k];
+    }
+    return things;
 }
 
 static size_t check_against_all(const struct question *q, const narc_nearest_options *options) {
@@ -194,6 +207,13 @@ static void check_scene(struct test_random *random, narc_precision precision, si
     check_against_all(&q, &(narc_nearest_options){.distance = INFINITY, .inside = 1});
     const narc_nearest_options ignoring = {.search.ignored = {ignored, sizeof *ignored}, .most = 2};
     check_against_all(&q, &ignoring);
+    uint32_t *owner = allocate(bodies, sizeof *owner);
+    for (size_t k = 0; k < bodies; k++)
+        owner[k] = random_below(random, 8) ? (uint32_t)random_below(random, bodies / 3 + 1) : UINT32_MAX;
+    const narc_owners owners = {.owner = {owner, sizeof *owner}, .ignored = ignoring.search.ignored};
+    for (size_t most = 1; most < 6; most += 2)
+        check_against_all(&q, &(narc_nearest_options){.search.owners = &owners, .most = most, .inside = most == 3});
+    free(owner);
     /* Boxes that have moved a little, grown, and in an index that was built otherwise. */
     assert_int_equal(narc_build_index(q.index, q.boxes, bodies,
                                       &(narc_index_options){.category = with_categories.category, .fast = 1}, NULL),

@@ -137,6 +137,33 @@ TEST(parts_are_in_their_places) {
     }
 }
 
+/* A body of one shape is a part at (0, 0) of its own. */
+TEST(unturned_parts_keep_their_rotation) {
+    enum { COUNT = 10000 };
+    struct test_random random = test_random_named("parts that are not turned");
+    static narc_body bodies[COUNT];
+    static uint32_t owner[COUNT];
+    const narc_body plain[2] = {{.cosine = 1, .scale = 1, .shape = 7}, {.cosine = 1.0001f, .sine = -0.0f, .scale = 1}};
+    for (size_t k = 0; k < COUNT; k++) {
+        const struct body at = turned_body(k < 5 ? PI / 2 * (double)k : random_between(&random, -PI, PI), 1);
+        bodies[k] = (narc_body){(double)k, 1, at.cosine, at.sine, at.scale, 7};
+        owner[k] = (uint32_t)k;
+    }
+    bodies[5] = (narc_body){0, 1, 1, -0.0f, 1, 7};
+    const narc_bodies owners = narc_view_bodies(bodies, COUNT);
+    for (int drifted = 0; drifted < 2; drifted++) {
+        narc_bodies parts = narc_view_bodies(&plain[drifted], COUNT);
+        parts.x.stride = parts.y.stride = parts.cosine.stride = parts.sine.stride = parts.scale.stride = 0;
+        parts.shape.stride = 0;
+        narc_body *const rows = place(&owners, &parts, owner, NULL);
+        for (size_t k = 0; k < COUNT; k++)
+            assert_memory_equal(&rows[k].cosine, &bodies[k].cosine, 2 * sizeof(float));
+        if (!drifted)
+            assert_memory_equal(rows, bodies, sizeof bodies);
+        guard_release(rows);
+    }
+}
+
 /* Any bits give bodies that are whole, or zeros. */
 TEST(broken_bodies_have_broken_parts) {
     struct test_random random = test_random_named("broken parts");

@@ -200,6 +200,24 @@ TEST(refuses_bad_arguments) {
     WRONG_OPTIONS(NARC_ERROR_ARGUMENT, "options.inside", .inside = (narc_inside)3);
     WRONG_OPTIONS(NARC_ERROR_ARGUMENT, "options.reserved[0]", .reserved = {hits});
     WRONG_OPTIONS(NARC_ERROR_ARGUMENT, "options.search.reserved[2]", .search.reserved = {NULL, NULL, hits});
+    static const uint32_t owner[COUNT];
+    const narc_owners none_named = {.ignored = NARC_ARRAY(owner)},
+                      reserved = {.owner = NARC_ARRAY(owner), .reserved = {NULL, hits}};
+    WRONG_OPTIONS(NARC_ERROR_ARGUMENT, "options.search.owners->owner is NULL", .search.owners = &none_named);
+    WRONG_OPTIONS(NARC_ERROR_ARGUMENT, "options.search.owners->reserved[1]", .search.owners = &reserved);
+    const narc_points points = {.count = RAYS, .x = rays.x, .y = rays.y};
+    narc_distance near[RAYS];
+    expect_error(narc_find_nearest(room.index, shapes, &bodies, &points,
+                                   &(narc_nearest_options){.search.owners = &none_named}, near, RAYS, &error),
+                 NARC_ERROR_ARGUMENT, &error, "options.search.owners->owner is NULL");
+    narc_pairs pairs;
+    expect_error(
+        narc_query_index(room.index, room.boxes, COUNT, &(narc_index_query){.owners = &none_named}, &pairs, &error),
+        NARC_ERROR_ARGUMENT, &error, "query.owners->owner is NULL");
+    narc_impact impacts[COUNT];
+    expect_error(narc_cast_shapes(room.index, shapes, &bodies, &bodies, NULL, &(narc_index_query){.owners = &reserved},
+                                  NULL, impacts, COUNT, &error),
+                 NARC_ERROR_ARGUMENT, &error, "search.owners->reserved[1]");
     WRONG_OPTIONS(NARC_ERROR_CAPACITY, "3 rows", .most = 3);
     WRONG_OPTIONS(NARC_ERROR_CAPACITY, "room for 20", .most = SIZE_MAX);
     narc_bodies wrong = bodies;

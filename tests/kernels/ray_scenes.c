@@ -130,6 +130,165 @@ TEST(finds_what_asking_every_body_finds) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------ things */
+
+enum { THINGS = 12, PARTS = 5, THING_RAYS = 60 };
+
+/* Bars of tiles that touch, or overlap, or have a gap, in any order of numbers, crossing each other. */
+static struct room create_things(struct test_random *random, uint32_t *owner) {
+    struct room room = {.scene = create_scene(NARC_FLOAT64, 2, THINGS * PARTS, 1)};
+    const struct shape box = box_of(1, 1, 0), disc = circle_of(0.55);
+    scene_add_shape(&room.scene, &box);
+    scene_add_shape(&room.scene, &disc);
+    for (size_t k = 0; k < THINGS * PARTS; k++) {
+        owner[k] = 7 * (uint32_t)(k % THINGS) + 1;
+        if (k % THINGS == 3)
+            owner[k] = UINT32_MAX;
+    }
+    for (size_t k = 0; k < THINGS * PARTS; k++) {
+        static double x[THINGS], y[THINGS], angle[THINGS], step[THINGS];
+        const size_t thing = k % THINGS, part = k / THINGS;
+        if (part == 0) {
+            x[thing] = random_between(random, 0, 6);
+            y[thing] = random_between(random, 0, 6);
+            angle[thing] = random_below(random, 2) ? random_between(random, -4, 4) : 0;
+            step[thing] = random_below(random, 3) ? 1 : random_between(random, 0.5, 1.1);
+        }
+        struct body body = turned_body(angle[thing], 1);
+        const double c = (double)body.cosine, s = (double)body.sine, length = hypot(c, s);
+        const size_t place = (3 * part + thing) % PARTS; /* neighbours have other numbers */
+        body.x = x[thing] + step[thing] * (double)place * c / length;
+        body.y = y[thing] + step[thing] * (double)place * s / length;
+        body.shape = (uint32_t)(random_below(random, 4) == 0);
+        scene_add_body(&room.scene, body);
+    }
+    room.boxes = calloc(THINGS * PARTS, sizeof *room.boxes);
+    room.category = calloc(THINGS * PARTS, sizeof *room.category);
+    assert_true(room.boxes && room.category);
+    for (size_t k = 0; k < THINGS * PARTS; k++)
+        room.category[k] = random_below(random, 8) ? 3 : 1;
+    assert_int_equal(narc_create_index(&guard_allocator, &room.index), NARC_OK);
+    return room;
+}
+
+/* Rows of all parts, each by itself, from where a ray enters or starts, and to where it leaves: of the same ray, turned
+ * round. */
+struct spans {
+    bool meets[THINGS * PARTS], starts[THINGS * PARTS];
+    double from[THINGS * PARTS], to[THINGS * PARTS];
+};
+
+static struct spans find_spans(const struct room *room, const struct test_ray *ray) {
+    struct spans spans = {{false}, {false}, {0}, {0}};
+    for (size_t b = 0; b < THINGS * PARTS; b++) {
+        struct test_ray rays[2] = {*ray, *ray};
+        rays[1].x += (double)ray->motion_x * 64;
+        rays[1].y += (double)ray->motion_y * 64;
+        rays[1].motion_x *= -1;
+        rays[1].motion_y *= -1;
+        rays[0].fraction = rays[1].fraction = 64;
+        const narc_rays view = view_rays(rays, 2);
+        struct room alone = *room;
+        alone.scene.bodies += b;
+        alone.scene.body_count = 1;
+        narc_box box;
+        alone.boxes = &box;
+        index_room(&alone, false, false);
+        narc_ray_hit *const hits = cast_in_room(&alone, &view, NULL);
+        spans.meets[b] = hits[0].count && hits[1].count;
+        spans.starts[b] = spans.meets[b] && hits[0].normal_x == 0 && hits[0].normal_y == 0;
+        spans.from[b] = (double)hits[0].fraction;
+        spans.to[b] = 64 - (double)hits[1].fraction;
+        guard_release(hits);
+    }
+    return spans;
+}
+
+/* What a thing is met at, as unions of spans have it: -1: nowhere. */
+static double meet_thing(const struct spans *spans, const uint32_t *owner, const bool *found, uint32_t thing,
+                         narc_inside inside) {
+    const double seam = 1e-5;
+    bool starts = false;
+    double first = INFINITY, end = 0;
+    for (size_t b = 0; b < THINGS * PARTS; b++)
+        if (found[b] && spans->meets[b] && owner[b] == thing) {
+            starts = starts || spans->starts[b];
+            first = fmin(first, spans->from[b]);
+        }
+    if (!starts || inside == NARC_INSIDE_STOPS)
+        return first < INFINITY ? first : -1;
+    for (size_t round = 0; round < PARTS; round++)
+        for (size_t b = 0; b < THINGS * PARTS; b++)
+            if (found[b] && spans->meets[b] && owner[b] == thing && spans->from[b] <= end + seam)
+                end = fmax(end, spans->to[b]);
+    return inside == NARC_INSIDE_LEAVES ? end : -1;
+}
+
+/* One row a thing; what starts in one part of it leaves the last, or does not meet it at all; what is masked, or ignored,
+ * or of an owner that is, is not there. */
+TEST(things_are_met_as_wholes) {
+    struct test_random random = test_random_named("rays and owners");
+    enum { BODIES = THINGS * PARTS };
+    for (size_t trial = 0; trial < test_trials(12); trial++) {
+        uint32_t owner[BODIES];
+        struct room room = create_things(&random, owner);
+        for (size_t k = 0; k < THING_RAYS; k++) {
+            const struct body *const body = &room.scene.bodies[random_below(&random, BODIES)];
+            const double along = atan2((double)body->sine, (double)body->cosine);
+            const double angle = random_below(&random, 3) ? along + random_between(&random, -0.05, 0.05)
+                                                          : random_between(&random, -4, 4);
+            const struct test_ray ray = {body->x + random_between(&random, -0.4, 0.4),
+                                         body->y + random_between(&random, -0.4, 0.4), (float)cos(angle),
+                                         (float)sin(angle), 16};
+            const struct spans spans = find_spans(&room, &ray);
+            const uint64_t mask = random_below(&random, 2) ? 2 : 3;
+            const uint32_t ignored = random_below(&random, 4) ? UINT32_MAX : (uint32_t)random_below(&random, BODIES);
+            const uint32_t ignored_owner = random_below(&random, 4) ? UINT32_MAX : owner[random_below(&random, BODIES)];
+            const narc_owners owners = {.owner = NARC_ARRAY(owner), .ignored = {&ignored_owner, 0}};
+            bool found[BODIES];
+            for (size_t b = 0; b < BODIES; b++)
+                found[b] = (room.category[b] & mask) && b != ignored &&
+                           (ignored_owner == UINT32_MAX || owner[b] != ignored_owner);
+            index_room(&room, trial % 2, true);
+            const narc_rays view = view_rays(&ray, 1);
+            for (narc_inside inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++) {
+                const narc_ray_options options = {
+                    .search = {.mask = {&mask, 0}, .ignored = {&ignored, 0}, .owners = &owners},
+                    .inside = inside,
+                    .most = BODIES};
+                narc_ray_hit *const rows = cast_in_room(&room, &view, &options);
+                for (size_t i = 0; i < BODIES && rows[i].count; i++) {
+                    const uint32_t thing = owner[rows[i].body];
+                    assert_true(found[rows[i].body] && (i == 0 || rows[i - 1].fraction <= rows[i].fraction));
+                    for (size_t j = 0; j < i && thing != UINT32_MAX; j++)
+                        assert_int_not_equal(owner[rows[j].body], thing);
+                    const double right = meet_thing(&spans, owner, found, thing, inside);
+                    if (thing != UINT32_MAX && !(fabs((double)rows[i].fraction - right) < 3e-5))
+                        fail_msg("trial %zu, ray %zu, inside %d: owner %u at %.9g, but %.9g", trial, k, (int)inside,
+                                 thing, (double)rows[i].fraction, right);
+                    const double facing = (double)(rows[i].normal_x * ray.motion_x + rows[i].normal_y * ray.motion_y);
+                    assert_true(inside == NARC_INSIDE_STOPS || thing == UINT32_MAX || spans.from[rows[i].body] == 0 ||
+                                facing < 1e-6 || rows[i].fraction > (float)spans.from[rows[i].body]);
+                }
+                for (size_t thing = 0; thing < THINGS; thing++) {
+                    const double right = meet_thing(&spans, owner, found, owner[thing], inside);
+                    bool has_row = owner[thing] == UINT32_MAX || right < 0 || right > 16;
+                    for (size_t i = 0; i < BODIES && rows[i].count; i++)
+                        has_row = has_row || owner[rows[i].body] == owner[thing];
+                    assert_true(has_row);
+                }
+                narc_ray_options first = options;
+                first.most = 1;
+                narc_ray_hit *const row = cast_in_room(&room, &view, &first);
+                assert_memory_equal(row, rows, sizeof *row);
+                guard_release(row);
+                guard_release(rows);
+            }
+        }
+        destroy_room(&room);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ bits */
 
 /* Scalar in one call decides: instruction sets, workers, the order of rays, one by one, fitted trees. */
@@ -140,7 +299,12 @@ TEST(same_bits_however_asked) {
         struct room room = create_room(&random, (narc_precision)precision, COUNT, 40);
         struct test_ray *const rays = make_rays(&random, &room, RAYS, 40), *const mixed = calloc(RAYS, sizeof *mixed);
         const narc_rays view = view_rays(rays, RAYS);
+        uint32_t owner[COUNT];
+        for (size_t k = 0; k < COUNT; k++)
+            owner[k] = (uint32_t)k / 4;
+        const narc_owners owners = {.owner = NARC_ARRAY(owner)};
         narc_ray_options options = {.most = MOST, .inside = (narc_inside)precision};
+        options.search.owners = precision ? &owners : NULL;
         test_use_isa("scalar");
         narc_ray_hit *const right = cast_in_room(&room, &view, &options);
         test_use_isa(test_isa());

@@ -109,10 +109,8 @@ TEST(meets_hard_shapes) {
         check_family(hard_family_name(family), true, (int)family, test_trials(10));
 }
 
-/* Where rays meet two bodies with exact numbers, one at the origin and one at (2, 0), both 2 wide and high; `first`: what
- * the index takes for the box of the first one. */
-static narc_ray_hit *meet_two(double radius, const narc_box *first, const struct test_ray *rays, size_t count,
-                              narc_ray_options options) {
+/* Where rays meet two bodies with exact numbers, one at the origin and one at (2, 0), both 2 wide and high. */
+static narc_ray_hit *meet_two(double radius, const struct test_ray *rays, size_t count, narc_ray_options options) {
     static narc_ray_hit hits[32];
     struct scene scene = create_scene(NARC_FLOAT32, 1, 2, 1);
     struct shape box;
@@ -130,8 +128,6 @@ static narc_ray_hit *meet_two(double radius, const narc_box *first, const struct
     const narc_rays view = view_rays(rays, count);
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
-    boxes[0] = first ? *first : boxes[0];
-    boxes[1] = first ? (narc_box){1e6f, 1e6f, 2e6f, 2e6f} : boxes[1]; /* which makes the room for rounding large */
     expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
     expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, hits, count * most, &error), &error);
     narc_destroy_index(index);
@@ -139,47 +135,185 @@ static narc_ray_hit *meet_two(double radius, const narc_box *first, const struct
     return hits;
 }
 
-/* A line exactly through a junction enters by what begins there, counter-clockwise; so one along the common side of two
- * boxes enters one of them, whichever way it goes. */
+/* A line exactly through a junction enters by what begins there, counter-clockwise. One along the common side of two boxes
+ * touches both, whichever way it goes. */
 TEST(junctions_are_of_what_begins_there) {
     const struct test_ray up[] = {{-0.75, -5, 0, 8, 1}, {0.75, -5, 0, 8, 1}};
-    const narc_ray_hit *hits = meet_two(0.25, NULL, up, 2, (narc_ray_options){0});
+    const narc_ray_hit *hits = meet_two(0.25, up, 2, (narc_ray_options){0});
     assert_int_equal(hits[0].feature, NARC_FEATURE_EDGE + 3);
     assert_int_equal(hits[1].feature, 3);
     for (size_t k = 0; k < 2; k++)
         assert_true(hits[k].count && hits[k].fraction == 0.5f && hits[k].normal_x == 0 && hits[k].normal_y == -1 &&
                     hits[k].point_y == -1);
     const struct test_ray between[] = {{1, -5, 0, 8, 1}, {1, 5, 0, -8, 1}};
-    hits = meet_two(0, NULL, between, 2, (narc_ray_options){.most = 2});
+    hits = meet_two(0, between, 2, (narc_ray_options){.most = 2});
     for (size_t k = 0; k < 4; k += 2)
-        assert_true(hits[k].count && !hits[k + 1].count && hits[k].fraction == 0.5f);
+        assert_true(hits[k].count && hits[k + 1].count && hits[k].fraction == 0.5f && hits[k + 1].fraction == 0.5f);
 }
 
 /* A start on the outline, or within, counts at fraction 0, though the ray goes no further; one outside does not. */
 TEST(rays_may_end_where_they_start) {
     const struct test_ray rays[] = {
         {-1, 0, 3, 0, 0}, {0.5, 0.5, 0, 1, 0}, {-1.5, 0, 3, 0, 0}, {-2.5, 0, 3, 0, 0.5f}, {-2.5, 0, 3, 0, 0.4999999f}};
-    const narc_ray_hit *const hits = meet_two(0, NULL, rays, 5, (narc_ray_options){0});
+    const narc_ray_hit *const hits = meet_two(0, rays, 5, (narc_ray_options){0});
     assert_true(hits[0].count && hits[0].fraction == 0 && hits[1].count && hits[1].fraction == 0);
     for (size_t k = 0; k < 2; k++) /* what a body stops within itself has no normal */
         assert_true(hits[k].normal_x == 0 && hits[k].normal_y == 0 && hits[k].point_x == (float)rays[k].x);
     assert_true(!hits[2].count && hits[3].count && hits[3].fraction == 0.5f && !hits[4].count);
 }
 
-/* A body counts within its box alone: or what is hit would depend on the order in which boxes are met. */
-TEST(bodies_count_within_their_boxes) {
-    const struct test_ray ray = {-5, 0.5, 8, 0, 1}, rising = {-5, -1, 8, 2, 1}, within = {0, 0.5, 8, 0, 1};
-    const narc_ray_options leaves = {.inside = NARC_INSIDE_LEAVES};
-    const narc_box late = {-0.5f, -1, 1, 1}, early = {-1, -1, 0.5f, 1}, beside = {-1, 0.625f, 1, 1},
-                   other = {3, -1, 4, 1}, front = {-1, -1, -1, 1};
-    const narc_ray_hit *hit = meet_two(0, &late, &ray, 1, (narc_ray_options){0});
-    assert_true(hit->count && hit->fraction == 0.5625f && hit->point_x == -0.5f);
-    hit = meet_two(0, &early, &within, 1, leaves);
-    assert_true(hit->count && hit->fraction == 0.0625f && hit->point_x == 0.5f);
-    hit = meet_two(0, &front, &ray, 1, (narc_ray_options){0}); /* no wider than the edge that is met */
-    assert_true(hit->count && hit->fraction == 0.5f && hit->point_x == -1);
-    assert_int_equal(meet_two(0, &beside, &rising, 1, (narc_ray_options){0})->count, 0);
-    assert_int_equal(meet_two(0, &other, &ray, 1, (narc_ray_options){0})->count, 0);
+/* What a ray hits depends on the ray and the body, not on the box that the body is found by: larger on every side by
+ * nothing or much, beside another that makes the room for rounding large. */
+TEST(rows_do_not_depend_on_boxes) {
+    struct test_random random = test_random_named("fat boxes");
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(600); trial++) {
+        struct scene scene = create_scene((narc_precision)(trial % 2), 1, 2, 1);
+        const size_t family = trial % (FAMILY_COUNT + HARD_COUNT);
+        const struct shape shape = family < FAMILY_COUNT
+                                       ? make_shape(&random, (enum family)family)
+                                       : make_hard_shape(&random, (enum hard_family)(family - FAMILY_COUNT));
+        scene_add_shape(&scene, &shape);
+        scene_add_body(&scene, place_body(&random, scene.precision));
+        scene_add_body(&scene, scene.bodies[0]);
+        scene.bodies[1].scale = 0; /* nothing meets it, but it has a box */
+        const narc_bodies bodies = scene_bodies(&scene);
+        struct test_ray rays[RAYS];
+        narc_ray_hit right[RAYS], found[RAYS];
+        narc_box boxes[2];
+        narc_error error;
+        for (size_t k = 0; k < RAYS; k++)
+            rays[k] = make_ray(&random, &shape, scene.bodies, scene.precision, (enum ray_kind)(k % RAY_KINDS));
+        const narc_rays view = view_rays(rays, RAYS);
+        const narc_ray_options options = {.inside = (narc_inside)random_below(&random, 3)};
+        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
+        const narc_box tight = boxes[0];
+        const float size = tight.max_x - tight.min_x + tight.max_y - tight.min_y;
+        for (size_t way = 0; way < 8; way++) {
+            float *const sides[] = {&boxes[0].min_x, &boxes[0].min_y, &boxes[0].max_x, &boxes[0].max_y};
+            boxes[0] = tight;
+            for (size_t k = 0; k < 4 && way > 0; k++)
+                if (random_below(&random, 2))
+                    *sides[k] += (k < 2 ? -size : size) * (float)random_log_between(&random, 1e-8, 1e3);
+            boxes[1] =
+                way % 2 ? boxes[0] : (narc_box){tight.min_x, tight.min_y, tight.max_x + 1e6f * size, tight.max_y};
+            expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
+            expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, found, RAYS, &error), &error);
+            if (way == 0)
+                memcpy(right, found, sizeof right);
+            assert_memory_equal(found, right, sizeof right);
+        }
+        destroy_scene(&scene);
+    }
+    narc_destroy_index(index);
+}
+
+/* ------------------------------------------------------------------------------------------------ touching */
+
+/* Two bodies that hold the origin, turned about it: with a corner each, or a place of a disc, or an end of a segment. */
+static struct scene make_neighbours(struct test_random *random) {
+    struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
+    struct shape segment;
+    narc_error error;
+    expect_ok(narc_build_segment((narc_point){-0.5, 0}, (narc_point){0.5, 0}, 0, segment.arcs, &segment.count, &error),
+              &error);
+    const double angle = random_below(random, 4) ? random_between(random, -4, 4) : 0;
+    for (int k = 0; k < 2; k++) {
+        const size_t kind = random_below(random, 3);
+        const double size = random_below(random, 2) ? 1 : random_log_between(random, 0.1, 10);
+        const struct shape shape = kind == 0 ? box_of(1, 1, 0) : kind == 1 ? circle_of(0.5) : segment;
+        struct body body = turned_body(angle, size);
+        const double reach = (double)body.scale * (k ? 0.5 : -0.5), rise = kind == 0 ? reach : 0;
+        const double length = hypot((double)body.cosine, (double)body.sine);
+        body.x = ((double)body.cosine * reach - (double)body.sine * rise) / length;
+        body.y = ((double)body.sine * reach + (double)body.cosine * rise) / length;
+        body.shape = scene_add_shape(&scene, &shape);
+        scene_add_body(&scene, body);
+    }
+    return scene;
+}
+
+/* Whatever goes through a point that both hold hits both, also along a segment; normals do not point along the ray. */
+TEST(nothing_slips_between_bodies_that_touch) {
+    struct test_random random = test_random_named("between neighbours");
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(400); trial++) {
+        struct scene scene = make_neighbours(&random);
+        const narc_bodies bodies = scene_bodies(&scene);
+        struct test_ray rays[RAYS];
+        narc_ray_hit hits[2 * RAYS];
+        narc_box boxes[2];
+        narc_error error;
+        for (size_t k = 0; k < RAYS; k++) { /* exactly through the origin: the double of a float is the motion */
+            const double along = atan2((double)scene.bodies[0].sine, (double)scene.bodies[0].cosine);
+            const double angle =
+                k % 4 ? random_between(&random, -4, 4) : along + PI / 4 * (double)random_below(&random, 8);
+            const double away = random_log_between(&random, 30, 1e4);
+            const float x = (float)(away * cos(angle)), y = (float)(away * sin(angle));
+            rays[k] = (struct test_ray){-(double)x, -(double)y, x, y, 2};
+        }
+        const narc_rays view = view_rays(rays, RAYS);
+        const narc_ray_options options = {.most = 2, .inside = (narc_inside)random_below(&random, 3)};
+        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
+        expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
+        expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, hits, 2 * RAYS, &error), &error);
+        for (size_t k = 0; k < 2 * RAYS; k++) {
+            const narc_ray_hit *const hit = &hits[k];
+            const double motion_x = (double)rays[hit->ray].motion_x, motion_y = (double)rays[hit->ray].motion_y;
+            const double nx = (double)hit->normal_x, ny = (double)hit->normal_y;
+            if (!hit->count)
+                fail_msg("trial %zu: a ray by (%a, %a) passes one", trial, motion_x, motion_y);
+            assert_true(hit->fraction >= 0 && hit->fraction <= 2 && fabs(hypot(nx, ny) - 1) < 1e-6);
+            assert_true(nx * motion_x + ny * motion_y < 1e-6 * hypot(motion_x, motion_y));
+        }
+        destroy_scene(&scene);
+    }
+    narc_destroy_index(index);
+}
+
+/* Along a segment, in it or beside it by far less than the bound, a ray meets the end that comes first, against its
+ * normal; from within it leaves by the other. */
+TEST(meets_the_ends_of_segments) {
+    struct test_random random = test_random_named("along segments");
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(1000); trial++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
+        const double angle = random_between(&random, -4, 4), turn = random_between(&random, -4, 4);
+        const double half = random_log_between(&random, 0.1, 10), c = half * cos(turn), s = half * sin(turn);
+        const double bound = NARC_ERROR_BOUND * half;
+        const float x = (float)cos(angle + turn), y = (float)sin(angle + turn);
+        const bool inside = trial % 3 == 0;
+        const double start =
+            inside ? random_between(&random, -0.9, 0.9) * half : -half - random_log_between(&random, 0.1, 10);
+        const double beside = random_between(&random, -0.2, 0.2) * bound;
+        const struct test_ray ray = {start * (double)x - beside * (double)y, start * (double)y + beside * (double)x, x,
+                                     y, 100};
+        const narc_rays view = view_rays(&ray, 1);
+        struct shape shape;
+        narc_ray_hit hit;
+        narc_box box;
+        narc_error error;
+        expect_ok(narc_build_segment((narc_point){-c, -s}, (narc_point){c, s}, 0, shape.arcs, &shape.count, &error),
+                  &error);
+        scene_add_shape(&scene, &shape);
+        scene_add_body(&scene, turned_body(angle, 1));
+        const narc_bodies bodies = scene_bodies(&scene);
+        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, &box, &error), &error);
+        expect_ok(narc_build_index(index, &box, 1, NULL, &error), &error);
+        expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &(narc_ray_options){.inside = NARC_INSIDE_LEAVES},
+                                 &hit, 1, &error),
+                  &error);
+        const double side = inside ? 1 : -1;
+        assert_int_equal(hit.count, 1);
+        assert_true(fabs((double)hit.fraction - (side * half - start)) < 4 * bound);
+        assert_true(fabs((double)hit.point_x - side * half * (double)x) < 4 * bound && hit.radius == 0);
+        assert_true(side * (double)(hit.normal_x * x + hit.normal_y * y) > 1 - 1e-6);
+        destroy_scene(&scene);
+    }
+    narc_destroy_index(index);
 }
 
 /* Fractions up to the largest float, of motions down to the smallest one. */
@@ -190,7 +324,7 @@ TEST(moves_by_the_least_and_the_most) {
                                     {-5, 0, FLT_MAX, 0, INFINITY},
                                     {-5, 0.5, FLT_MAX, -least, 1},
                                     {-5, -5, FLT_MAX, FLT_MAX, INFINITY}};
-    const narc_ray_hit *const hits = meet_two(0, NULL, rays, 5, (narc_ray_options){0});
+    const narc_ray_hit *const hits = meet_two(0, rays, 5, (narc_ray_options){0});
     assert_true(hits[0].count && hits[0].fraction == 0x1p127f && !hits[1].count);
     for (size_t k = 2; k < 4; k++)
         assert_true(hits[k].count && hits[k].normal_x == -1 &&

@@ -20,13 +20,14 @@ struct question {
     const narc_box *boxes, *queries;
     size_t box_count, query_count;
     const uint64_t *category, *mask;
-    const uint32_t *ignored;
+    const uint32_t *ignored, *owner, *ignored_owner;
 };
 
 static bool is_found(const struct question *q, size_t query, size_t body) {
     const uint64_t mask = q->mask ? q->mask[query] : UINT64_MAX,
                    category = q->category ? q->category[body] : UINT64_MAX;
     return overlap(&q->queries[query], &q->boxes[body]) && (!q->ignored || q->ignored[query] != body) &&
+           (!q->owner || q->ignored_owner[query] == UINT32_MAX || q->owner[body] != q->ignored_owner[query]) &&
            (mask & category) != 0;
 }
 
@@ -52,7 +53,10 @@ static void check_rows(const struct pair_list *expected, const narc_pairs *pairs
 
 static void ask(narc_index *index, const struct question *q, unsigned workers, narc_pairs *out_pairs) {
     const narc_workers some = narc_openmp_workers(workers);
+    const narc_owners owners = {.owner = {q->owner, sizeof *q->owner},
+                                .ignored = {q->ignored_owner, sizeof *q->ignored_owner}};
     const narc_index_query query = {.mask = {q->mask, sizeof *q->mask},
+                                    .owners = q->owner ? &owners : NULL,
                                     .ignored = {q->ignored, sizeof *q->ignored},
                                     .workers = workers > 1 ? &some : NULL};
     narc_box *const guarded = guard_copy(q->queries, q->query_count * sizeof *q->queries);
@@ -95,11 +99,13 @@ TEST(finds_what_all_pairs_find) {
     struct test_random random = test_random_named("regions");
     static narc_box boxes[MOST], queries[QUERIES];
     static uint64_t category[MOST], mask[QUERIES];
-    static uint32_t ignored[QUERIES];
+    static uint32_t ignored[QUERIES], owner[MOST], ignored_owner[QUERIES];
     narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < KINDS * COUNTS * 4; trial++) {
         const size_t kind = trial % KINDS, count = counts[trial / KINDS % COUNTS], options = trial / KINDS / COUNTS;
+        for (size_t k = 0; k < count; k++)
+            owner[k] = (uint32_t)random_below(&random, count / 4 + 1);
         const double side = kind == CROWD ? 3 : sqrt((double)count) * 2;
         for (size_t k = 0; k < count; k++) {
             const double x = (double)k * 2, size = random_log_between(&random, 1e-3, 1e2);
@@ -118,6 +124,8 @@ TEST(finds_what_all_pairs_find) {
                 boxes[k] = random_box(&random, side, 0, size);
             else if (kind == HUGE_ONES && random_below(&random, 3) == 0)
                 boxes[k] = (narc_box){-FLT_MAX, (float)x, random_below(&random, 2) ? FLT_MAX : 1, FLT_MAX};
+            if (random_below(&random, 100) == 0)
+                boxes[k] = far_box(&random);
             category[k] = (uint64_t)random_below(&random, 8) << 31;
         }
         for (size_t k = 0; k < QUERIES; k++) {
@@ -130,10 +138,12 @@ TEST(finds_what_all_pairs_find) {
                 (&queries[k].min_x)[random_below(&random, 4)] = random_below(&random, 2) ? NAN : -INFINITY;
             mask[k] = (uint64_t)random_below(&random, 8) << 31;
             ignored[k] = random_below(&random, 4) ? (uint32_t)random_below(&random, count + 1) : UINT32_MAX;
+            ignored_owner[k] = random_below(&random, 4) ? (uint32_t)random_below(&random, count / 4 + 1) : UINT32_MAX;
         }
         check_question(index,
                        &(struct question){boxes, queries, count, QUERIES - trial % 3, options & 1 ? category : NULL,
-                                          options == 1 || options == 2 ? mask : NULL, options & 2 ? ignored : NULL});
+                                          options == 1 || options == 2 ? mask : NULL, options & 2 ? ignored : NULL,
+                                          options > 0 && trial / KINDS % 2 ? owner : NULL, ignored_owner});
     }
     narc_destroy_index(index);
 }
@@ -243,7 +253,7 @@ TEST(reads_columns_with_any_stride) {
         asked[k].word = mask[k] = (uint64_t)random_below(&random, 2) << 42 | random_below(&random, 2) << 21;
         asked[k].index = ignored[k] = (uint32_t)random_below(&random, COUNT);
     }
-    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored};
+    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored, NULL, NULL};
     const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
     const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
     struct pair_list expected = find_all(&q);
@@ -272,8 +282,8 @@ TEST(refuses_bad_arguments) {
     REFUSED(narc_query_index(index, NULL, 1, NULL, &pairs, &error), "boxes is NULL");
     REFUSED(narc_query_index(index, &box, 1, NULL, NULL, &error), "out_pairs is NULL");
     REFUSED(narc_query_index(index, &box, UINT32_MAX, NULL, &pairs, &error), "queries in one call");
-    query.reserved[3] = &query;
-    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[3]");
+    query.reserved[2] = &query;
+    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[2]");
 #undef REFUSED
     assert_int_equal(pairs.count, 7);
     assert_int_equal(narc_query_index(index, &box, 1, NULL, &pairs, NULL), NARC_OK);

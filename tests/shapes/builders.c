@@ -233,6 +233,7 @@ TEST(refuses_what_does_not_fit) {
     expect_refused(&o, narc_build_polygon(square, 4, NAN, arcs, count, error), NARC_ERROR_NOT_FINITE, "radius");
     expect_refused(&o, narc_build_polygon(clockwise, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 0");
     expect_refused(&o, narc_build_polygon(dent, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 2");
+    assert_null(strstr(error->message, "reverse")); /* it is no more convex the other way round */
     expect_refused(&o, narc_build_polygon(flat, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 1");
     expect_refused(&o, narc_build_polygon(star, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "not once");
     expect_refused(&o, narc_build_polygon(twice, 5, 0, arcs, count, error), NARC_ERROR_SIZE, "side 2");
@@ -550,7 +551,10 @@ TEST(builds_skin_polygons) {
     }
     struct output o = make_output();
     const narc_point clockwise[3] = {{0, 0}, {0, 1}, {1, 0}};
-    expect_refused(&o, narc_build_skin_polygon(clockwise, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX, "");
+    expect_refused(&o, narc_build_polygon(clockwise, 3, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX,
+                   "clockwise: reverse the points");
+    expect_refused(&o, narc_build_skin_polygon(clockwise, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX,
+                   "clockwise: reverse the points");
     expect_refused(&o, narc_build_skin_polygon(box, 4, -1, o.arcs, &o.count, &o.error), NARC_ERROR_RADIUS, "-1");
     expect_refused(&o, narc_build_skin_polygon(box, 2, 1, o.arcs, &o.count, &o.error), NARC_ERROR_COUNT, "2 points");
     expect_refused(&o, narc_build_skin_polygon(NULL, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_ARGUMENT, "NULL");

@@ -331,6 +331,53 @@ TEST(divides_corners_beside_valleys) {
         }
 }
 
+/* A valley is one whatever the sign of its 0, as programs write it that know no -0: the same entries, the same bits. */
+TEST(divides_valleys_without_a_sign) {
+    struct test_random random = test_random_named("unsigned valleys");
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        const bool closed = trial % 4 == 0;
+        struct turtle t = closed ? walk_gear(5, 1) : walk_ground(&random, 40, 1.2);
+        for (size_t k = 0; closed && k < t.count; k++) /* valleys of right angles in a ring of corners */
+            t.arcs[k] = (narc_arc){0, 0, 0, 0, 0};
+        t.count = closed ? 0 : t.count;
+        for (int k = 0; closed && k < 4; k++) {
+            walk_arc(&t, 0, PI / 2);
+            walk_line(&t, 3);
+            walk_arc(&t, 0, PI / 2);
+            walk_line(&t, 3);
+            walk_arc(&t, 0, -PI / 2);
+            walk_line(&t, 1);
+        }
+        const narc_chain_options options = {.closed = closed};
+        narc_chain_entry found[2][300];
+        narc_shapes *stores[2];
+        size_t counts[2], valleys = 0;
+        for (int unsigned_ = 0; unsigned_ < 2; unsigned_++) {
+            narc_error error;
+            stores[unsigned_] = empty_store();
+            for (size_t k = 0; unsigned_ && k < t.count; k++) {
+                valleys += signbit(t.arcs[k].radius) && t.arcs[k].radius == 0;
+                t.arcs[k].radius = t.arcs[k].radius == 0 ? 0.0 : t.arcs[k].radius;
+            }
+            expect_ok(narc_add_chain(stores[unsigned_], t.arcs, t.count, &options, found[unsigned_], 300,
+                                     &counts[unsigned_], &error),
+                      &error);
+        }
+        assert_true(!closed || valleys == 4);
+        assert_int_equal(counts[0], counts[1]);
+        assert_memory_equal(found[0], found[1], counts[0] * sizeof **found);
+        for (size_t k = 0; k < counts[0]; k++) {
+            narc_arc arcs[2][NARC_MAX_ARCS];
+            const size_t count = narc_get_arcs(stores[0], found[0][k].shape, arcs[0]);
+            assert_int_equal(narc_get_arcs(stores[1], found[1][k].shape, arcs[1]), count);
+            assert_memory_equal(arcs[0], arcs[1], count * sizeof **arcs);
+        }
+        narc_destroy_shapes(stores[0]);
+        narc_destroy_shapes(stores[1]);
+        free(t.arcs);
+    }
+}
+
 TEST(welds_collinear_edges) {
     enum { EDGES = 10000 };
     struct turtle t = create_turtle(3, 1, 2);

@@ -182,6 +182,7 @@ TEST(refuses_bad_points) {
     expect_error(narc_build_points(square, 4, -1, arcs, &count, &error), NARC_ERROR_RADIUS, &error, "radius is -1");
     expect_error(narc_build_points(square, 4, 0.4, arcs, &count, &error), NARC_ERROR_RADIUS, &error, "not between 0.5");
     expect_error(narc_build_points(clockwise, 4, 0, arcs, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "point 0");
+    assert_non_null(strstr(error.message, "clockwise: reverse the points"));
     expect_error(narc_build_points(same, 4, 0, arcs, &count, &error), NARC_ERROR_SIZE, &error, "point 1");
     narc_point star[5];
     for (size_t i = 0; i < 5; i++)

@@ -28,6 +28,13 @@ static inline narc_box random_box(struct test_random *random, double side, doubl
     return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
 }
 
+/* Around what has flown away. */
+static inline narc_box far_box(struct test_random *random) {
+    static const float away[] = {1e20f, 1e24f, 1e30f, 1e38f, 0, -1e20f, -1e24f, -1e30f, -1e38f};
+    const float x = away[random_below(random, 9)], y = away[random_below(random, 9)];
+    return (narc_box){x, y, x + 1, y + 1};
+}
+
 /* A list of pairs that grows. */
 struct pair_list {
     uint32_t *a, *b;

@@ -25,6 +25,9 @@ struct outline_reference make_outline_reference(const struct shape *shape) {
         outline.end_y[k] = sinl(to);
         outline.extent = fmaxl(outline.extent, hypotl(arc->center_x, arc->center_y) + arc->radius);
     }
+    narc_circle bound = {0, 0, 0};
+    narc_compute_bounding_circle(shape->arcs, shape->count, &bound);
+    outline.is_own = outline.extent < 250 * (long double)bound.radius;
     return outline;
 }
 
@@ -161,6 +164,10 @@ const char *check_ray_hit(const struct outline_reference *o, const struct body *
     const long double bound = truth.bound;
     const bool starts_inside = truth.start <= bound, surely_inside = truth.start < -bound;
     if (hit->count == 0) {
+        /* Of a ray that goes past all of the body a touch counts, far below the bound, unless the shape is far from its own origin. */
+        if (o->is_own && truth.start > bound && line.start < -2 * o->extent && line.end > 2 * o->extent &&
+            truth.least < bound / 8)
+            return "does not touch";
         if (truth.start > bound && truth.least < -bound) {
             /* It may end where it enters. */
             const long double slack = line.length * ray->fraction * 0x1p-22L + bound;

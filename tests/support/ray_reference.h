@@ -19,6 +19,7 @@ struct outline_reference {
     long double center_x[NARC_MAX_ARCS], center_y[NARC_MAX_ARCS], radius[NARC_MAX_ARCS];
     long double start_x[NARC_MAX_ARCS], start_y[NARC_MAX_ARCS], end_x[NARC_MAX_ARCS], end_y[NARC_MAX_ARCS];
     long double extent;
+    bool is_own; /* is the extent less than 250 radii of the circle around the shape? */
 };
 
 struct outline_reference make_outline_reference(const struct shape *shape);

@@ -41,6 +41,7 @@ struct room create_room(struct test_random *random, narc_precision precision, si
     }
     if (count > 20) {
         room.scene.bodies[7].sine = 3;
+        room.scene.bodies[11] = fly_away(room.scene.bodies[11], random_below(random, 24), precision);
         room.scene.bodies[8].shape = FAMILY_FITTED;
         assert_int_equal(narc_remove_shape(room.scene.store, FAMILY_FITTED, NULL), NARC_OK);
     }

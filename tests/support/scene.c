@@ -111,6 +111,15 @@ void round_position(struct body *body, narc_precision precision) {
     }
 }
 
+struct body fly_away(struct body body, size_t k, narc_precision precision) {
+    static const double away[] = {1e20, 1e24, 1e30, 1e38};
+    static const int way_x[] = {1, -1, 0, 0, 1, -1}, way_y[] = {0, 0, 1, -1, 1, -1};
+    body.x += away[k % 4] * way_x[k / 4 % 6];
+    body.y += away[k % 4] * way_y[k / 4 % 6];
+    round_position(&body, precision);
+    return body;
+}
+
 void scene_move_bodies(struct scene *scene, struct test_random *random, double step) {
     for (size_t k = 0; k < scene->body_count; k++) {
         struct body *body = &scene->bodies[k];

@@ -61,6 +61,10 @@ struct body turned_body(double angle, double scale);
 /* A copy of a position in single precision, in both members. */
 void round_position(struct body *body, narc_precision precision);
 
+/* The body after it has flown away: 1e20, 1e24, 1e30 or 1e38 along an axis or between both, another way for each k below
+ * 24. It is sound, and has a box. */
+struct body fly_away(struct body body, size_t k, narc_precision precision);
+
 /* A step of all bodies, small or not. */
 void scene_move_bodies(struct scene *scene, struct test_random *random, double step);
 

@@ -167,8 +167,13 @@ check "all of them collide" reports "colliding pairs" 21
 check "bodies from standard input" cmp out.txt known.csv
 "$narc" collide --shapes - --bodies bodies.csv --out - <shapes.json >out.txt 2>err.txt
 check "shapes from standard input" cmp out.txt known.csv
-fails "standard input twice" "narc: standard input is given twice" collide --shapes shapes.json --bodies - --pairs - \
+fails "standard input twice" "narc: only one input may be -" collide --shapes shapes.json --bodies - --pairs - \
     --out new.csv <bodies.csv
+fails "standard input twice, with nothing in it" "narc: only one input may be -" collide --shapes - --bodies - \
+    --out new.csv </dev/null
+printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,0.1,0,0\ndisc,1e39,0,0\ndisc,-1e300,0,0\n' >far.csv
+works "bodies without a box" collide --shapes shapes.json --bodies far.csv
+check "they are told of" says "without a box 2 bodies, beyond the range of single precision"
 if has_terminal; then
     script -qec "'$narc' collide --shapes shapes.json --bodies pile.csv" /dev/null >script.txt 2>&1 </dev/null
     check "progress on a terminal" grep -q "narrow phase, 4498500 pairs" script.txt

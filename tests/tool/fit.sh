@@ -145,7 +145,57 @@ check "a chain of lines: a picture" grep -q "</svg>" chain.svg
 printf '0,0\n4,0\n4,4\n0,4\n\n1,1\n3,1\n3,3\n1,3\n' >fits/frame.csv
 works "a chain round a hole" fit fits/frame.csv --chain --tolerance 0.1 --out chain.json
 check "a chain round a hole: two chains" names chain.json "frame/1 frame/2 "
-check "a chain round a hole: 4 valleys" test "$(grep -c '"radius": -0,' chain.json)" = 4
+check "a chain round a hole: 4 valleys" test "$(grep -c '"radius": -0.0,' chain.json)" = 4
+
+# What is written was shown to the store: flat arcs become lines, lines that cross are told.
+taken() { # taken NAME FILE ARGUMENTS...: the chain is written, and a body of it is ground.
+    name=$1 file=$2
+    shift 2
+    works "$name" fit fits/$file.csv --chain "$@" --out chain.json
+    cp out.txt table.txt
+    printf 'shape,x,y,angle\n%s,0,0,0\n' $file >one.csv
+    works "$name: taken" collide --shapes chain.json --bodies one.csv --out /dev/null
+}
+printf '0,0\n50,0.1\n100,0\n100,100\n0,100\n' >fits/bent.csv
+taken "a chain that is nearly straight" bent --tolerance 0.05
+check "a chain that is nearly straight: kept" less "$(awk 'END { print $5 }' table.txt)" 0.0500001
+awk 'BEGIN { for (k = 0; k <= 400; k++) print k "," 0.00002 * (k - 200) * (k - 200) / 200; print "400,-9\n0,-9" }' >fits/flat.csv
+for tolerance in 1 0.01 0.0001; do
+    taken "a chain of a flat arc, $tolerance" flat --tolerance $tolerance
+done
+awk 'BEGIN { for (k = 0; k < 40; k++) print k * 0.25 "," 2e-6 * k * k "\n" }' | grep . >fits/bowed.csv
+taken "a stroke that hardly turns" bowed --tolerance 0.0001 --open
+printf '0,0\n4,4\n4,0\n0,4\n' >fits/cross.csv
+printf '0,0\n4,0\n4,4\n0,4\n\n2,2\n6,2\n6,6\n2,6\n' >fits/two.csv
+printf '0,0\n10,0\n10,10\n5,10\n5,20\n5,10\n0,10\n' >fits/spike.csv
+printf '0,0\n4,0\n8,0\n' >fits/line.csv
+printf '1e-300,0\n4e-300,0\n0,1e-300\n' >fits/tiny.csv
+crossing() { # crossing FILE MESSAGE ARGUMENTS...
+    file=$1 message=$2
+    shift 2
+    fails "a chain: $file $*" "narc: fits/$file.csv: $message" fit fits/$file.csv --chain --tolerance 0.05 "$@" \
+        --out new.json
+}
+for open in "" --open; do
+    crossing cross "contour 0: line 0 crosses line 2 of contour 0 at (2, 2)" $open
+    crossing spike "contour 0: line 3 meets line 4 of contour 0 at (5, 10)" $open
+    crossing two "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)" $open
+    crossing tiny "contour 0: its size is 3e-300" $open
+done
+crossing line "contour 0: line 2 meets line 0 of contour 0 at (4, 0)"
+printf '0,0\n4,0\n4,4\n0,4\n0,0\n' >fits/ring.csv
+crossing ring "contour 0: it ends where it begins" --open
+
+# Parts of the same: they are resolved, or have no area.
+works "parts of a bow-tie" fit fits/cross.csv --parts 4 --tolerance 0.05 --edges --starts 1 --out parts.json
+check "parts of a bow-tie: its area" is cross 6 8
+check "parts of a bow-tie: two" test "$(value cross 2)" = 2
+works "parts of a spike" fit fits/spike.csv --parts 4 --tolerance 0.1 --edges --starts 1 --out parts.json
+check "parts of a spike: the area without it" is spike 6 100
+works "parts that overlap" fit fits/two.csv --parts 4 --tolerance 0.1 --edges --starts 1 --out parts.json
+check "parts that overlap: the area of both" is two 6 28
+fails "parts of a line" "narc: fits/line.csv: its lines enclose no area" fit fits/line.csv --parts 4 --tolerance 0.05 \
+    --out new.json
 # Ground as a body: a level stretch, a rim and a bowl. A ball on the level, a box that stands in the bowl on two corners.
 cat >ground.json <<'END'
 {"shapes": [{"name": "ball", "arcs": [{"center": [0, 0], "radius": 0.5, "start": 0, "end": 6.283185307179586}]},
@@ -161,12 +211,18 @@ works "ground" collide --shapes ground.json --bodies ground.csv --out on_ground.
 check "ground: three contacts" test "$(tail -n +2 on_ground.csv | cut -d, -f1,2,10,11 | tr '\n' ' ')" = "0,1,0,0 0,2,1,0 0,2,1,0 "
 check "ground: the ball's" grep -q "^0,1,-0.0099.*,0,1,4,-0.005" on_ground.csv
 check "ground: a picture" grep -q "</svg>" ground.svg
+printf 'shape,x,y,angle,scale\nhill,0,0,0,1e8\nball,4,0,0,1\n' >large.csv
+fails "ground that is too large: what lies behind it counts" "large.csv:2: scale .*'1e8'" \
+    collide --shapes ground.json --bodies large.csv
 printf 'x,y,motion_x,motion_y\n5,3,0,-6\n-3,3,0,-6\n5,-3,0,6\n' >down.csv
 works "rays on ground" cast --shapes ground.json --bodies ground.csv --rays down.csv --out hits.csv
 check "rays on ground: two from the air hit" test "$(tail -n +2 hits.csv | cut -d, -f1,2 | tr '\n' ' ')" = "0,0 1,2 "
 fails "ground is not strewn" "narc: ground.json: shape 'hill' is a chain" scene --shapes ground.json --bodies 3 --density 1 --seed 1
 sed 's/"radius": 2,/"radius": 1,/' ground.json >broken.json
-fails "broken ground" "narc: broken.json: chain 'hill': arc 1: starts 1 away" collide --shapes broken.json --bodies ground.csv
+fails "broken ground" "broken.json:5: shape 'hill', arc 1: starts 1 away" collide --shapes broken.json --bodies ground.csv
+printf 'shape,x,y,angle\nball,4,0.49,0\n' >ball.csv
+fails "broken ground that no body is" "broken.json:5: shape 'hill', arc 1: starts 1 away" collide --shapes broken.json \
+    --bodies ball.csv
 
 works "an open stroke" fit fits/square.csv --chain --open --tolerance 0.1 --out chain.json
 check "an open stroke: two corners, two ends" test "$(grep -c '"radius": 0,' chain.json)" = 4
@@ -186,6 +242,20 @@ works "parts with arcs" fit fits/frame.csv --parts 4 --arcs 4 --edges --approxim
 check "parts with arcs: 4" test "$(value frame 2)" = 4
 fails "too few parts" "narc: fits/frame.csv: the tolerance .* 3 parts" fit fits/frame.csv --parts 3 --tolerance 0.1 \
     --out new.json
+
+# One tolerance for cuts, laps and shapes, told in the user's numbers. Parts that smooth arcs do not reach get edges.
+printf '0,0\n9,0\n9,1\n1,1\n1,9\n0,9\n' >fits/hook.csv
+for goal in --bound --approximate; do
+    works "a tolerance of parts, $goal" fit fits/hook.csv --parts 9 --tolerance 0.05 $goal --edges --starts 1 --out some.json
+    check "a tolerance of parts, $goal: kept" less "$(value hook 8)" 0.0500001
+    fails "a tolerance too small, $goal" "narc: fits/hook.csv: the tolerance 0.005 is too small for parts and their shapes, 0.01" \
+        fit fits/hook.csv --parts 9 --tolerance 0.005 $goal --edges --out new.json
+done
+works "edges that were not asked for" fit fits/hook.csv --parts 9 --tolerance 0.03 --starts 1 --out some.json
+check "edges that were not asked for: kept" less "$(value hook 8)" 0.0300001
+check "edges that were not asked for: told" grep -q "^smooth arcs .*: [12] of the parts of hook$" out.txt
+fails "edges that are not wanted" "narc: fits/hook.csv: part 1, whose shape has a share of the tolerance 0.03: up to 32" \
+    fit fits/hook.csv --parts 9 --tolerance 0.03 --no-edges --starts 1 --out new.json
 
 # A body named after an outline in parts has all of them, and no contacts with itself.
 printf 'shape,x,y,angle,scale\nframe,0,0,0,1\nsquare,0,0,1,0.5\nframe,3.5,0,0,1\n' >frames.csv

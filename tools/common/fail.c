@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "names.h"
 #include "output.h"
 #include "progress.h"
 
@@ -25,12 +26,10 @@ _Noreturn void abandon(void) {
     _Exit(FAILURE_STATUS);
 }
 
-/* Prints `line` as one line. */
+/* Prints `line` as one line of UTF-8. */
 static void print_line(char *line) {
     hide_progress();
-    for (char *c = line; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
+    narc_make_printable(line);
     fprintf(stderr, "%s\n", line);
 }
 

@@ -60,6 +60,13 @@ size_t parse_options(int argc, char **argv, option *options, size_t option_count
     }
     if (operand_name && found == 0)
         fail("%s is missing", operand_name);
+    size_t standard = 0;
+    for (size_t k = 0; k < found; k++)
+        standard += strcmp(operands[k], "-") == 0;
+    for (size_t k = 0; k < option_count; k++)
+        standard += options[k].takes_value == INPUT_FILE && options[k].value && strcmp(options[k].value, "-") == 0;
+    if (standard > 1)
+        fail("only one input may be -, standard input");
     return found;
 }
 

@@ -9,10 +9,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* What an option may take besides nothing (false) and a value (true): the name of a file that is read, as operands are. "-"
+ * may be given for one of all these. */
+enum { INPUT_FILE = 2 };
+
 typedef struct option {
-    const char *name; /* with its dashes */
-    bool takes_value;
-    const char *value; /* NULL: not given; "" for a flag that was */
+    const char *name;     /* with its dashes */
+    unsigned takes_value; /* false, true or INPUT_FILE */
+    const char *value;    /* NULL: not given; "" for a flag that was */
 } option;
 
 /* Fills in the options, and the operands if there is a name for them: one or more, in order, into `operands` with room

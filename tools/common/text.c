@@ -19,17 +19,12 @@
 #include "system.h"
 
 static FILE *open_input(const char *path) {
-    static bool is_input_taken;
-    if (strcmp(path, "-") != 0) {
-        FILE *file = open_file(path, "rb");
-        if (file)
-            protect_input(path);
-        return file;
-    }
-    if (is_input_taken)
-        fail("standard input is given twice");
-    is_input_taken = true;
-    return stdin;
+    if (strcmp(path, "-") == 0)
+        return stdin;
+    FILE *file = open_file(path, "rb");
+    if (file)
+        protect_input(path);
+    return file;
 }
 
 /* The reason why a file cannot be read, or NULL. A regular file that is too large is known before it is read. */
