@@ -20,11 +20,14 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { SHOWN = 3, BODIES = 160, SHAPES = 16, ENTRIES = 2 * CHAIN_ARCS, ROWS = 16384 };
+enum { SHOWN = 3, BODIES = 160, MOVERS, SHAPES = 16, ENTRIES = 2 * CHAIN_ARCS, ROWS = 16384 };
 
 /* A search with so many steps along a body, or across the smallest piece beside it; and how much finer where it seems to
  * have missed something. */
 static const double steps_per_body = 96, steps_per_piece = 3, finer = 16;
+
+/* What may tell of a body in the air that it touches the ground. */
+enum { MERGED_MANIFOLDS, MANIFOLDS, CONTACTS, MERGED_CONTACTS, OVERLAPS, CASTS, PHANTOMS };
 
 struct tally {
     size_t bodies, minima, rows; /* minima that must be told and were; rows that are one of them */
@@ -32,6 +35,9 @@ struct tally {
         touching; /* not compared, or by themselves alone; see below */
     size_t wrong, refused;
     double worst; /* error of a separation, by its bound */
+    size_t in_air, met,
+        unmet; /* bodies that touch none of the ground, and are not in it; that meet it, of which a cast does not begin with it */
+    size_t phantoms[PHANTOMS];
 };
 
 /* A chain in a store, in a place, and its entries as bodies. */
@@ -42,9 +48,9 @@ struct setting {
     narc_shapes *store;
     narc_chain_entry entries[ENTRIES];
     size_t entry_count;
-    struct body bodies[BODIES + ENTRIES]; /* first what lies on the chain */
+    struct body bodies[MOVERS + ENTRIES]; /* first what lies on the chain, and what is far away */
     struct shape shapes[SHAPES];          /* of body k the one with the number k % SHAPES */
-    uint32_t runs[BODIES + ENTRIES];
+    uint32_t runs[MOVERS + ENTRIES];
     double margin;
 };
 
@@ -93,6 +99,27 @@ static struct body in_world(const struct setting *setting, struct body body) {
     return body;
 }
 
+/* Half of what is beside thin ground comes out of the air, up to half of its size away, or as deep as what it is wide. */
+static struct body place_body(struct test_random *random, const struct setting *setting, enum chain_family family,
+                              const struct shape *shape) {
+    narc_circle inner, around;
+    const double reach = setting->margin > 0 ? setting->margin : 0.01;
+    if (family < CHAIN_SLAB)
+        return ride_chain(random, &setting->chain, shape, reach);
+    narc_compute_inscribed_circle(shape->arcs, shape->count, &inner);
+    narc_compute_bounding_circle(shape->arcs, shape->count, &around);
+    switch (random_below(random, 4)) {
+    case 0:
+        return ride_chain(random, &setting->chain, shape, around.radius * random_log_between(random, 0.01, 0.5));
+    case 1:
+        return approach_chain(random, &setting->chain, setting->ground, shape,
+                              -2 * inner.radius * random_log_between(random, 1e-3, 1));
+    default:
+        return approach_chain(random, &setting->chain, setting->ground, shape,
+                              around.radius * random_log_between(random, 1e-3, 0.5));
+    }
+}
+
 static bool make_setting(struct test_random *random, enum chain_family family, narc_arc *arcs,
                          struct setting *setting) {
     setting->chain = make_chain(random, family, arcs);
@@ -106,8 +133,8 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
     narc_error error = {0};
     const narc_status status = narc_add_chain(setting->store, arcs, setting->chain.count, &options, setting->entries,
                                               ENTRIES, &setting->entry_count, &error);
-    /* Arcs that turn by next to nothing are too flat. */
-    if (status == NARC_ERROR_RADIUS) {
+    /* Arcs that turn by next to nothing are too flat. Thin sheets may cross themselves. */
+    if (status == NARC_ERROR_RADIUS || (family >= CHAIN_SLAB && status == NARC_ERROR_NOT_SIMPLE)) {
         narc_destroy_shapes(setting->store);
         return false;
     }
@@ -128,10 +155,13 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
     }
     for (size_t k = 0; k < BODIES; k++) {
         const struct shape *shape = &setting->shapes[k % SHAPES];
-        const double reach = setting->margin > 0 ? setting->margin : 0.01;
-        setting->bodies[k] = in_world(setting, ride_chain(random, &setting->chain, shape, reach));
+        setting->bodies[k] = in_world(setting, place_body(random, setting, family, shape));
         setting->bodies[k].shape = stored[k % SHAPES];
     }
+    struct body *far = &setting->bodies[BODIES]; /* lawful, and changes nothing */
+    *far = turned_body(0, 1);
+    *(random_below(random, 2) ? &far->x : &far->y) = random_below(random, 2) ? 1e24 : -1e24;
+    far->shape = stored[0];
     for (size_t k = 0; k < setting->entry_count; k++) {
         struct body entry = turned_body(0, 1);
         entry.x = setting->entries[k].x;
@@ -140,8 +170,8 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
         entry = in_world(setting, entry);
         entry.cosine = setting->place.cosine;
         entry.sine = setting->place.sine;
-        setting->bodies[BODIES + k] = entry;
-        setting->runs[BODIES + k] = setting->entries[k].run;
+        setting->bodies[MOVERS + k] = entry;
+        setting->runs[MOVERS + k] = setting->entries[k].run;
     }
     return true;
 }
@@ -151,11 +181,18 @@ static void end_setting(struct setting *setting) {
     narc_destroy_shapes(setting->store);
 }
 
-/* The rows of all bodies whose boxes meet an entry's, merged. */
-static size_t find_rows(const struct setting *setting, struct pair *pairs, narc_manifold *rows) {
-    static narc_box boxes[BODIES + ENTRIES];
-    const size_t count = BODIES + setting->entry_count;
-    const narc_bodies bodies = {.count = count,
+/* What is asked of all bodies whose boxes meet an entry's, each with those, and of what is far away with all entries, before
+ * the others. */
+struct question {
+    narc_bodies bodies;
+    narc_pairs list, near;
+    struct pair pairs[MOVERS * ENTRIES];
+};
+
+static void pose_question(const struct setting *setting, struct question *out) {
+    static narc_box boxes[MOVERS + ENTRIES];
+    const size_t count = MOVERS + setting->entry_count;
+    out->bodies = (narc_bodies){.count = count,
                                 .x = NARC_POSITION_COLUMN(setting->bodies, x),
                                 .y = NARC_POSITION_COLUMN(setting->bodies, y),
                                 .cosine = NARC_COLUMN(setting->bodies, cosine),
@@ -164,30 +201,101 @@ static size_t find_rows(const struct setting *setting, struct pair *pairs, narc_
                                 .shape = NARC_COLUMN(setting->bodies, shape)};
     const narc_box_options options = {.margin = (float)(setting->margin / 2)};
     narc_error error = {0};
-    expect_ok(narc_compute_boxes(setting->store, &bodies, &options, boxes, &error), &error);
-    size_t pair_count = 0, found = 0;
+    expect_ok(narc_compute_boxes(setting->store, &out->bodies, &options, boxes, &error), &error);
+    size_t pair_count = 0;
+    for (uint32_t b = MOVERS; b < count; b++)
+        out->pairs[pair_count++] = (struct pair){BODIES, b};
     for (uint32_t a = 0; a < BODIES; a++) {
-        for (uint32_t b = BODIES; b < count; b++)
+        for (uint32_t b = MOVERS; b < count; b++)
             if (boxes[a].min_x <= boxes[b].max_x && boxes[b].min_x <= boxes[a].max_x &&
                 boxes[a].min_y <= boxes[b].max_y && boxes[b].min_y <= boxes[a].max_y)
-                pairs[pair_count++] = (struct pair){a, b};
+                out->pairs[pair_count++] = (struct pair){a, b};
     }
-    const narc_pairs list = {.count = pair_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
-    size_t skipped = 0;
+    const struct pair *near = &out->pairs[setting->entry_count];
+    out->list = (narc_pairs){.count = pair_count, .a = NARC_COLUMN(out->pairs, a), .b = NARC_COLUMN(out->pairs, b)};
+    out->near =
+        (narc_pairs){.count = pair_count - setting->entry_count, .a = NARC_COLUMN(near, a), .b = NARC_COLUMN(near, b)};
+}
+
+/* The manifolds of the bodies near the ground. */
+static size_t find_rows(const struct setting *setting, const struct question *question, narc_manifold *rows) {
+    static narc_manifold with_far[ROWS];
+    size_t skipped = 0, found = 0, again = 0;
     const narc_query query = {.margin = (float)setting->margin, .out_skipped = &skipped};
-    expect_ok(narc_find_manifolds(setting->store, &bodies, &list, &query, rows, ROWS, &found, &error), &error);
+    narc_error error = {0};
+    expect_ok(
+        narc_find_manifolds(setting->store, &question->bodies, &question->near, &query, rows, ROWS, &found, &error),
+        &error);
+    assert_int_equal(skipped, 0);
+    expect_ok(
+        narc_find_manifolds(setting->store, &question->bodies, &question->list, &query, with_far, ROWS, &again, &error),
+        &error);
+    assert_true(again == found && skipped <= setting->entry_count); /* pairs so far apart may have no answer */
+    for (size_t k = 0; k < found; k++)
+        with_far[k].pair -= (uint32_t)setting->entry_count;
+    assert_memory_equal(with_far, rows, found * sizeof *rows);
     for (size_t k = 1; k < found; k++) /* a pair's rows are in the order of their normals */
         assert_true(rows[k].pair != rows[k - 1].pair ||
                     rows[k - 1].normal_x * rows[k].normal_y - rows[k - 1].normal_y * rows[k].normal_x >= 0);
-    assert_int_equal(skipped, 0);
-    const uint32_t *runs = setting->runs;
-    return narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows, found);
+    return found;
+}
+
+static uint32_t body_of(const narc_pairs *pairs, size_t pair) {
+    return *(const uint32_t *)((const char *)pairs->a.base + pair * (size_t)pairs->a.stride);
+}
+
+static double deepest_of(const narc_manifold *row) {
+    return (double)(row->count > 1 ? fminf(row->point[0].separation, row->point[1].separation)
+                                   : row->point[0].separation);
+}
+
+/* What contacts, overlaps and the starts of casts say agrees; counts what they tell of each body. */
+static void ask_otherwise(const struct setting *setting, const struct question *question,
+                          const narc_manifold *manifolds, size_t manifold_count, size_t (*told)[PHANTOMS]) {
+    static narc_contact rows[ROWS];
+    static narc_impact impacts[MOVERS * ENTRIES];
+    static uint64_t bits[MOVERS * ENTRIES / 64 + 1];
+    static double deepest[MOVERS * ENTRIES];
+    static float motion[MOVERS + ENTRIES];
+    const narc_pairs *pairs = &question->near;
+    const narc_index_column runs = {setting->runs, sizeof *setting->runs};
+    const narc_query query = {.margin = (float)setting->margin};
+    size_t count = 0;
+    narc_error error = {0};
+    for (size_t k = 0; k < MOVERS; k++)
+        motion[k] = (float)(k % 16) / 64 - 0.1f;
+    const narc_motions motions = {.x = NARC_ARRAY(motion), .y = {&motion[5], 0}};
+    expect_ok(narc_find_contacts(setting->store, &question->bodies, pairs, &query, rows, ROWS, &count, &error), &error);
+    expect_ok(narc_find_overlaps(setting->store, &question->bodies, pairs, NULL, bits, &error), &error);
+    expect_ok(narc_cast_pairs(setting->store, &question->bodies, &motions, pairs, NULL, NULL, impacts, MOVERS * ENTRIES,
+                              &error),
+              &error);
+    for (size_t k = 0; k < pairs->count; k++)
+        deepest[k] = INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        deepest[rows[k].pair] = fmin(deepest[rows[k].pair], (double)rows[k].separation);
+        told[body_of(pairs, rows[k].pair)][CONTACTS] += rows[k].separation < 0;
+    }
+    for (size_t k = 0; k < pairs->count; k++) {
+        const bool begins = impacts[k].count == NARC_CAST_HIT && impacts[k].fraction == 0;
+        assert_int_equal(bit_is_set(bits, k), deepest[k] < 0);
+        told[body_of(pairs, k)][OVERLAPS] += bit_is_set(bits, k);
+        told[body_of(pairs, k)][CASTS] += begins;
+    }
+    assert_int_equal(manifold_count, count);
+    for (size_t k = 0; k < count; k++) {
+        assert_true(manifolds[k].pair == rows[k].pair && deepest_of(&manifolds[k]) == (double)rows[k].separation);
+        told[body_of(pairs, rows[k].pair)][MANIFOLDS] += deepest_of(&manifolds[k]) < 0;
+    }
+    count = narc_merge_contacts(pairs, runs, rows, count);
+    for (size_t k = 0; k < count; k++)
+        told[body_of(pairs, rows[k].pair)][MERGED_CONTACTS] += rows[k].separation < 0;
 }
 
 /* The documented bound of a separation's error, with the entry's extent, closure and all. */
 static double entry_bound(const struct setting *setting, const struct reference_body *body, uint32_t b) {
     narc_arc arcs[NARC_MAX_ARCS];
-    const narc_chain_entry *entry = &setting->entries[b - BODIES];
+    const narc_chain_entry *entry = &setting->entries[b - MOVERS];
     const size_t count = narc_get_arcs(setting->store, entry->shape, arcs);
     double extent = 0;
     for (size_t k = 0; k < count; k++)
@@ -212,7 +320,7 @@ static struct told read_row(const struct setting *setting, const struct referenc
                               body->y + second_offset.y - second_half * normal.y};
     told.other_separation = 2 * second_half;
     told.bound = entry_bound(setting, body, pair->b);
-    told.entry = pair->b - BODIES;
+    told.entry = pair->b - MOVERS;
     told.count = row->count;
     told.feature = point->feature;
     const double apart = -(double)row->radius_a - (double)row->radius_b - told.separation; /* the centres */
@@ -266,7 +374,11 @@ static bool is_beyond(const struct setting *setting, const struct reference_body
                            last->center_y + last->radius * sin(last->end)};
     if (minimum->foot.distance >= 0)
         return false;
-    return !holds(body, minimum->foot.at) || (!setting->chain.closed && (holds(body, from) || holds(body, to)));
+    narc_circle inner;
+    narc_compute_inscribed_circle(body->arcs, body->count, &inner);
+    const double promised = 0.98 * fmin(2 * inner.radius * body->scale, minimum->foot.thickness);
+    return (-minimum->foot.distance > promised && !holds(body, minimum->foot.at)) ||
+           (!setting->chain.closed && (holds(body, from) || holds(body, to)));
 }
 
 /* Is a row what it says: do both points lie where they should, with that normal? `size` of the body. */
@@ -464,32 +576,62 @@ static const char *compare(const struct setting *setting, const struct reference
     return wrong;
 }
 
+static void print_failure(const struct setting *setting, const struct reference_body *body) {
+    for (size_t i = 0; i < body->count; i++)
+        print_error("  B {%.17g, %.17g, %.17g, %.17g, %.17g}\n", body->arcs[i].center_x, body->arcs[i].center_y,
+                    body->arcs[i].radius, body->arcs[i].start, body->arcs[i].end);
+    print_error("  P %.17g %.17g %.17g %.17g %.17g\n", body->x, body->y, body->cosine, body->sine, body->scale);
+    for (size_t i = 0; i < setting->chain.count && setting->chain.count < 400; i++) {
+        const narc_arc *arc = &setting->chain.arcs[i];
+        print_error("  {%.17g, %.17g, %.17g, %.17g, %.17g}\n", arc->center_x, arc->center_y, arc->radius, arc->start,
+                    arc->end);
+    }
+}
+
+/* Nothing tells of a body in the air that it touches the ground. */
+static const char *check_air(const struct setting *setting, const struct reference_body *body, const size_t *told,
+                             struct tally *tally) {
+    const struct ground_clearance clearance = ground_find_clearance(setting->ground, body);
+    bool is_told = false;
+    tally->met += !(clearance.distance > 0);
+    tally->unmet += !(clearance.distance > 0) && told[MERGED_MANIFOLDS] > 0 && told[CASTS] == 0;
+    if (!clearance.in_air || clearance.distance < 1e-5 * (1 + hypot(body->x, body->y) + reference_extent(body)))
+        return NULL;
+    tally->in_air++;
+    for (int k = 0; k < PHANTOMS; k++) {
+        tally->phantoms[k] += told[k] > 0;
+        is_told |= told[k] > 0;
+    }
+    return is_told ? "told of in the air" : NULL;
+}
+
 static void check_setting(const struct setting *setting, enum chain_family family, struct tally *tally) {
-    static struct pair pairs[BODIES * ENTRIES];
+    static struct question question;
     static narc_manifold rows[ROWS];
     static struct told told[ROWS];
-    const size_t count = find_rows(setting, pairs, rows);
+    size_t otherwise[MOVERS][PHANTOMS] = {{0}};
+    pose_question(setting, &question);
+    size_t count = find_rows(setting, &question, rows);
+    ask_otherwise(setting, &question, rows, count, otherwise);
+    const uint32_t *runs = setting->runs;
+    count = narc_merge_manifolds(&question.near, (narc_index_column){runs, sizeof *runs}, rows, count);
+    for (size_t k = 0; k < count; k++)
+        otherwise[body_of(&question.near, rows[k].pair)][MERGED_MANIFOLDS] += deepest_of(&rows[k]) < 0;
     for (size_t k = 0, row = 0; k < BODIES; k++) {
         const struct reference_body body = pose_on(setting, k);
         size_t of_body = 0;
-        for (; row < count && pairs[rows[row].pair].a == k; row++)
-            told[of_body++] = read_row(setting, &body, &pairs[rows[row].pair], &rows[row]);
+        for (; row < count && body_of(&question.near, rows[row].pair) == k; row++)
+            told[of_body++] =
+                read_row(setting, &body, &question.pairs[setting->entry_count + rows[row].pair], &rows[row]);
         tally->bodies++;
-        const char *wrong = compare(setting, &body, told, of_body, 1, tally);
-        if (wrong)
+        const char *wrong = check_air(setting, &body, otherwise[k], tally);
+        if (!wrong)
+            wrong = compare(setting, &body, told, of_body, 1, tally);
+        if (wrong && strcmp(wrong, "told of in the air"))
             wrong = compare(setting, &body, told, of_body, finer, tally);
         if (wrong && (tally->wrong++ < SHOWN || getenv("NARC_TEST_SHOW"))) {
-            if (getenv("NARC_TEST_SHOW") && setting->chain.count < 400) {
-                for (size_t i = 0; i < body.count; i++)
-                    print_error("  B {%.17g, %.17g, %.17g, %.17g, %.17g}\n", body.arcs[i].center_x,
-                                body.arcs[i].center_y, body.arcs[i].radius, body.arcs[i].start, body.arcs[i].end);
-                print_error("  P %.17g %.17g %.17g %.17g %.17g\n", body.x, body.y, body.cosine, body.sine, body.scale);
-                for (size_t i = 0; i < setting->chain.count; i++) {
-                    const narc_arc *arc = &setting->chain.arcs[i];
-                    print_error("  {%.17g, %.17g, %.17g, %.17g, %.17g}\n", arc->center_x, arc->center_y, arc->radius,
-                                arc->start, arc->end);
-                }
-            }
+            if (getenv("NARC_TEST_SHOW"))
+                print_failure(setting, &body);
             print_error("%s: %s; margin %.9g, body of %zu arcs at (%a, %a)\n", chain_family_name(family), wrong,
                         setting->margin, body.count, body.x, body.y);
         }
@@ -514,6 +656,11 @@ static void check_family(enum chain_family family) {
            "sides, %zu minima and %zu rows shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
            chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.sunk, tally.overruled,
            tally.deep, tally.nearer, tally.shallow, tally.touching, tally.wrong, tally.refused, tally.worst);
+    printf("    %zu in the air, of which told: %zu (manifolds %zu, contacts %zu, merged %zu, overlaps %zu, casts %zu); "
+           "%zu "
+           "meet the ground, of %zu a cast does not begin with that\n",
+           tally.in_air, tally.phantoms[MERGED_MANIFOLDS], tally.phantoms[MANIFOLDS], tally.phantoms[CONTACTS],
+           tally.phantoms[MERGED_CONTACTS], tally.phantoms[OVERLAPS], tally.phantoms[CASTS], tally.met, tally.unmet);
     assert_int_equal(tally.wrong, 0);
     assert_true(tally.bodies < 10 * BODIES || tally.minima > tally.bodies / 4);
 }
@@ -527,5 +674,14 @@ TEST(test_steps) { check_family(CHAIN_STEPS); }
 TEST(test_long) { check_family(CHAIN_LONG); }
 TEST(test_closed) { check_family(CHAIN_CLOSED); }
 TEST(test_ends) { check_family(CHAIN_ENDS); }
+TEST(test_slab) { check_family(CHAIN_SLAB); }
+TEST(test_arch) { check_family(CHAIN_ARCH); }
+TEST(test_zigzag) { check_family(CHAIN_ZIGZAG); }
+TEST(test_sheet) { check_family(CHAIN_SHEET); }
+TEST(test_angle) { check_family(CHAIN_ANGLE); }
+TEST(test_cup) { check_family(CHAIN_CUP); }
+TEST(test_pipe) { check_family(CHAIN_PIPE); }
+TEST(test_walls) { check_family(CHAIN_WALLS); }
+TEST(test_gear) { check_family(CHAIN_GEAR); }
 
 TEST_MAIN("ground minima")
