@@ -17,6 +17,7 @@
 #include "expect.h"
 #include "narc_broad_phase.h"
 #include "narc_chains.h"
+#include "turtle.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -40,8 +41,20 @@ struct tally {
     size_t phantoms[PHANTOMS];
 };
 
+struct setting;
+
+/* Ground and bodies: those of a family, or a scene's own. */
+struct kind {
+    const char *name;
+    enum chain_family family;
+    struct chain (*make_chain)(struct test_random *random, narc_arc *arcs);
+    struct shape (*make_shape)(struct test_random *random);
+    struct body (*place)(struct test_random *random, const struct setting *setting, const struct shape *shape);
+};
+
 /* A chain in a store, in a place, and its entries as bodies. */
 struct setting {
+    const struct kind *kind;
     struct chain chain;
     struct ground *ground;
     struct body place;
@@ -100,11 +113,12 @@ static struct body in_world(const struct setting *setting, struct body body) {
 }
 
 /* Half of what is beside thin ground comes out of the air, up to half of its size away, or as deep as what it is wide. */
-static struct body place_body(struct test_random *random, const struct setting *setting, enum chain_family family,
-                              const struct shape *shape) {
+static struct body place_body(struct test_random *random, const struct setting *setting, const struct shape *shape) {
     narc_circle inner, around;
     const double reach = setting->margin > 0 ? setting->margin : 0.01;
-    if (family < CHAIN_SLAB)
+    if (setting->kind->place)
+        return setting->kind->place(random, setting, shape);
+    if (setting->kind->family < CHAIN_SLAB)
         return ride_chain(random, &setting->chain, shape, reach);
     narc_compute_inscribed_circle(shape->arcs, shape->count, &inner);
     narc_compute_bounding_circle(shape->arcs, shape->count, &around);
@@ -120,9 +134,9 @@ static struct body place_body(struct test_random *random, const struct setting *
     }
 }
 
-static bool make_setting(struct test_random *random, enum chain_family family, narc_arc *arcs,
-                         struct setting *setting) {
-    setting->chain = make_chain(random, family, arcs);
+static bool make_setting(struct test_random *random, const struct kind *kind, narc_arc *arcs, struct setting *setting) {
+    setting->kind = kind;
+    setting->chain = kind->make_chain ? kind->make_chain(random, arcs) : make_chain(random, kind->family, arcs);
     setting->margin = random_below(random, 4) ? random_log_between(random, 1e-3, 0.1) : 0;
     setting->place = turned_body(random_below(random, 2) ? random_between(random, -pi, pi) : 0, 1);
     setting->place.x = random_below(random, 2) ? random_between(random, -100, 100) : 0;
@@ -134,7 +148,7 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
     const narc_status status = narc_add_chain(setting->store, arcs, setting->chain.count, &options, setting->entries,
                                               ENTRIES, &setting->entry_count, &error);
     /* Arcs that turn by next to nothing are too flat. Thin sheets may cross themselves. */
-    if (status == NARC_ERROR_RADIUS || (family >= CHAIN_SLAB && status == NARC_ERROR_NOT_SIMPLE)) {
+    if (status == NARC_ERROR_RADIUS || (kind->family >= CHAIN_SLAB && status == NARC_ERROR_NOT_SIMPLE)) {
         narc_destroy_shapes(setting->store);
         return false;
     }
@@ -150,12 +164,13 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
     setting->ground = make_ground(&setting->chain);
     uint32_t stored[SHAPES];
     for (size_t k = 0; k < SHAPES; k++) {
-        setting->shapes[k] = make_rider(random, &setting->chain, family);
+        setting->shapes[k] =
+            kind->make_shape ? kind->make_shape(random) : make_rider(random, &setting->chain, kind->family);
         stored[k] = store_shape(setting->store, setting->shapes[k]);
     }
     for (size_t k = 0; k < BODIES; k++) {
         const struct shape *shape = &setting->shapes[k % SHAPES];
-        setting->bodies[k] = in_world(setting, place_body(random, setting, family, shape));
+        setting->bodies[k] = in_world(setting, place_body(random, setting, shape));
         setting->bodies[k].shape = stored[k % SHAPES];
     }
     struct body *far = &setting->bodies[BODIES]; /* lawful, and changes nothing */
@@ -605,7 +620,7 @@ static const char *check_air(const struct setting *setting, const struct referen
     return is_told ? "told of in the air" : NULL;
 }
 
-static void check_setting(const struct setting *setting, enum chain_family family, struct tally *tally) {
+static void check_setting(const struct setting *setting, struct tally *tally) {
     static struct question question;
     static narc_manifold rows[ROWS];
     static struct told told[ROWS];
@@ -632,37 +647,40 @@ static void check_setting(const struct setting *setting, enum chain_family famil
         if (wrong && (tally->wrong++ < SHOWN || getenv("NARC_TEST_SHOW"))) {
             if (getenv("NARC_TEST_SHOW"))
                 print_failure(setting, &body);
-            print_error("%s: %s; margin %.9g, body of %zu arcs at (%a, %a)\n", chain_family_name(family), wrong,
+            print_error("%s: %s; margin %.9g, body of %zu arcs at (%a, %a)\n", setting->kind->name, wrong,
                         setting->margin, body.count, body.x, body.y);
         }
     }
 }
 
-static void check_family(enum chain_family family) {
+static void check_kind(const struct kind *kind) {
     static narc_arc arcs[CHAIN_ARCS];
     static struct setting setting;
     char name[64];
-    snprintf(name, sizeof name, "ground, %s", chain_family_name(family));
+    snprintf(name, sizeof name, "ground, %s", kind->name);
     struct test_random random = test_random_named(name);
     struct tally tally = {0};
-    for (size_t trial = test_trials(10); trial > 0; trial--)
-        if (make_setting(&random, family, arcs, &setting)) {
-            check_setting(&setting, family, &tally);
+    for (size_t trial = test_trials(kind->make_chain ? 3 : 10); trial > 0; trial--)
+        if (make_setting(&random, kind, arcs, &setting)) {
+            check_setting(&setting, &tally);
             end_setting(&setting);
         } else
             tally.refused++;
     printf("  %s: %zu bodies, %zu minima told by %zu rows; %zu minima beyond reach, %zu deeper than half of what is "
            "there, %zu of runs that are less deep, %zu rows deeper, %zu rows of farther "
            "sides, %zu minima and %zu rows shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
-           chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.sunk, tally.overruled,
-           tally.deep, tally.nearer, tally.shallow, tally.touching, tally.wrong, tally.refused, tally.worst);
+           kind->name, tally.bodies, tally.minima, tally.rows, tally.beyond, tally.sunk, tally.overruled, tally.deep,
+           tally.nearer, tally.shallow, tally.touching, tally.wrong, tally.refused, tally.worst);
     printf("    %zu in the air, of which told: %zu (manifolds %zu, contacts %zu, merged %zu, overlaps %zu, casts %zu); "
-           "%zu "
-           "meet the ground, of %zu a cast does not begin with that\n",
+           "%zu meet the ground, of %zu a cast does not begin with that\n",
            tally.in_air, tally.phantoms[MERGED_MANIFOLDS], tally.phantoms[MANIFOLDS], tally.phantoms[CONTACTS],
            tally.phantoms[MERGED_CONTACTS], tally.phantoms[OVERLAPS], tally.phantoms[CASTS], tally.met, tally.unmet);
     assert_int_equal(tally.wrong, 0);
-    assert_true(tally.bodies < 10 * BODIES || tally.minima > tally.bodies / 4);
+    assert_true(kind->make_chain || tally.bodies < 10 * BODIES || tally.minima > tally.bodies / 4);
+}
+
+static void check_family(enum chain_family family) {
+    check_kind(&(struct kind){.name = chain_family_name(family), .family = family});
 }
 
 TEST(test_hills) { check_family(CHAIN_HILLS); }
@@ -683,5 +701,163 @@ TEST(test_cup) { check_family(CHAIN_CUP); }
 TEST(test_pipe) { check_family(CHAIN_PIPE); }
 TEST(test_walls) { check_family(CHAIN_WALLS); }
 TEST(test_gear) { check_family(CHAIN_GEAR); }
+
+/* ------------------------------------------------------------------------------------------------ scenes */
+
+static struct chain end_walk(struct turtle *t, narc_arc *arcs) {
+    const struct chain chain = {memcpy(arcs, t->arcs, t->count * sizeof *arcs), t->count, true};
+    free(t->arcs);
+    return chain;
+}
+
+/* A polygon, counter-clockwise, with corners and the bottoms of valleys. */
+static struct chain fold(const narc_point *point, size_t count, narc_arc *arcs) {
+    for (size_t k = 0; k < count; k++) {
+        const narc_point *p = &point[(k + count - 1) % count], *q = &point[k], *r = &point[(k + 1) % count];
+        const double start = atan2(q->y - p->y, q->x - p->x) - pi / 2;
+        const double turn = remainder(atan2(r->y - q->y, r->x - q->x) - pi / 2 - start, 2 * pi);
+        arcs[k] = (narc_arc){q->x, q->y, copysign(0, turn), start, start + turn};
+    }
+    return (struct chain){arcs, count, true};
+}
+
+/* Half a turn of eight sides around (0, 0), 4 away and 0.02 thick. */
+static struct chain make_arch_of_eight(__attribute__((unused)) struct test_random *random, narc_arc *arcs) {
+    enum { SIDES = 8 };
+    narc_point point[2 * SIDES + 2];
+    for (int k = 0; k <= SIDES; k++) {
+        const double angle = pi * k / SIDES, inner = 4 - 0.02 / cos(pi / SIDES / 2);
+        point[k] = (narc_point){4 * cos(angle), 4 * sin(angle)};
+        point[2 * SIDES + 1 - k] = (narc_point){inner * cos(angle), inner * sin(angle)};
+    }
+    return fold(point, 2 * SIDES + 2, arcs);
+}
+
+static struct shape choose_box(struct test_random *random) {
+    static const double forms[][3] = {{1, 1, 0}, {3, 0.3, 0}, {1.5, 2.3, 0}, {1.26, 0.0126, 0}, {1.57, 0.47, 0.12}};
+    const double *form = forms[random_below(random, sizeof forms / sizeof *forms)];
+    return box_of(form[0], form[1], form[2]);
+}
+
+/* Up to 0.05 above. */
+static struct body place_close(struct test_random *random, const struct setting *setting, const struct shape *shape) {
+    return approach_chain(random, &setting->chain, setting->ground, shape, random_log_between(random, 1e-3, 0.05));
+}
+
+TEST(test_boxes_above_an_arch) {
+    check_kind(&(struct kind){"boxes above an arch", CHAIN_ARCH, make_arch_of_eight, choose_box, place_close});
+}
+
+/* A sheet that is bent once, with the ridge at (0, 0); to both sides it falls away by the same angle. */
+static struct chain make_roof(struct test_random *random, narc_arc *arcs) {
+    const double fall = random_below(random, 4) ? random_between(random, 0.1, 1.2) : atan(1. / 3);
+    const double thickness = random_log_between(random, 0.02, 0.3), half = random_between(random, 2, 4);
+    const double x = half * cos(fall), y = -half * sin(fall), low = thickness / cos(fall);
+    return fold((const narc_point[]){{0, 0}, {-x, y}, {-x, y - low}, {0, -low}, {x, y - low}, {x, y}}, 6, arcs);
+}
+
+static struct shape choose_plank(struct test_random *random) {
+    return random_below(random, 2) ? box_of(3, 0.3, 0) : box_of(2, 0.3, 0);
+}
+
+/* Up to 0.1 above the ridge, level or not, with its middle or what is beside that. */
+static struct body place_on_ridge(struct test_random *random, const struct setting *setting,
+                                  const struct shape *shape) {
+    const double fall = setting->chain.arcs[0].end - pi / 2;
+    struct body body = turned_body(random_below(random, 3) ? random_between(random, -0.99, 0.99) * fall : 0, 1);
+    const double c = (double)body.cosine, s = (double)body.sine, height = 0.15 + random_log_between(random, 1e-3, 0.1);
+    const double along = random_below(random, 4) ? random_between(random, -1, 1) * shape->arcs[0].center_x : 0;
+    body.x = along * c - height * s;
+    body.y = along * s + height * c;
+    return body;
+}
+
+TEST(test_planks_on_a_ridge) {
+    check_kind(&(struct kind){"planks on a ridge", CHAIN_ANGLE, make_roof, choose_plank, place_on_ridge});
+}
+
+/* A slab with square ends or round ones. */
+static struct chain make_ledge(struct test_random *random, narc_arc *arcs) {
+    static const double thicknesses[] = {0.02, 0.05, 0.1, 0.3, 0.6};
+    const double thickness = thicknesses[random_below(random, 5)], radius = random_below(random, 2) ? thickness / 2 : 0;
+    struct turtle t = create_turtle(5, thickness, pi / 2);
+    for (int k = 0; k < 2; k++) {
+        walk_line(&t, 10);
+        walk_arc(&t, radius, radius > 0 ? pi : pi / 2);
+        if (radius > 0)
+            continue;
+        walk_line(&t, thickness);
+        walk_arc(&t, 0, pi / 2);
+    }
+    return end_walk(&t, arcs);
+}
+
+static struct shape choose_sharp(struct test_random *random) {
+    const narc_four_arc lens = {1, 1, 1.4, 0, 0};
+    struct shape shape;
+    if (random_below(random, 4) == 0)
+        return random_below(random, 2) ? box_of(1, 1, 0) : box_of(1.2, 0.6, 0);
+    const double radius = random_below(random, 2) ? 0.1 : 0;
+    const narc_status status =
+        random_below(random, 4)
+            ? narc_build_regular_polygon(random_below(random, 4) ? 3 : 5, 0.6, radius, shape.arcs, &shape.count, NULL)
+            : narc_build_four_arc(lens, shape.arcs, &shape.count, NULL);
+    assert_int_equal(status, NARC_OK);
+    return shape;
+}
+
+/* Anywhere about the right end. */
+static struct body place_about_end(struct test_random *random, __attribute__((unused)) const struct setting *setting,
+                                   __attribute__((unused)) const struct shape *shape) {
+    struct body body = turned_body(random_between(random, -pi, pi), 1);
+    body.x = 5 + random_between(random, -0.8, 0.8);
+    body.y = random_between(random, -0.8, 1.2);
+    return body;
+}
+
+TEST(test_triangles_round_an_end) {
+    check_kind(&(struct kind){"triangles round an end", CHAIN_SLAB, make_ledge, choose_sharp, place_about_end});
+}
+
+/* A gate from x = -1 to 1: the level line above goes over into an arc on both sides. */
+static struct chain make_gate(struct test_random *random, narc_arc *arcs) {
+    const double radius = random_between(random, 0.1, 0.8), height = random_between(random, 1, 3);
+    struct turtle t = create_turtle(-3, 0, -pi / 2);
+    walk_line(&t, 2);
+    walk_arc(&t, 0, pi / 2);
+    walk_line(&t, height - radius);
+    walk_arc(&t, radius, -pi / 2);
+    walk_line(&t, 2 - 2 * radius);
+    walk_arc(&t, radius, -pi / 2);
+    walk_line(&t, height - radius);
+    walk_arc(&t, 0, pi / 2);
+    for (int k = 0; k < 4; k++) {
+        walk_line(&t, k == 0 ? 2 : k == 2 ? 6 : height + 1);
+        walk_arc(&t, 0, pi / 2);
+    }
+    return end_walk(&t, arcs);
+}
+
+static struct shape choose_needle(struct test_random *random) {
+    const double length = random_log_between(random, 0.05, 0.5);
+    return random_below(random, 2) ? box_of(length, length / 100, 0) : capsule_of(length, length / 15);
+}
+
+/* Upright below the place where line and arc meet, or along the tangent there. */
+static struct body place_below_joint(struct test_random *random, const struct setting *setting,
+                                     const struct shape *shape) {
+    const narc_arc *arc = &setting->chain.arcs[1], *own = &shape->arcs[0];
+    const bool is_upright = random_below(random, 2);
+    const double width = own->center_y + own->radius, length = own->center_x + own->radius;
+    struct body body = turned_body(is_upright ? pi / 2 : 0, 1);
+    const double gap = (double)random_below(random, 3) * random_log_between(random, 1e-9, 1e-2) * length;
+    body.x = arc->center_x + ((double)random_below(random, 3) - 1) * (is_upright ? width : length);
+    body.y = arc->center_y - arc->radius - (is_upright ? length : width) - gap;
+    return body;
+}
+
+TEST(test_needles_below_a_joint) {
+    check_kind(&(struct kind){"needles below a joint", CHAIN_CUP, make_gate, choose_needle, place_below_joint});
+}
 
 TEST_MAIN("ground minima")
