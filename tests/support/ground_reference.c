@@ -15,6 +15,9 @@
 /* Rounding at the ends of pieces, relative to their coordinates: a foot belongs to both pieces there. */
 static const double end_tolerance = 1e-12;
 
+/* How far what is in the air is from the normals at open ends, relative to the body. */
+static const double end_room = 1e-3;
+
 /* Feet that are as near, relative to the body, and as far apart, are two. */
 static const double doubt = 1e-3;
 
@@ -390,8 +393,9 @@ struct ground_clearance ground_find_clearance(struct ground *ground, const struc
     struct ground *outline = walk_pieces(&(struct chain){arcs, body->count, true});
     const bool is_outside = ground_distance(outline, ground->pieces[0].from).distance > 0;
     struct ground_clearance out = {is_outside ? find_gap(outline, ground) : 0, false};
+    const double extent = reference_extent(body);
     out.in_air = out.distance > 0 && ground_distance(ground, outline->pieces[0].from).distance > 0 &&
-                 find_end_gap(ground, outline, 8 * (scale + out.distance + reference_extent(body))) > 0;
+                 find_end_gap(ground, outline, 8 * (out.distance + extent)) > end_room * extent;
     destroy_ground(outline);
     return out;
 }

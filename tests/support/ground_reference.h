@@ -42,8 +42,8 @@ struct ground_foot ground_distance(struct ground *ground, narc_point point);
 double ground_outline_distance(const struct ground *ground, narc_point point);
 
 /* How far a body is from the ground's outline: in closed form, of each two pieces; 0 if they meet, or if all of the outline
- * is in the body. Is it all in the air? Of an open chain it is not if it meets the normals at the ends, on the solid's
- * side: nothing is said of what is beyond them. */
+ * is in the body. Is it all in the air? Of an open chain it is not if it comes near the normals at the ends, on the
+ * solid's side: nothing is said of what is beyond them. */
 struct ground_clearance {
     double distance;
     bool in_air;
