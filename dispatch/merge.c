@@ -15,6 +15,11 @@
 /* What separations of one contact differ by where rows round them, relative to the points' coordinates. */
 #define SAME_SEPARATION 0x1p-16f
 
+/* The cosine of the angle between faces that may look away from each other, and the room for rounding there, relative to
+ * the points' coordinates. */
+#define BACK_TO_BACK (-0.5f)
+#define BACK_ROOM    0x1p-18f
+
 enum { LOOK_BACK = 64 };
 
 /* One of both kinds of rows. */
@@ -158,6 +163,24 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
            (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
 }
 
+/* Is a row one of a chain's entry? A concave arc, where there is no run. */
+static bool is_of_chain(const row_list *list, const narc_manifold *row) {
+    return find_run(list, row->pair) != NARC_NO_RUN || signbit(row->radius_b);
+}
+
+/* Do two rows tell of both sides of a thin solid within the body: faces that look away from each other, where neither place
+ * lies before the other one's tangent? Walls on both sides of a body look at each other. */
+static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
+    const narc_manifold_point *p = find_deepest(a), *q = find_deepest(b);
+    if (!(p->separation < 0 && q->separation < 0 &&
+          a->normal_x * b->normal_x + a->normal_y * b->normal_y < BACK_TO_BACK))
+        return false;
+    const float x = q->x + b->normal_x * q->separation / 2 - p->x - a->normal_x * p->separation / 2;
+    const float y = q->y + b->normal_y * q->separation / 2 - p->y - a->normal_y * p->separation / 2;
+    const float room = BACK_ROOM * find_reach(p, q); /* normals point into the ground */
+    return x * a->normal_x + y * a->normal_y >= -room && x * b->normal_x + y * b->normal_y <= room;
+}
+
 /* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
 static void drop_seam(row_list *list, size_t from, size_t to) {
     const narc_manifold gone = get_row(list, from), left = get_row(list, to);
@@ -175,6 +198,10 @@ static void drop_seam(row_list *list, size_t from, size_t to) {
 static bool compare_rows(row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
+    if (are_back_to_back(&a, &b) && is_of_chain(list, &a) && is_of_chain(list, &b)) {
+        drop_row(list, find_separation(&a) < find_separation(&b) ? j : k);
+        return false;
+    }
     if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
         const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
         const float one = find_separation(&a), other = find_separation(&b);

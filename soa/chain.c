@@ -43,7 +43,8 @@ static narc_status read_arc(const narc_arc *arc, size_t i, const narc_chain_opti
                              "arc %zu: a number is %g", i, numbers[k]);
     const bool is_concave = signbit(arc->radius);
     double turn = is_concave ? arc->start - arc->end : arc->end - arc->start;
-    *out_arc = (narc_chain_arc){arc->center_x, arc->center_y, arc->radius, arc->start, 0, (uint32_t)i};
+    *out_arc = (narc_chain_arc){
+        .x = arc->center_x, .y = arc->center_y, .radius = arc->radius, .start = arc->start, .number = (uint32_t)i};
     if (arc->radius == 0 && fabs(turn) <= NARC_TOLERANCE) {
         out_arc->radius = 0;
         return NARC_OK;
@@ -147,10 +148,11 @@ static narc_status read_chain(const narc_arc *arcs, size_t count, const narc_cha
 /* ------------------------------------------------------------------------------------------------ adding */
 
 /* Divides a chain that is read: first to count and to find what is wrong, then, with room for all, into the store. */
-static narc_status add_pieces(narc_shapes *shapes, const narc_chain *chain, uint32_t first_run,
-                              narc_chain_entry *out_entries, size_t capacity, size_t *out_count, narc_error *error) {
+static narc_status add_pieces(narc_shapes *shapes, const narc_chain *chain, const narc_curves *curves,
+                              uint32_t first_run, narc_chain_entry *out_entries, size_t capacity, size_t *out_count,
+                              narc_error *error) {
     narc_chain_division division = {.run = first_run};
-    narc_status status = narc_divide_chain(chain, &division, error);
+    narc_status status = narc_divide_chain(chain, curves, &division, error);
     if (status != NARC_OK)
         return status;
     if (division.count == 0)
@@ -165,7 +167,7 @@ static narc_status add_pieces(narc_shapes *shapes, const narc_chain *chain, uint
         return narc_fail(error, status, 0, (double)division.count, "no room for %zu shapes beside the other %zu",
                          division.count, narc_count_shapes(shapes));
     division = (narc_chain_division){.shapes = shapes, .entries = out_entries, .run = first_run};
-    status = narc_divide_chain(chain, &division, error);
+    status = narc_divide_chain(chain, curves, &division, error);
     for (size_t k = division.count; k-- > 0 && status != NARC_OK;) /* a shape with all the uses that it can have */
         (void)narc_remove_shape(shapes, out_entries[k].shape, NULL);
     if (status == NARC_OK)
@@ -194,15 +196,20 @@ narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, size_t cou
                          max_count);
     const narc_allocator allocator = shapes->allocator;
     narc_chain chain = {.closed = chosen->closed != 0};
+    narc_curves curves = {.count = 0};
     if (count < SIZE_MAX / sizeof *chain.arcs)
         chain.arcs = allocator.allocate((count + 1) * sizeof *chain.arcs, allocator.context);
     if (!chain.arcs)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for %zu arcs", count);
     narc_status status = read_chain(arcs, count, chosen, &chain, error);
     if (status == NARC_OK)
-        status = narc_check_crossings(&chain, &allocator, error);
+        status = narc_build_curves(&chain, &allocator, &curves, error);
     if (status == NARC_OK)
-        status = add_pieces(shapes, &chain, chosen->first_run, out_entries, capacity, out_count, error);
+        status = narc_check_crossings(&curves, error);
+    if (status == NARC_OK)
+        status = add_pieces(shapes, &chain, &curves, chosen->first_run, out_entries, capacity, out_count, error);
+    if (curves.curves)
+        allocator.release(curves.curves, allocator.context);
     allocator.release(chain.arcs, allocator.context);
     return status;
 }

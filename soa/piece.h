@@ -47,10 +47,16 @@ static inline double narc_find_front_height(const narc_shape_header *header, con
 
 /* ------------------------------------------------------------------------------------------------ what reaches them
  *
- * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than
- * its own width along the normal is in the air behind thin ground, or too deep. The width has a 1024th of the body's
- * bounding radius as room, which is far more than rounding where ground is as large as bodies are, and lets rods
- * lie. */
+ * A contact of a body with a piece says, where it is d deep, that the body is free of the piece's front when it has
+ * gone as far along the normal n. Let q be the foot on the front, and p = q - d n the body's deepest place. The contact is
+ * true if d is at most the body's width along n and p lies in the solid, or the body meets the front:
+ *   - The solid goes on behind all of the front for d. Beyond twice the inscribed radius the body may be past it, all in
+ *     the air behind a leaning side.
+ *   - Or p, of the body's deepest places along the stretch that the front spans, lies no further from one of its ends
+ *     than all that is not the surface there. So does what leans into the next piece by a tip.
+ *   - Or the body has a place of the front in it.
+ * The width has a 1024th of the body's bounding radius as room, which is far more than rounding where ground is as large
+ * as bodies are, and lets rods lie. */
 
 /* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to
  * the other's position. */
@@ -60,16 +66,19 @@ typedef struct narc_toucher {
     double scale, x, y, other_x, other_y;
 } narc_toucher;
 
-/* Of two bodies, one of them a piece: is a contact less deep than what is all behind a surface can be? That is at least
- * as deep as its inscribed circle is wide, behind a line or outside of a circle. */
-static inline bool narc_is_shallow(const narc_shape_header *a, double scale_a, const narc_shape_header *b,
-                                   double scale_b, double separation) {
+/* Of two bodies, one of them a piece: is a contact one of a body that is so shallow in the solid behind the piece? */
+static inline bool narc_is_shallow(const narc_shape_header *a, const narc_record *arcs_a, double scale_a,
+                                   const narc_shape_header *b, const narc_record *arcs_b, double scale_b,
+                                   double separation) {
     const bool of_a = narc_is_piece(a);
     const narc_shape_header *const body = of_a ? b : a;
-    return !narc_is_piece(body) && -separation <= 2 * (of_a ? scale_b : scale_a) * (double)body->inner_radius;
+    const double thickness =
+        of_a ? scale_a * (double)arcs_a[a->count].solid.thickness : scale_b * (double)arcs_b[b->count].solid.thickness;
+    return !narc_is_piece(body) && -separation <= thickness &&
+           -separation <= 2 * (of_a ? scale_b : scale_a) * (double)body->inner_radius;
 }
 
-/* Of two bodies, one of them a piece: do they reach each other's surface? */
+/* Of two bodies, one of them a piece: is a contact with this separation one that reaches the piece? */
 bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation);
 
 #endif

@@ -75,12 +75,15 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         const size_t number = find_number(call, pair[l]);
         const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
                                                     find_header(batch, batch->b, batch->pairs->b, number)};
+        const narc_record *const arcs[2] = {narc_arcs_of(batch->shapes, header[0]),
+                                            narc_arcs_of(batch->shapes, header[1])};
         narc_toucher touching[2];
-        if (narc_is_shallow(header[0], (double)field[0][0][l], header[1], (double)field[1][0][l], (double)depth[l]))
+        if (narc_is_shallow(header[0], arcs[0], (double)field[0][0][l], header[1], arcs[1], (double)field[1][0][l],
+                            (double)depth[l]))
             continue;
         for (int side = 0; side < 2; side++)
             touching[side] = (narc_toucher){header[side],
-                                            narc_arcs_of(batch->shapes, header[side]),
+                                            arcs[side],
                                             (double)field[side][0][l],
                                             (double)field[side][1][l],
                                             (double)field[side][2][l],
