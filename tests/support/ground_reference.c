@@ -370,6 +370,8 @@ static double find_end_gap(const struct ground *ground, const struct ground *out
     for (int end = 0; end < 2 && ground->open; end++) {
         struct piece way = {.is_edge = true, .from = ground->ends[end], .length = length};
         const struct piece *last = &ground->pieces[end ? ground->count - 1 : 0];
+        for (size_t k = 1; k < ground->count && !last->is_edge && !(last->radius > 0); k++)
+            last += end ? -1 : 1; /* below a corner the edge beside it is nearer */
         const narc_point n = last->is_edge || !end == !last->is_concave ? last->low : last->high;
         way.along = (narc_point){-n.x, -n.y};
         way.low = (narc_point){way.along.y, -way.along.x};
