@@ -378,21 +378,22 @@ static bool holds(const struct reference_body *body, narc_point point) {
                                (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
 }
 
-/* Is the ground's outline there out of a body's reach: too deep for the body, or for pieces that are so small; or does
- * the body have an open end within, where the ground has no other side? */
+/* Is the ground's outline there out of a body's reach: outside the body, which is deeper, by `deepest`, than its inscribed
+ * circle is wide, or than the ground is thick there; or does the body have an open end within, where the ground has no
+ * other side? */
 static bool is_beyond(const struct setting *setting, const struct reference_body *body,
-                      const struct ground_minimum *minimum) {
+                      const struct ground_minimum *minimum, double deepest) {
     const narc_arc *first = &setting->chain.arcs[0], *last = &setting->chain.arcs[setting->chain.count - 1];
     const narc_point from = {first->center_x + first->radius * cos(first->start),
                              first->center_y + first->radius * sin(first->start)};
     const narc_point to = {last->center_x + last->radius * cos(last->end),
                            last->center_y + last->radius * sin(last->end)};
+    narc_circle inner;
     if (minimum->foot.distance >= 0)
         return false;
-    narc_circle inner;
     narc_compute_inscribed_circle(body->arcs, body->count, &inner);
     const double promised = 0.98 * fmin(2 * inner.radius * body->scale, minimum->foot.thickness);
-    return (-minimum->foot.distance > promised && !holds(body, minimum->foot.at)) ||
+    return (deepest > promised && !holds(body, minimum->foot.at)) ||
            (!setting->chain.closed && (holds(body, from) || holds(body, to)));
 }
 
@@ -542,6 +543,9 @@ static const char *compare(const struct setting *setting, const struct reference
         if (fate[i] == FATE_WRONG && !wrong)
             wrong = "not a minimum";
     }
+    double deepest = 0;
+    for (size_t m = 0; m < minimum_count; m++)
+        deepest = fmax(deepest, -minima[m].foot.distance);
     size_t beyond = 0, shallow = 0, matched = 0, overruled = 0, sunk = 0;
     for (size_t m = 0; m < minimum_count && !wrong; m++) {
         const double distance = minima[m].foot.distance;
@@ -549,7 +553,7 @@ static const char *compare(const struct setting *setting, const struct reference
             matched++;
         else if (distance > setting->margin + bound)
             continue;
-        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m]))
+        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m], deepest))
             beyond++;
         else if (distance < -minima[m].foot.grain / 2)
             sunk++; /* seams are for what is less deep than pieces are long */
@@ -826,6 +830,30 @@ static struct body place_about_end(struct test_random *random, __attribute__((un
 
 TEST(test_triangles_round_an_end) {
     check_kind(&(struct kind){"triangles round an end", CHAIN_SLAB, make_ledge, choose_sharp, place_about_end});
+}
+
+/* Ten long, one thick. */
+static struct chain make_slab(__attribute__((unused)) struct test_random *random, narc_arc *arcs) {
+    return fold((const narc_point[]){{-5, -1}, {5, -1}, {5, 0}, {-5, 0}}, 4, arcs);
+}
+
+static struct shape choose_flat(struct test_random *random) {
+    const size_t kind = random_below(random, 3);
+    return kind == 0 ? box_of(1, 1, 0) : kind == 1 ? capsule_of(1, 0.5) : circle_of(0.5);
+}
+
+/* An edge, or where a circle begins, along the top but for what rounding makes of it. */
+static struct body place_flat(struct test_random *random, __attribute__((unused)) const struct setting *setting,
+                              const struct shape *shape) {
+    const double tilt = (double)random_below(random, 2) * random_log_between(random, 1e-9, 1e-5);
+    struct body body = turned_body(-pi / 2 - shape->arcs[0].start + (random_below(random, 2) ? tilt : -tilt), 1);
+    body.x = random_between(random, -4, 4);
+    body.y = 0.5 - random_log_between(random, 1e-4, 0.1);
+    return body;
+}
+
+TEST(test_boxes_flat_on_a_slab) {
+    check_kind(&(struct kind){"boxes flat on a slab", CHAIN_SLAB, make_slab, choose_flat, place_flat});
 }
 
 /* A gate from x = -1 to 1: the level line above goes over into an arc on both sides. */
