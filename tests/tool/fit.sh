@@ -196,6 +196,8 @@ works "parts that overlap" fit fits/two.csv --parts 4 --tolerance 0.1 --edges --
 check "parts that overlap: the area of both" is two 6 28
 fails "parts of a line" "narc: fits/line.csv: its lines enclose no area" fit fits/line.csv --parts 4 --tolerance 0.05 \
     --out new.json
+fails "parts of what is tiny" "narc: fits/tiny.csv: its size is 4e-300" fit fits/tiny.csv --parts 4 --tolerance 0.05 \
+    --out new.json
 # Ground as a body: a level stretch, a rim and a bowl. A ball on the level, a box that stands in the bowl on two corners.
 cat >ground.json <<'END'
 {"shapes": [{"name": "ball", "arcs": [{"center": [0, 0], "radius": 0.5, "start": 0, "end": 6.283185307179586}]},
