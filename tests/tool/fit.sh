@@ -182,6 +182,12 @@ for open in "" --open; do
     crossing two "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)" $open
     crossing tiny "contour 0: its size is 3e-300" $open
 done
+printf '0,0\n1,-1e-7\n2,0\n1,1e-7\n' >fits/thin.csv
+for tolerance in 0.5 1e-07; do
+    fails "a chain that is too thin, $tolerance" \
+        "narc: fits/thin.csv: contour 0: it is too thin for the tolerance $tolerance: its sides meet" \
+        fit fits/thin.csv --chain --tolerance $tolerance --out new.json
+done
 crossing line "contour 0: line 2 meets line 0 of contour 0 at (4, 0)"
 printf '0,0\n4,0\n4,4\n0,4\n0,0\n' >fits/ring.csv
 crossing ring "contour 0: it ends where it begins" --open
