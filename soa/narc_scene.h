@@ -21,7 +21,8 @@
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
- *   looks like: of equal fractions or distances the body with the lower number counts.
+ *   looks like: of equal fractions or distances the body with the lower number counts. Equal is what is equal as a float:
+ *   so of motions so long that fractions underflow a body further away may count.
  *
  * Example
  *
