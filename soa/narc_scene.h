@@ -21,7 +21,8 @@
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
- *   looks like: of equal fractions or distances the body with the lower number counts.
+ *   looks like: of equal fractions or distances the body with the lower number counts. Equal is what is equal as a float:
+ *   so of motions so long that fractions underflow a body further away may count.
  *
  * Example
  *
@@ -140,8 +141,8 @@ typedef struct narc_rays {
 
 /* What a ray meets that starts within a body, or on its outline. With owners: within any part of a thing. */
 typedef enum narc_inside {
-    NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
-    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
+    NARC_INSIDE_STOPS = 0,  /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
+    NARC_INSIDE_LEAVES = 1, /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
                                 last of the parts that follow each other without a gap; the row names that part. Parts
                                 are connected where they come within twice NARC_ERROR_BOUND * (the latter's extent) */
     NARC_INSIDE_IGNORES = 2, /* not that body; no part of that thing */

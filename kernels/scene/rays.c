@@ -113,9 +113,10 @@ INLINE struct axis set_axis(int min, int max, double start, double room, double 
                          clip_inverse(inverse)};
 }
 
-/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is. */
+/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
+ * that underflow. */
 INLINE void set_limit(struct walk *w, float fraction) {
-    const double distance = (double)fraction * (1 + 0x1p-22) * w->ray.length - w->base;
+    const double distance = ((double)fraction * (1 + 0x1p-22) + 0x1p-149) * w->ray.length - w->base;
     w->limit_fraction = fraction;
     w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
 }
