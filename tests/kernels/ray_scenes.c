@@ -306,9 +306,18 @@ TEST(things_are_met_as_wholes) {
                     if (thing != UINT32_MAX && !(fabs((double)rows[i].fraction - right) < 3e-5))
                         fail_msg("trial %zu, ray %zu, inside %d: owner %u at %.9g, but %.9g", trial, k, (int)inside,
                                  thing, (double)rows[i].fraction, right);
+                    /* The place and the normal are of the part that the row names. */
+                    const uint32_t part = rows[i].body;
+                    const bool starts = thing == UINT32_MAX
+                                            ? spans.starts[part]
+                                            : meet_thing(&spans, owner, found, thing, NARC_INSIDE_IGNORES) < 0;
+                    const bool leaves = starts && inside == NARC_INSIDE_LEAVES;
+                    const double own = leaves ? spans.to[part] : spans.from[part];
                     const double facing = (double)(rows[i].normal_x * ray.motion_x + rows[i].normal_y * ray.motion_y);
-                    assert_true(inside == NARC_INSIDE_STOPS || thing == UINT32_MAX || spans.from[rows[i].body] == 0 ||
-                                facing < 1e-6 || rows[i].fraction > (float)spans.from[rows[i].body]);
+                    const double length = hypot((double)rows[i].normal_x, (double)rows[i].normal_y);
+                    assert_true(fabs((double)rows[i].fraction - own) < 3e-5);
+                    assert_true(leaves ? facing > -1e-6 : facing < 1e-6);
+                    assert_true(starts && inside == NARC_INSIDE_STOPS ? length == 0 : fabs(length - 1) < 1e-6);
                 }
                 for (size_t thing = 0; thing < THINGS; thing++) {
                     const double right = meet_thing(&spans, owner, found, owner[thing], inside);
