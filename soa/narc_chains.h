@@ -49,17 +49,22 @@ extern "C" {
 /* The run of entries that are concave arcs, which are of none, and of bodies that are no entries. */
 #define NARC_NO_RUN UINT32_MAX
 
-/* How a chain is divided; zero-initialised options are all defaults. */
+/* How a chain is divided; zero-initialised options are all defaults.
+ *   closed         not 0: an edge, or a common point, joins the last arc to the first one
+ *   first_run      the number of the first run, so that chains of one scene have runs of their own
+ *   weld           the longest straight part of an entry; 0: 32 times the mean of the edges as given
+ *   least_radius   concave arcs with a smaller radius, valleys too, are refused: those too tight for bodies
+ *   thickness      of a solid that other chains bound, too: how thick it is where it is thinnest; 0: the chain bounds it
+ *                  all, or it is as thick as can be
+ *   both_sides     not 0: the chain is a line, and the air is on both of its sides: each has entries, and runs, of its
+ *                  own, those of the left side behind the others. Ends are round, of radius 0 */
 typedef struct narc_chain_options {
-    uint32_t closed;     /* not 0: an edge, or a common point, joins the last arc to the first one */
-    uint32_t first_run;  /* the number of the first run, so that chains of one scene have runs of their own */
-    double weld;         /* the longest straight part of an entry; 0: 32 times the mean of the edges as given */
-    double least_radius; /* concave arcs with a smaller radius, valleys too, are refused: those too tight for bodies */
-    float thickness;     /* of a solid that other chains bound, too: how thick it is where it is thinnest; 0: the chain
-                            bounds it all, or it is as thick as can be */
-    uint32_t
-        both_sides; /* not 0: the chain is a line, and the air is on both of its sides: each has entries, and runs, of
-                            its own, those of the left side behind the others. Ends are round, of radius 0 */
+    uint32_t closed;
+    uint32_t first_run;
+    double weld;
+    double least_radius;
+    float thickness;
+    uint32_t both_sides;
     void *reserved[1 + sizeof(void *) / 4]; /* NULL */
 } narc_chain_options;
 

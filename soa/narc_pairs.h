@@ -100,9 +100,10 @@ typedef struct narc_pairs {
  *                     stale, or made up, or another pair's, costs time and changes no bit of the answer. Untouched on
  *                     an error other than NARC_ERROR_CAPACITY
  *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once, so no more than there
- *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
- *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
- *                     of the selection, and bit k of overlaps is that of pair selection[k]
+ *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes
+ *                     of an empty container asks of none. Hints, margins, rows' numbers and dense rows stay those of the
+ *                     whole batch; rows are listed in the order of the selection, and bit k of overlaps is that of pair
+ *                     selection[k]
  *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
  *                     multiple of 64, and so is `count` unless it reaches to the end; only its words are written
  *   dense             contacts and manifolds: row k is that of pair k, with count 0 where there is nothing, and there

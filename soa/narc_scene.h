@@ -21,7 +21,8 @@
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
- *   looks like: of equal fractions or distances the body with the lower number counts.
+ *   looks like: of equal fractions or distances the body with the lower number counts. Equal is what is equal as a float:
+ *   so of motions so long that fractions underflow a body further away may count.
  *
  * Example
  *
@@ -140,8 +141,8 @@ typedef struct narc_rays {
 
 /* What a ray meets that starts within a body, or on its outline. With owners: within any part of a thing. */
 typedef enum narc_inside {
-    NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
-    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
+    NARC_INSIDE_STOPS = 0,  /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
+    NARC_INSIDE_LEAVES = 1, /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
                                 last of the parts that follow each other without a gap; the row names that part. Parts
                                 are connected where they come within twice NARC_ERROR_BOUND * (the latter's extent) */
     NARC_INSIDE_IGNORES = 2, /* not that body; no part of that thing */
@@ -193,7 +194,7 @@ typedef struct narc_ray_hit {
  * (from more than 1e9 extents away, the digits of doubles are lost too). A ray that passes a body by no more than that
  * may hit or miss it, but one that touches it on its way, if only at a corner or along a side, hits it. So through a point that
  * two bodies hold, such as tiles' common corner, no ray passes unless it hits both (of shapes less than 250 of their radii
- * from their own origin). A touch has a fraction and a normal as any hit; at most, the normal is across the ray. A corner is
+ * from their own origin). A touch has a fraction and a normal as any hit: against the ray, or across it. A corner is
  * hit as the end of an edge, a segment along the ray at its end, against the normal. Boxes only have to hold their bodies:
  * larger ones change no bit. Pieces of chains (narc_chains.h) are hit from the air: a
  * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
@@ -349,8 +350,9 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which
- *              the point is deepest in, and the thing's outside is at least so far; it is further where that part's place
- *              lies within another part. A point is within a thing (`inside`) if it is within a part
+ *              the point is deepest in, and the depth is a lower bound: the thing's outside is at least so far, and further
+ *              where that part's place lies within another part. A point is within a thing (`inside`) if it is within a
+ *              part
  *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
  *   inside     1: only bodies that the point is within
  *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows

@@ -230,7 +230,7 @@ struct ray {
 
 /* Where a ray meets a body. */
 struct meeting {
-    struct line line;
+    place foot, direction; /* of the line, in the shape's coordinates */
     struct entry entry;
     double ahead;    /* the middle, along the line, from the start */
     double distance; /* in the world's unit */
@@ -252,32 +252,40 @@ INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, 
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    out->line = (struct line){foot, v, beside, find_touch(header)};
-    out->ahead = ahead;
+    struct line line = {foot, v, beside, find_touch(header)};
+    struct entry entry;
     out->is_within = out->is_start = false;
-    if (!find_first_entry(frame, &out->line, &out->entry))
+    if (!find_first_entry(frame, &line, &entry))
         return false;
-    out->distance = (ahead + out->entry.along) * frame->scale;
-    if (out->distance > 0 && !passes)
-        return true;
-    if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
-        return false;
-    struct entry exit;
-    const struct line back = {foot, {-v.x, -v.y}, -beside, out->line.touch};
-    const bool leaves = find_entry(frame, &back, &exit);
-    out->distance = leaves ? (ahead - exit.along) * frame->scale : out->distance;
-    if (leaves)
-        out->entry = exit;
-    out->is_within = true;
-    out->is_start = inside == NARC_INSIDE_STOPS;
-    return out->distance >= 0;
+    double distance = (ahead + entry.along) * frame->scale;
+    if (!(distance > 0) || passes) {
+        if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
+            return false;
+        struct entry exit;
+        line.direction = (place){-v.x, -v.y};
+        line.beside = -beside;
+        const bool leaves = find_entry(frame, &line, &exit);
+        distance = leaves ? (ahead - exit.along) * frame->scale : distance;
+        if (!(distance >= 0))
+            return false;
+        if (leaves)
+            entry = exit;
+        out->is_within = true;
+        out->is_start = inside == NARC_INSIDE_STOPS;
+    }
+    out->foot = foot;
+    out->direction = v;
+    out->entry = entry;
+    out->ahead = ahead;
+    out->distance = distance;
+    return true;
 }
 
 /* Fills a row, but for the ray and the body. False if the meeting is beyond `limit` of the ray's motion. */
 INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
                         narc_ray_hit *out) {
     const struct entry *const entry = &met->entry;
-    const place foot = met->line.foot, v = met->line.direction;
+    const place foot = met->foot, v = met->direction;
     if (met->is_start) {
         out->fraction = 0;
         out->feature = 0;

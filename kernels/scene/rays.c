@@ -113,9 +113,10 @@ INLINE struct axis set_axis(int min, int max, double start, double room, double 
                          clip_inverse(inverse)};
 }
 
-/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is. */
+/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
+ * that underflow. */
 INLINE void set_limit(struct walk *w, float fraction) {
-    const double distance = (double)fraction * (1 + 0x1p-22) * w->ray.length - w->base;
+    const double distance = ((double)fraction * (1 + 0x1p-22) + 0x1p-149) * w->ray.length - w->base;
     w->limit_fraction = fraction;
     w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
 }
@@ -200,25 +201,11 @@ INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
     return a->fraction < b->fraction || (a->fraction == b->fraction && a->body < b->body);
 }
 
-/* Takes a thing's row out, if it has one. False if that is before the hit. */
-INLINE bool replace_row(struct walk *w, uint32_t owner, const narc_ray_hit *hit) {
-    for (size_t k = 0; k < w->found; k++)
-        if (find_owner(&w->chosen, w->rows[k].body) == owner) {
-            if (!is_before(hit, &w->rows[k]))
-                return false;
-            for (w->found--; k < w->found; k++)
-                w->rows[k] = w->rows[k + 1];
-        }
-    return true;
-}
-
-/* Puts a hit among a ray's rows, if it is one of the first, and of its thing the first. */
-INLINE void keep_hit(struct walk *w, size_t most, uint32_t owner, const narc_ray_hit *hit) {
-    if (w->found == most && !is_before(hit, &w->rows[most - 1]))
-        return;
-    if (owner != UINT32_MAX && !replace_row(w, owner, hit))
-        return;
+/* Puts a hit among a ray's rows, if it is one of the first. */
+INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
     size_t k = w->found;
+    if (k == most && !is_before(hit, &w->rows[most - 1]))
+        return;
     for (k = k == most ? most - 1 : k; k > 0 && is_before(hit, &w->rows[k - 1]); k--)
         w->rows[k] = w->rows[k - 1];
     w->rows[k] = *hit;
@@ -265,31 +252,58 @@ NOINLINE bool leave_thing(const narc_ray_batch *batch, const struct walk *w, uin
     return out->fraction <= w->limit_fraction;
 }
 
-/* A row for a part. Of a thing that the ray starts in, that of its end, or none. */
-INLINE bool cast_at_part(const narc_ray_batch *batch, const struct walk *w, const struct body_frame *frame,
-                         uint32_t owner, narc_ray_hit *out) {
-    const narc_inside inside = batch->options->inside;
-    const bool is_part = owner != UINT32_MAX;
-    struct meeting met;
-    if (!find_meeting(frame, &w->ray, is_part && inside == NARC_INSIDE_IGNORES ? NARC_INSIDE_LEAVES : inside, false,
-                      &met))
-        return false;
-    if (is_part && met.is_within && inside == NARC_INSIDE_IGNORES)
-        return false;
-    if (is_part && met.is_within && inside == NARC_INSIDE_LEAVES)
-        return put_meeting(frame, &w->ray, &met, INFINITY, out) && leave_thing(batch, w, owner, met.distance, out);
-    return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
-           (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner));
+/* Takes a thing's row out, if it has one. False if that is before the hit. */
+INLINE bool replace_row(struct walk *w, uint32_t owner, const narc_ray_hit *hit) {
+    for (size_t k = 0; k < w->found; k++)
+        if (find_owner(&w->chosen, w->rows[k].body) == owner) {
+            if (!is_before(hit, &w->rows[k]))
+                return false;
+            for (w->found--; k < w->found; k++)
+                w->rows[k] = w->rows[k + 1];
+        }
+    return true;
 }
 
-/* Casts a ray at the body in a leaf's slot. Is it done? */
-INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
-                         unsigned slot) {
-    narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
-    const uint32_t owner = find_owner(&w->chosen, hit.body);
-    if (!is_chosen(&w->chosen, hit.body) || !cast_at_part(batch, w, frame, owner, &hit))
+/* A row for a part, if none of its thing is before it. Of a thing that the ray starts in, that of its end, or none. */
+INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame,
+                          narc_ray_hit *out) {
+    const narc_inside inside = batch->options->inside;
+    const uint32_t owner = find_owner(&w->chosen, out->body);
+    const bool is_part = owner != UINT32_MAX;
+    struct meeting met;
+    if (!is_chosen(&w->chosen, out->body) ||
+        !find_meeting(frame, &w->ray, is_part && inside == NARC_INSIDE_IGNORES ? NARC_INSIDE_LEAVES : inside, false,
+                      &met))
         return false;
-    keep_hit(w, batch->most, owner, &hit);
+    if (!is_part || inside == NARC_INSIDE_STOPS || !met.is_within)
+        return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
+               (!is_part || inside == NARC_INSIDE_STOPS || inside == NARC_INSIDE_IGNORES || !starts_in(batch, w, owner)) &&
+               (!is_part || replace_row(w, owner, out));
+    return inside == NARC_INSIDE_LEAVES && put_meeting(frame, &w->ray, &met, INFINITY, out) &&
+           leave_thing(batch, w, owner, met.distance, out) && replace_row(w, owner, out);
+}
+
+/* ------------------------------------------------------------------------------------------------ a body */
+
+NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
+    if (!find_part_row(batch, w, frame, &hit))
+        return false;
+    keep_hit(w, batch->most, &hit);
+    return batch->options->any;
+}
+
+/* Casts a ray at the body in a leaf's slot; `parts`: which may be one of several. Is the ray done? */
+INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
+                         unsigned slot, bool parts) {
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
+    struct meeting met;
+    if (parts)
+        return cast_at_part(batch, w, frame, hit.body);
+    if (hit.body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
+        !put_meeting(frame, &w->ray, &met, w->limit_fraction, &hit))
+        return false;
+    keep_hit(w, batch->most, &hit);
     return batch->options->any;
 }
 
@@ -304,7 +318,7 @@ INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf,
         const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
         struct body_frame frame;
         if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
-            cast_at_slot(batch, w, &frame, leaf, slot))
+            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners))
             return true;
     }
     return false;
@@ -424,7 +438,7 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
 }
 
 INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, size_t leaf, uint32_t slots,
-                                const float *near) {
+                                const float *near, bool parts) {
     const narc_index *const index = batch->index;
     unsigned slot;
     for (; slots; slots &= ~(1u << slot)) {
@@ -436,7 +450,7 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
         for (; rays; rays &= rays - 1) {
             struct walk *const w = &b->walks[FIND_LOWEST(rays)];
             if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
-                cast_at_slot(batch, w, &frame, leaf, slot);
+                cast_at_slot(batch, w, &frame, leaf, slot, parts);
             b->limits[FIND_LOWEST(rays)] = w->limit;
         }
     }
@@ -461,8 +475,10 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
         const unsigned flips = narc_find_flips(index->order[node], first->x.backwards, first->y.backwards);
         if (visit.level > 0)
             add_visits(&visit, flip_slots(slots, flips), flips, near, &visits);
+        else if (batch->options->search.owners)
+            visit_leaf_together(batch, b, node, slots, near, true);
         else
-            visit_leaf_together(batch, b, node, slots, near);
+            visit_leaf_together(batch, b, node, slots, near, false);
     }
 }
 

@@ -25,6 +25,7 @@ struct question {
     struct test_ray rays[RAYS];
     struct motion motions[BODIES];
     narc_ray_options rays_asked;
+    uint32_t owner[BODIES];
     float target;
     size_t chosen; /* a ray and a pair for the references, which take long */
 };
@@ -33,6 +34,8 @@ struct answer {
     narc_ray_hit hits[RAYS];
     narc_impact impacts[PAIRS], first[BODIES];
     narc_distance distances[RAYS], nearest[2 * RAYS];
+    narc_ray_hit hits_of_things[2 * RAYS];
+    narc_distance nearest_things[2 * RAYS];
 };
 
 static void ask(const void *question, const narc_workers *workers, void *out_answer) {
@@ -47,7 +50,7 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
         NARC_COLUMN(q->motions, x), NARC_COLUMN(q->motions, y), NARC_COLUMN(q->motions, angle), {NULL}};
     const narc_index_query search = {.workers = workers};
     const narc_cast_options cast = {.target = q->target, .workers = workers};
-    const narc_nearest_options near = {.search = search, .distance = 5, .most = 2};
+    narc_nearest_options near = {.search = search, .distance = 5, .most = 2};
     narc_ray_options through = q->rays_asked;
     through.search.workers = workers;
     assert_int_equal(narc_cast_rays(q->index, store, &bodies, &rays, &through, answer->hits, RAYS, NULL), NARC_OK);
@@ -61,6 +64,26 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
         NARC_OK);
     assert_int_equal(narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest, 2 * RAYS, NULL),
                      NARC_OK);
+    const narc_owners owners = {.owner = NARC_ARRAY(q->owner)};
+    through.search.owners = near.search.owners = &owners;
+    through.most = 2;
+    assert_int_equal(narc_cast_rays(q->index, store, &bodies, &rays, &through, answer->hits_of_things, 2 * RAYS, NULL),
+                     NARC_OK);
+    assert_int_equal(
+        narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest_things, 2 * RAYS, NULL), NARC_OK);
+}
+
+/* One row a thing. Its nearest part is the nearest body, and the first that stops a ray. */
+static void check_things(const struct question *q, size_t k, const struct answer *answer) {
+    const narc_ray_hit *const hit = &answer->hits_of_things[2 * k];
+    const narc_distance *const near = &answer->nearest_things[2 * k];
+    if (hit[1].count)
+        assert_true(q->owner[hit[0].body] == UINT32_MAX || q->owner[hit[0].body] != q->owner[hit[1].body]);
+    if (near[1].count)
+        assert_true(q->owner[near[0].body] == UINT32_MAX || q->owner[near[0].body] != q->owner[near[1].body]);
+    assert_memory_equal(near, &answer->nearest[2 * k], sizeof *near);
+    if (q->rays_asked.inside == NARC_INSIDE_STOPS)
+        assert_memory_equal(hit, &answer->hits[k], sizeof *hit);
 }
 
 /* The nearest of a point are those of all bodies' distances, but of what has no box. */
@@ -136,8 +159,10 @@ static void check_impact(const struct question *q, const narc_impact *impact) {
 
 static void check(const struct question *q, const struct answer *answer) {
     const narc_bodies bodies = scene_bodies(&q->scene);
-    for (size_t k = 0; k < RAYS; k++)
+    for (size_t k = 0; k < RAYS; k++) {
         check_nearest(q, k, answer->nearest + 2 * k);
+        check_things(q, k, answer);
+    }
     if (narc_validate_bodies(q->scene.store, &bodies, NULL) != NARC_OK)
         return;
     if (q->rays[q->chosen].motion_x != 0 || q->rays[q->chosen].motion_y != 0)
@@ -175,6 +200,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                       (float)take_step(&from, 16), (float)take_step(&from, 16), 1};
     const narc_index_options options = {.fast = take_below(&from, 2)};
     take_flights(&from, &q.scene);
+    for (size_t k = 0; k < BODIES; k++)
+        q.owner[k] = (uint32_t)take_below(&from, 4) - 1;
     assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, q.boxes, NULL), NARC_OK);
     assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
     assert_int_equal(narc_build_index(q.index, q.boxes, BODIES, &options, NULL), NARC_OK);

@@ -130,6 +130,46 @@ TEST(finds_what_asking_every_body_finds) {
     }
 }
 
+/* Rays so long that fractions underflow: bodies at different places are hit at the same one, and the lower number counts,
+ * in any tree. */
+TEST(longest_rays_go_by_number) {
+    enum { BODIES = 65, RAYS = 100 };
+    struct test_random random = test_random_named("longest rays");
+    size_t same = 0;
+    for (size_t trial = 0; trial < test_trials(4); trial++) {
+        struct room room = create_room(&random, (narc_precision)(trial % 2), BODIES, 9);
+        struct test_ray ray[RAYS] = {{.fraction = 1}};
+        for (size_t b = 0; b < BODIES; b++) {
+            struct body *const body = &room.scene.bodies[b];
+            body->x = 0x1p-23 * random_between(&random, 0, 9);
+            body->y *= 0x1p-23;
+            body->scale *= 0x1p-23f;
+            round_position(body, room.scene.precision);
+        }
+        for (size_t k = 0; k < RAYS; k++) {
+            const double angle = random_between(&random, -4, 4), length = random_log_between(&random, 1e36, 3.4e38);
+            ray[k] = (struct test_ray){(float)(0x1p-23 * random_between(&random, -9, 18)),
+                                       (float)(0x1p-23 * random_between(&random, -9, 18)), (float)(length * cos(angle)),
+                                       (float)(length * sin(angle)), 1};
+        }
+        const narc_rays view = view_rays(ray, RAYS);
+        index_room(&room, false, false);
+        narc_ray_hit *const all = cast_one_by_one(&room, ray, RAYS, NARC_INSIDE_STOPS);
+        for (size_t k = 1; k < RAYS * BODIES; k++)
+            same += all[k].count && all[k - 1].count && all[k].fraction > 0 && all[k].fraction == all[k - 1].fraction;
+        for (size_t k = 0; k < 4; k++) {
+            const narc_ray_options options = {.most = k < 2 ? 1 : 5};
+            index_room(&room, k % 2, false);
+            narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+            compare_rows(&room, all, &view, &options, false, found);
+            guard_release(found);
+        }
+        free(all);
+        destroy_room(&room);
+    }
+    assert_true(same > 0);
+}
+
 /* ------------------------------------------------------------------------------------------------ things */
 
 enum { THINGS = 12, PARTS = 5, THING_RAYS = 60 };
@@ -266,9 +306,18 @@ TEST(things_are_met_as_wholes) {
                     if (thing != UINT32_MAX && !(fabs((double)rows[i].fraction - right) < 3e-5))
                         fail_msg("trial %zu, ray %zu, inside %d: owner %u at %.9g, but %.9g", trial, k, (int)inside,
                                  thing, (double)rows[i].fraction, right);
+                    /* The place and the normal are of the part that the row names. */
+                    const uint32_t part = rows[i].body;
+                    const bool starts = thing == UINT32_MAX
+                                            ? spans.starts[part]
+                                            : meet_thing(&spans, owner, found, thing, NARC_INSIDE_IGNORES) < 0;
+                    const bool leaves = starts && inside == NARC_INSIDE_LEAVES;
+                    const double own = leaves ? spans.to[part] : spans.from[part];
                     const double facing = (double)(rows[i].normal_x * ray.motion_x + rows[i].normal_y * ray.motion_y);
-                    assert_true(inside == NARC_INSIDE_STOPS || thing == UINT32_MAX || spans.from[rows[i].body] == 0 ||
-                                facing < 1e-6 || rows[i].fraction > (float)spans.from[rows[i].body]);
+                    const double length = hypot((double)rows[i].normal_x, (double)rows[i].normal_y);
+                    assert_true(fabs((double)rows[i].fraction - own) < 3e-5);
+                    assert_true(leaves ? facing > -1e-6 : facing < 1e-6);
+                    assert_true(starts && inside == NARC_INSIDE_STOPS ? length == 0 : fabs(length - 1) < 1e-6);
                 }
                 for (size_t thing = 0; thing < THINGS; thing++) {
                     const double right = meet_thing(&spans, owner, found, owner[thing], inside);
