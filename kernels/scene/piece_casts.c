@@ -474,7 +474,7 @@ static int find_furthest(const struct outline *o, place n, double *out_height) {
  * */
 struct gaps {
     double most, of_front[2];
-    place normal;
+    place normal, normal_of[2];
     int arc[2];
     bool front[2];
 };
@@ -489,11 +489,18 @@ static void compare_gap(const struct body_frame bodies[2], double gap, place n, 
                         struct gaps *out) {
     const bool front[2] = {may_touch_at(&bodies[0], a, at_start == 0), may_touch_at(&bodies[1], b, at_start == 1)};
     for (int side = 0; side < 2; side++)
-        if (front[side] && gap > out->of_front[side])
+        if (front[side] && gap > out->of_front[side]) {
             out->of_front[side] = gap;
+            out->normal_of[side] = n;
+        }
     if (gap < out->most || (gap == out->most && !(front[0] && front[1])))
         return;
-    *out = (struct gaps){gap, {out->of_front[0], out->of_front[1]}, n, {a, b}, {front[0], front[1]}};
+    out->most = gap;
+    out->normal = n;
+    for (int side = 0; side < 2; side++) {
+        out->arc[side] = side ? b : a;
+        out->front[side] = front[side];
+    }
 }
 
 static struct gaps find_gaps(const struct body_frame bodies[2], const struct outline *a, const struct outline *b) {
@@ -616,9 +623,16 @@ static double find_front_distance(const struct body_frame *run, const struct out
     return most;
 }
 
-/* A gap of a front's that is less than the greatest by no more than this, of the sizes, counts as the greatest: normals
- * are stored in float, so where one of the body's is the run's but for an ulp the gaps differ by that. */
+/* A front's gap that is less than the greatest by no more than this, of the sizes, is as great, if its normal is the same
+ * but for rounding too: normals are stored in float, and where an edge's of the body is the run's but for an ulp the
+ * gap along the body's own is greater by that. */
 #define LEVEL 0x1p-24
+#define SAME  0x1p-16 /* the sine between the normals */
+
+static bool is_of_front(const struct gaps *g, int side, double size) {
+    return g->of_front[side] >= g->most - LEVEL * size && fabs(find_cross(g->normal_of[side], g->normal)) <= SAME &&
+           find_dot(g->normal_of[side], g->normal) > 0;
+}
 
 static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
     struct body_frame bodies[2];
@@ -632,10 +646,9 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
     const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1],
                  target = (double)casts->target[slot];
     struct outlook out = {(g.most - target) / speed, INFINITY, true};
-    const double level = g.most - LEVEL * (s.reach[0] + s.reach[1]);
     bool told = true;
     for (int side = 0; side < 2; side++) {
-        if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || g.of_front[side] >= level)
+        if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || is_of_front(&g, side, s.reach[0] + s.reach[1]))
             continue;
         const double seen = find_speed_seen(&s, 1 - side, s.reach[1 - side]);
         double beside;
