@@ -627,7 +627,7 @@ static double find_front_distance(const struct body_frame *run, const struct out
  * but for rounding too: normals are stored in float, and where an edge's of the body is the run's but for an ulp the
  * gap along the body's own is greater by that. */
 #define LEVEL 0x1p-24
-#define SAME  0x1p-16 /* the sine between the normals */
+#define SAME  0x1p-14 /* sine between the normals: more than the 2e-5 by which pieces reach beyond a cut */
 
 static bool is_of_front(const struct gaps *g, int side, double size) {
     return g->of_front[side] >= g->most - LEVEL * size && fabs(find_cross(g->normal_of[side], g->normal)) <= SAME &&
