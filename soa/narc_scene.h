@@ -349,8 +349,9 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which
- *              the point is deepest in, and the thing's outside is at least so far; it is further where that part's place
- *              lies within another part. A point is within a thing (`inside`) if it is within a part
+ *              the point is deepest in, and the depth is a lower bound: the thing's outside is at least so far, and further
+ *              where that part's place lies within another part. A point is within a thing (`inside`) if it is within a
+ *              part
  *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
  *   inside     1: only bodies that the point is within
  *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows
