@@ -140,8 +140,8 @@ typedef struct narc_rays {
 
 /* What a ray meets that starts within a body, or on its outline. With owners: within any part of a thing. */
 typedef enum narc_inside {
-    NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
-    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
+    NARC_INSIDE_STOPS = 0,  /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
+    NARC_INSIDE_LEAVES = 1, /* the body, where the ray leaves it, with the normal outwards. A thing: where it leaves the
                                 last of the parts that follow each other without a gap; the row names that part. Parts
                                 are connected where they come within twice NARC_ERROR_BOUND * (the latter's extent) */
     NARC_INSIDE_IGNORES = 2, /* not that body; no part of that thing */

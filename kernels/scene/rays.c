@@ -317,7 +317,7 @@ INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf,
         const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
         struct body_frame frame;
         if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
-            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners))
+            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners != NULL))
             return true;
     }
     return false;
