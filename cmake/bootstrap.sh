@@ -9,10 +9,10 @@ usage() {
 usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
-  test       one build and its tests, minutes; test ci: with the benchmarks, and warnings are errors
+  test       one build and its tests, minutes; with NARC_TEST_PRESET=ci warnings are errors
   gate       what a change must pass besides: style, long tests, benchmarks that run, without dependencies, sanitizers,
              fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly. It
-             goes on in the build of test ci
+             goes on in the build of NARC_TEST_PRESET=ci
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
@@ -487,7 +487,7 @@ reference() {
 
 case ${1:-} in
 run) run ;;
-test) test_build "${2:-release}" ;;
+test) test_build "${NARC_TEST_PRESET:-release}" ;;
 gate) gate ;;
 platforms) platforms ;;
 fuzz) fuzz "${2:-60}" 0 ;;

@@ -50,8 +50,13 @@ static const narc_kernel_table *table_by_name(const char *name, const char *orig
                                               narc_error *error) {
     const struct isa *isa = find_isa(name);
     if (!isa) {
-        *out_status = narc_fail(error, NARC_ERROR_ISA_UNKNOWN, 0, 0, "%s: no instruction set is called '%.40s' (%s)",
-                                origin, name, isa_names + 2);
+        char shown[41]; /* as all names are: letters, digits, signs */
+        size_t length = 0;
+        for (; name[length] && length + 1 < sizeof shown; length++)
+            shown[length] = name[length] >= ' ' && name[length] <= '~' ? name[length] : '?';
+        shown[length] = 0;
+        *out_status = narc_fail(error, NARC_ERROR_ISA_UNKNOWN, 0, 0, "%s: no instruction set is called '%s' (%s)",
+                                origin, shown, isa_names + 2);
         return NULL;
     }
     if (!is_supported(isa)) {

@@ -15,6 +15,11 @@
 /* What separations of one contact differ by where rows round them, relative to the points' coordinates. */
 #define SAME_SEPARATION 0x1p-16f
 
+/* The cosine of the angle between faces that may look away from each other, and the room for rounding there, relative to
+ * the points' coordinates. */
+#define BACK_TO_BACK (-0.5f)
+#define BACK_ROOM    0x1p-18f
+
 enum { LOOK_BACK = 64 };
 
 /* One of both kinds of rows. */
@@ -33,6 +38,7 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .count = c->count,
                            .normal_x = c->normal_x,
                            .normal_y = c->normal_y,
+                           .radius_a = c->radius_a,
                            .radius_b = c->radius_b,
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
@@ -158,6 +164,38 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
            (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
 }
 
+/* Do two rows tell of both sides of a thin solid within the body: faces that look away from each other, where neither place
+ * lies before the other one's tangent? Walls on both sides of a body look at each other. */
+static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
+    const narc_manifold_point *p = find_deepest(a), *q = find_deepest(b);
+    if (!(p->separation < 0 && q->separation < 0 &&
+          a->normal_x * b->normal_x + a->normal_y * b->normal_y < BACK_TO_BACK))
+        return false;
+    const float x = q->x + b->normal_x * q->separation / 2 - p->x - a->normal_x * p->separation / 2;
+    const float y = q->y + b->normal_y * q->separation / 2 - p->y - a->normal_y * p->separation / 2;
+    const float room = BACK_ROOM * find_reach(p, q); /* normals point into the ground */
+    return x * a->normal_x + y * a->normal_y >= -room && x * b->normal_x + y * b->normal_y <= room;
+}
+
+/* Does an edge of a body lie along a line, row a, that goes over into a concave arc, row b, on which the same edge ends? As
+ * the line is level there, both tell of one stretch. */
+static bool goes_over(const narc_manifold *a, const narc_manifold *b) {
+    const narc_manifold_point *p = &a->point[0], *q = &b->point[0], *last = &a->point[a->count - 1];
+    const float room = SAME_POINT * find_reach(p, q), half_a = p->separation / 2, half_b = q->separation / 2;
+    if (!((a->count == 2 || (a->radius_a >= INFINITY && a->radius_b >= INFINITY)) && b->radius_b < 0 && b->count == 1 &&
+          fabsf(p->separation - last->separation) <= SAME_SEPARATION * find_reach(p, last) &&
+          has_same_normal(a, b, SAME_SEAM_NORMAL)))
+        return false;
+    /* The place of the arc's circle that has the line's normal. */
+    const float turn_x = b->radius_b * (b->normal_x - a->normal_x), turn_y = b->radius_b * (b->normal_y - a->normal_y);
+    const float x = q->x + half_b * b->normal_x - half_a * a->normal_x + turn_x;
+    const float y = q->y + half_b * b->normal_y - half_a * a->normal_y + turn_y;
+    const float first = (y - p->y) * a->normal_x - (x - p->x) * a->normal_y,
+                second = (y - last->y) * a->normal_x - (x - last->x) * a->normal_y;
+    return fabsf((x - p->x) * a->normal_x + (y - p->y) * a->normal_y) <= room &&
+           (a->count == 1 || (first >= -room && second <= room));
+}
+
 /* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
 static void drop_seam(row_list *list, size_t from, size_t to) {
     const narc_manifold gone = get_row(list, from), left = get_row(list, to);
@@ -182,8 +220,16 @@ static bool compare_rows(row_list *list, size_t j, size_t k) {
     const uint32_t run = find_run(list, b.pair);
     if (!is_ground(list, &a) || !is_ground(list, &b))
         return false;
-    if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
-        const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
+    if (are_back_to_back(&a, &b)) {
+        drop_row(list, find_separation(&a) < find_separation(&b) ? j : k);
+        return false;
+    }
+    const bool is_one_run = run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b);
+    const bool is_seam =
+        !is_one_run && has_same_normal(&a, &b, SAME_SEAM_NORMAL) && (has_all_points(&a, &b) || has_all_points(&b, &a));
+    const bool is_flush =
+        is_one_run ? has_same_normal(&a, &b, SAME_RUN_NORMAL) : !is_seam && (goes_over(&a, &b) || goes_over(&b, &a));
+    if (is_one_run || is_flush) {
         const float one = find_separation(&a), other = find_separation(&b);
         if (is_flush && list->manifolds)
             join_rows(&list->manifolds[j], &b);

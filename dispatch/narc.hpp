@@ -376,6 +376,7 @@ struct query : detail::options<query, narc_query> {
     query &range(size_t from, size_t items) noexcept {
         return set(&narc_query::first, from).set(&narc_query::count, items);
     }
+    query &front_only() noexcept { return set(&narc_query::front_only, 1u); }
     query &dense() noexcept { return set(&narc_query::dense, 1u); }
     query &skipped(size_t &out) noexcept { return set(&narc_query::out_skipped, &out); }
     // These pairs; of an empty span none.

@@ -134,12 +134,12 @@ static void *keep_region(void *helpers) {
 
 /* As many helpers as are wanted, if there can be so many. */
 static void grow(void) {
-    static bool watches_forks;
     pthread_t thread;
     const unsigned size = all.wanted < MOST_THREADS ? all.wanted : MOST_THREADS;
     if (size <= all.size)
         return;
 #ifndef _WIN32
+    static bool watches_forks;
     if (!watches_forks)
         watches_forks = pthread_atfork(NULL, NULL, forget_team) == 0;
 #endif

@@ -82,9 +82,9 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_compute_bounding_circle(centered, count, &circle);
     const double reach = hypot(circle.x, circle.y) + circle.radius;
     /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has
-     * an area from w d / 2 to w d, and its reach is from d / 2 to d. What is fast against a segment, which has no area,
-     * is so by its own thickness alone, as against ground. */
-    const double thickness = mass.area > 0 ? mass.area / (2 * reach) : (double)FLT_MAX;
+     * an area from w d / 2 to w d, and its reach is from d / 2 to d. What is fast against a segment, which has no area, or
+     * what is thinner than rounding of its reach, is so by its own thickness alone, as against ground. */
+    const double mean = mass.area / (2 * reach), thickness = mean > 0x1p-24 * reach ? mean : (double)FLT_MAX;
     w->shapes[shape] = (world_shape){(float)mass.area, (float)mass.second_moment, (float)reach, (float)thickness};
     if (out_shape)
         *out_shape = shape;

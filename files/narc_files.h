@@ -30,7 +30,8 @@ extern "C" {
 /* What a named shape is: convex and closed, or a chain of pieces, such as ground, open or closed. A chain's arcs go with
  * the solid on their left, like those of shapes. One with a radius below 0 is concave: the solid is outside of its circle,
  * its normals turn clockwise from `start` to `end`, and its points are center + radius * normal too. Radius -0 is the
- * bottom of a valley, and so is 0 where normals turn clockwise. An arc of radius 0 whose start is its end is a plain point, such as the free end of an edge. */
+ * bottom of a valley, and so is 0 where normals turn clockwise. An arc of radius 0 whose start is its end is a plain
+ * point, such as the free end of an edge. */
 typedef enum narc_form { NARC_FORM_SHAPE = 0, NARC_FORM_OPEN_CHAIN = 1, NARC_FORM_CLOSED_CHAIN = 2 } narc_form;
 
 typedef struct narc_named_shape {
@@ -51,12 +52,12 @@ typedef struct narc_shape_list {
 } narc_shape_list;
 
 /* Reads a shapes file of `size` bytes, and adds each shape, but no chain, to `store` unless that is NULL. What a store
- * would not take is an error, of chains too. The list's memory comes from `allocator`, NULL: malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the
- * store.
+ * would not take is an error, of chains too, also if `store` is NULL. The list's memory comes from `allocator`, NULL:
+ * malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the store.
  * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a
  * key that is unknown, missing or there twice, a value of another kind, a name that cannot be one or is another
- * shape's), NARC_ERROR_COUNT (no shape, too many arcs or points), NARC_ERROR_NOT_FINITE; and those of
- * the builders, narc_add_shape() and narc_add_chain().
+ * shape's), NARC_ERROR_COUNT (no shape, too many arcs or points), NARC_ERROR_NOT_FINITE; and those of the
+ * builders, narc_add_shape() and narc_add_chain().
  * error->index is the line, 0 where none is known; the message begins with it, "line 3: ", and names the shape, its arc
  * or point, and the value. Shapes that were added to the store before an error are removed again. */
 NARC_API narc_status narc_read_shapes(const void *data, size_t size, const narc_allocator *allocator,

@@ -322,9 +322,10 @@ typedef struct narc_arc_chains {
  * outlines, as many as the tolerance lets be become one line or two arcs; pieces join with a common tangent but at
  * corners: where the lines turn by more than half a radian within some tolerances. A chain of lines that is a whole
  * contour may begin at another of its points. Arcs that a store would not take because they are flat become lines.
- * narc_add_chain() takes each chain as narc_describe_chain() gives it, with default options. Contours are closed by a line where they are open, unless `open`, and those
- * that are a point are left out. Closed chains have the inside on their left: what an odd number of chains is around;
- * open ones go as they were drawn. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier() and
+ * narc_add_chain() takes each chain as narc_describe_chain() gives it, with default options. Contours are closed by a
+ * line where they are open, unless `open`, and those that are a point are left out. Closed chains have the inside on their
+ * left: what an odd number of chains is around; open ones go as they were drawn. Free the result with
+ * narc_release_chains(). Errors: those of narc_fit_bezier() and
  * narc_add_chain(), with the contour, of those that are drawn, in error->index; NARC_ERROR_NOT_SIMPLE (lines cross, of one
  * contour or of two: the message names both, counted from 0), NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is
  * drawn), NARC_ERROR_MEMORY. */

@@ -51,8 +51,11 @@ static narc_status read_arc(const narc_arc *arc, size_t i, const narc_chain_opti
                              "arc %zu: a number is %g", i, numbers[k]);
     const bool concave = is_concave(arc);
     double turn = concave ? arc->start - arc->end : arc->end - arc->start;
-    *out_arc = (narc_chain_arc){arc->center_x, arc->center_y, concave ? -fabs(arc->radius) : arc->radius, arc->start, 0,
-                                (uint32_t)i};
+    *out_arc = (narc_chain_arc){.x = arc->center_x,
+                                .y = arc->center_y,
+                                .radius = concave ? -fabs(arc->radius) : arc->radius,
+                                .start = arc->start,
+                                .number = (uint32_t)i};
     if (arc->radius == 0 && fabs(turn) <= NARC_TOLERANCE) {
         out_arc->radius = 0;
         return NARC_OK;
@@ -119,6 +122,11 @@ static void cut_first(narc_chain *chain) {
     first->turn -= begin;
 }
 
+static size_t find_number(const narc_chain *chain, size_t i) {
+    const ptrdiff_t number = chain->number + chain->way * (ptrdiff_t)i;
+    return number < 0 ? 0 : (size_t)number > chain->most ? chain->most : (size_t)number;
+}
+
 /* Reads all arcs into chain->arcs, which has room for one more, without plain points inside of straight lines. */
 static narc_status read_chain(const narc_arc *arcs, size_t count, const narc_chain_options *options, narc_chain *chain,
                               narc_error *error) {
@@ -130,7 +138,7 @@ static narc_status read_chain(const narc_arc *arcs, size_t count, const narc_cha
     for (size_t k = 0; k < count + (chain->closed ? 1 : 0); k++) {
         const size_t i = (first + k) % count;
         narc_chain_arc arc;
-        narc_status status = read_arc(&arcs[i], i, options, &arc, error);
+        narc_status status = read_arc(&arcs[i], find_number(chain, i), options, &arc, error);
         if (status == NARC_OK && k > 0) {
             status = check_join(&last, &arc, error); /* an edge that runs back over a plain point */
             if (status == NARC_OK)
@@ -153,28 +161,119 @@ static narc_status read_chain(const narc_arc *arcs, size_t count, const narc_cha
     return NARC_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------ sides */
+
+/* A chain that is read, or one side of a line. */
+typedef struct side {
+    narc_chain chain;
+    narc_curves curves;
+    size_t count, records; /* entries, and the records that they need */
+} side;
+
+static narc_status fail_memory(size_t count, narc_error *error) {
+    return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for %zu arcs", count);
+}
+
+static narc_arc make_end(const narc_arc *arc, double at, double start, double end) {
+    narc_point n;
+    narc_find_normal(at, &n.x, &n.y);
+    return (narc_arc){arc->center_x + arc->radius * n.x, arc->center_y + arc->radius * n.y, 0, start, end};
+}
+
+/* One side of a line, `back`: the left one, walked back, with the solid on the other side of its arcs. Open ends get a
+ * corner of a quarter turn. Returns how many arcs it has. */
+static size_t make_side(const narc_arc *arcs, size_t count, bool closed, bool back, narc_arc *out) {
+    const size_t from = closed ? 0 : 1;
+    for (size_t k = 0; k < count; k++) {
+        const narc_arc *arc = &arcs[back ? count - 1 - k : k];
+        out[from + k] =
+            back ? (narc_arc){arc->center_x, arc->center_y, is_concave(arc) ? fabs(arc->radius) : -arc->radius,
+                              arc->end + NARC_PI, arc->start + NARC_PI}
+                 : *arc;
+    }
+    if (closed)
+        return count;
+    const narc_arc *first = &out[1], *last = &out[count];
+    out[0] = make_end(first, first->start, first->start - NARC_PI / 2, first->start);
+    out[count + 1] = make_end(last, last->end, last->end, last->end + NARC_PI / 2);
+    return count + 2;
+}
+
+static void release_side(const side *s, const narc_allocator *allocator) {
+    if (s->curves.curves)
+        allocator->release(s->curves.curves, allocator->context);
+    if (s->chain.arcs)
+        allocator->release(s->chain.arcs, allocator->context);
+}
+
+/* Reads arcs, counts what they are divided into, and so finds what is wrong. */
+static narc_status read_side(const narc_arc *arcs, size_t count, const narc_chain_options *options,
+                             const narc_allocator *allocator, side *s, narc_error *error) {
+    narc_chain_division division = {.run = 0};
+    s->chain.closed = options->closed != 0;
+    if (count < SIZE_MAX / sizeof *s->chain.arcs)
+        s->chain.arcs = allocator->allocate((count + 1) * sizeof *s->chain.arcs, allocator->context);
+    if (!s->chain.arcs)
+        return fail_memory(count, error);
+    narc_status status = read_chain(arcs, count, options, &s->chain, error);
+    if (status == NARC_OK)
+        status = narc_build_curves(&s->chain, allocator, &s->curves, error);
+    if (status == NARC_OK)
+        status = narc_check_crossings(&s->curves, error);
+    if (status == NARC_OK)
+        status = narc_divide_chain(&s->chain, &s->curves, &division, error);
+    s->count = division.count;
+    s->records = division.records;
+    return status;
+}
+
+/* A chain, or both sides of a line. */
+static narc_status read_sides(const narc_arc *arcs, size_t count, const narc_chain_options *options,
+                              const narc_allocator *allocator, side sides[2], narc_error *error) {
+    const bool closed = options->closed != 0, is_line = options->both_sides != 0;
+    const size_t most = count - 1;
+    narc_arc *own = NULL;
+    narc_status status = NARC_OK;
+    if (!is_line) {
+        sides[0].chain = (narc_chain){.way = 1, .most = most};
+        sides[0].chain.thickness = options->thickness > 0 ? (double)options->thickness : INFINITY;
+        return read_side(arcs, count, options, allocator, &sides[0], error);
+    }
+    if (count < SIZE_MAX / sizeof *own - 2)
+        own = allocator->allocate((count + 2) * sizeof *own, allocator->context);
+    if (!own)
+        return fail_memory(count, error);
+    for (int back = 0; back < 2 && status == NARC_OK; back++) {
+        const size_t all = make_side(arcs, count, closed, back, own);
+        const ptrdiff_t end = closed ? 0 : 1; /* an added corner has the number of the end */
+        sides[back].chain = (narc_chain){
+            .way = back ? -1 : 1, .number = back ? (ptrdiff_t)most + end : -end, .most = most, .thickness = 0};
+        status = read_side(own, all, options, allocator, &sides[back], error);
+    }
+    allocator->release(own, allocator->context);
+    return status;
+}
+
 /* ------------------------------------------------------------------------------------------------ adding */
 
-/* Divides a chain that is read: first to count and to find what is wrong, then, with room for all, into the store. */
-static narc_status add_pieces(narc_shapes *shapes, const narc_chain *chain, uint32_t first_run,
+/* Divides chains that are read into the store, with room for all. */
+static narc_status add_pieces(narc_shapes *shapes, const side sides[2], uint32_t first_run,
                               narc_chain_entry *out_entries, size_t capacity, size_t *out_count, narc_error *error) {
-    narc_chain_division division = {.run = first_run};
-    narc_status status = narc_divide_chain(chain, &division, error);
-    if (status != NARC_OK)
-        return status;
-    if (division.count == 0)
+    const size_t count = sides[0].count + sides[1].count;
+    if (count == 0)
         return narc_fail(error, NARC_ERROR_SIZE, 0, 0, "the chain has no length");
-    if (division.count > capacity) {
-        *out_count = division.count;
-        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)division.count,
-                         "there is room for %zu entries, not for %zu", capacity, division.count);
+    if (count > capacity) {
+        *out_count = count;
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)count, "there is room for %zu entries, not for %zu",
+                         capacity, count);
     }
-    status = narc_make_room(shapes, narc_count_shapes(shapes) + division.count, division.records);
+    narc_status status = narc_make_room(shapes, narc_count_shapes(shapes) + count, sides[0].records + sides[1].records);
     if (status != NARC_OK)
-        return narc_fail(error, status, 0, (double)division.count, "no room for %zu shapes beside the other %zu",
-                         division.count, narc_count_shapes(shapes));
-    division = (narc_chain_division){.shapes = shapes, .entries = out_entries, .run = first_run};
-    status = narc_divide_chain(chain, &division, error);
+        return narc_fail(error, status, 0, (double)count, "no room for %zu shapes beside the other %zu", count,
+                         narc_count_shapes(shapes));
+    narc_chain_division division = {.shapes = shapes, .entries = out_entries, .run = first_run};
+    for (int k = 0; k < 2 && status == NARC_OK && sides[k].count > 0; k++)
+        status = narc_divide_chain(&sides[k].chain, &sides[k].curves, &division, error);
     for (size_t k = division.count; k-- > 0 && status != NARC_OK;) /* a shape with all the uses that it can have */
         (void)narc_remove_shape(shapes, out_entries[k].shape, NULL);
     if (status == NARC_OK)
@@ -195,23 +294,21 @@ narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     if (!(chosen->weld >= 0 && chosen->least_radius >= 0))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "weld is %g and the least radius %g, not 0 or more",
                          chosen->weld, chosen->least_radius);
-    for (int k = 0; k < 4; k++)
+    if (!(chosen->thickness >= 0))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)chosen->thickness, "the thickness is %g, not 0 or more",
+                         (double)chosen->thickness);
+    for (size_t k = 0; k < sizeof chosen->reserved / sizeof *chosen->reserved; k++)
         if (chosen->reserved[k])
             return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.reserved is not NULL");
     if (count == 0 || count > max_count)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "the chain has %zu arcs, not 1 to %zu", count,
                          max_count);
     const narc_allocator allocator = shapes->allocator;
-    narc_chain chain = {.closed = chosen->closed != 0};
-    if (count < SIZE_MAX / sizeof *chain.arcs)
-        chain.arcs = allocator.allocate((count + 1) * sizeof *chain.arcs, allocator.context);
-    if (!chain.arcs)
-        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for %zu arcs", count);
-    narc_status status = read_chain(arcs, count, chosen, &chain, error);
+    side sides[2] = {{.count = 0}, {.count = 0}};
+    narc_status status = read_sides(arcs, count, chosen, &allocator, sides, error);
     if (status == NARC_OK)
-        status = narc_check_crossings(&chain, &allocator, error);
-    if (status == NARC_OK)
-        status = add_pieces(shapes, &chain, chosen->first_run, out_entries, capacity, out_count, error);
-    allocator.release(chain.arcs, allocator.context);
+        status = add_pieces(shapes, sides, chosen->first_run, out_entries, capacity, out_count, error);
+    for (int k = 0; k < 2; k++)
+        release_side(&sides[k], &allocator);
     return status;
 }

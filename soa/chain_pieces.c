@@ -58,35 +58,35 @@
 /* The far corners lie this many times the front's size away. */
 #define FAR 4.0
 
-/* What of the chain is near a piece: beyond its ends so many times its front's size, as long as that turns by no more
- * than this, in radians. */
-#define BEYOND      2.0
-#define BEYOND_TURN 1.0
+/* What is known of the solid around a piece: up to so many times the size of its front, and a little less than is
+ * found. */
+#define KNOWN      2.0
+#define KNOWN_PART 0.99
+#define DEPTH_ROOM 1.001 /* for rounding */
+
+/* A corner that turns by more has nothing behind it along some of its normals. */
+#define RIGHT_ANGLE (NARC_PI / 2 + 1e-6)
 
 /* The front of a run is a point if it is smaller than this many times its neighbours; then their size serves. */
 #define POINT 0x1p-20
 
 enum { CLOSURE_ARCS = 6, MAX_FRONT = NARC_MAX_ARCS - CLOSURE_ARCS - 3 };
 
-/* Where the chain goes on from a point: in an arc, so far from its start, or on the line that leads there. */
-typedef struct place {
-    const narc_chain_arc *arc;
-    double turned;
-} place;
-
 /* The piece of a run that is being made: its front are arcs 1 .. count. */
 typedef struct piece {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     narc_point begin;
-    place before;                  /* what the chain has before it */
+    narc_chain_place before;       /* what the chain has before it */
     double begin_angle, end_angle; /* of normals */
     uint32_t first_arc;
     bool begins_in_corner, ends_in_corner; /* that was cut */
+    bool is_sharp;                         /* it holds a corner that turns far */
 } piece;
 
 typedef struct divider {
     const narc_chain *chain;
+    const narc_curves *curves;
     narc_chain_division *out;
     narc_error *error;
     narc_status status; /* of the first error */
@@ -129,60 +129,59 @@ static void fail_piece(divider *d, narc_status status, uint32_t number, const na
                           (unsigned long)number, reason->message);
 }
 
-/* ------------------------------------------------------------------------------------------------ what lies beyond */
+/* ------------------------------------------------------------------------------------------------ its solid */
 
-/* The arc after (way 1) or before (-1) one, or NULL. */
-static const narc_chain_arc *find_neighbour(const narc_chain *chain, const narc_chain_arc *arc, int way) {
-    const size_t count =
-        chain->count - (chain->closed && chain->arcs[0].turn < 0); /* the last one is the first again */
-    const size_t k = (size_t)(arc - chain->arcs) % count;
-    if (chain->closed)
-        return &chain->arcs[(k + (way > 0 ? 1 : count - 1)) % count];
-    return k + 1 == (way > 0 ? count : 1) ? NULL : arc + way;
+/* Is it a corner that turns far? A closed chain may have cut its first one. */
+static bool is_sharp(const narc_chain *chain, const narc_chain_arc *arc) {
+    const narc_chain_arc *first = chain->arcs, *last = chain->arcs + chain->count - 1;
+    const bool is_cut = chain->closed && (arc == first || arc == last);
+    return arc->radius == 0 &&
+           (is_cut ? narc_wrap_angle(first->start - last->start) + first->turn : arc->turn) > RIGHT_ANGLE;
 }
 
-/* Walks from an end of a piece, with this normal there, along the chain, after (way 1) or before it (-1). The first point
- * is where that leads to; the second one lies as far along the tangent, and as low as a straight line from the end that
- * the chain does not go below. */
-static void look_beyond(const narc_chain *chain, narc_point end, double angle, place at, int way, double length,
-                        narc_point *out_points) {
-    narc_point n, p = end;
-    double turned = 0, lowest = 0;
-    narc_find_normal(angle, &n.x, &n.y);
-    const narc_point along = {-n.y * way, n.x * way};
-    while (at.arc && length > 0) {
-        const narc_chain_arc *arc = at.arc;
-        const narc_point next = narc_find_chain_point(arc, at.turned);
-        const double line = find_distance(p, next), part = line > length ? length / line : 1;
-        p = (narc_point){p.x + part * (next.x - p.x), p.y + part * (next.y - p.y)};
-        length -= line;
-        if (length > 0) {
-            const double side = arc->turn < 0 ? -1 : 1;
-            const double rest = fmax(0, side * (way > 0 ? arc->turn - at.turned : at.turned));
-            const double most = fmin(BEYOND_TURN - side * turned, length / fabs(arc->radius));
-            const double turn = side * fmin(rest, most);
-            p = narc_find_chain_point(arc, at.turned + way * turn);
-            turned += turn;
-            length = rest > most ? 0 : length - fabs(arc->radius * turn);
-            at.arc = find_neighbour(chain, arc, way);
-            at.turned = at.arc && way < 0 ? at.arc->turn : 0;
-        }
-        const double far = (p.x - end.x) * along.x + (p.y - end.y) * along.y;
-        if (far > 0)
-            lowest = fmin(lowest, ((p.x - end.x) * n.x + (p.y - end.y) * n.y) / far);
-    }
-    const double far = fmax(0, (p.x - end.x) * along.x + (p.y - end.y) * along.y);
-    out_points[0] = p;
-    out_points[1] = (narc_point){end.x + far * (along.x + lowest * n.x), end.y + far * (along.y + lowest * n.y)};
+/* Does a concave arc begin or end in one? */
+static bool ends_in_sharp(const narc_chain *chain, const narc_chain_arc *arc) {
+    const narc_chain_arc *const end = chain->arcs + chain->count - 1;
+    const narc_chain_arc *const before = arc > chain->arcs ? arc - 1 : chain->closed ? end - 1 : NULL;
+    return (before && is_sharp(chain, before) &&
+            find_distance(narc_find_chain_end(before), narc_find_chain_start(arc)) <=
+                narc_find_chain_room(before, arc)) ||
+           (arc < end && is_sharp(chain, arc + 1) &&
+            find_distance(narc_find_chain_end(arc), narc_find_chain_start(arc + 1)) <=
+                narc_find_chain_room(arc, arc + 1));
 }
 
-static narc_beyond place_beyond(const narc_point *points, narc_point middle) {
-    narc_beyond out;
-    for (int k = 0; k < 4; k++) {
-        out.x[k] = (float)(points[k].x - middle.x);
-        out.y[k] = (float)(points[k].y - middle.y);
+static float keep_part(double length) { return (float)(KNOWN_PART * length); }
+
+/* An end of a front: from the origin, with its normal there, and where it is on the chain. */
+typedef struct front_end {
+    narc_point at;
+    double angle;
+    narc_chain_place place;
+} front_end;
+
+/* What is known of the solid around a front of so many arcs. Nothing is before there is a store. */
+static narc_solid measure_solid(const divider *d, const narc_arc *arcs, size_t count, const front_end ends[2],
+                                narc_point origin, double size, bool holds_sharp) {
+    const double most = fmin(KNOWN * size, d->chain->thickness);
+    narc_solid solid = {.thickness = most > 0 ? 0 : -0.0f};
+    if (!d->out->shapes || !(most > 0))
+        return solid;
+    if (!holds_sharp)
+        solid.thickness = keep_part(narc_find_thickness(d->curves, arcs, count, ends[0].at, ends[1].at, origin, most));
+    double depth = (double)solid.thickness;
+    for (int k = 0; k < 2; k++) {
+        const front_end *end = &ends[k], *other = &ends[1 - k];
+        const narc_point at = {origin.x + end->at.x, origin.y + end->at.y};
+        solid.clearance[k] = keep_part(narc_find_clearance(d->curves, at, end->place, most));
+        /* Near an end, behind a place of the front that lies the higher, the further it is from there. */
+        narc_point n;
+        narc_find_normal(other->angle, &n.x, &n.y);
+        const double rise = (other->at.x - end->at.x) * n.x + (other->at.y - end->at.y) * n.y;
+        depth = fmax(depth, (double)solid.clearance[k] + fmax(0, rise));
     }
-    return out;
+    solid.depth = (float)(DEPTH_ROOM * depth);
+    return solid;
 }
 
 /* ------------------------------------------------------------------------------------------------ runs */
@@ -227,13 +226,13 @@ static size_t close_run(piece *p, narc_point begin, narc_point end, double lengt
     return n + CLOSURE_ARCS;
 }
 
-static void open_piece(divider *d, narc_point begin, place before, double angle, uint32_t first_arc) {
+static void open_piece(divider *d, narc_point begin, narc_chain_place before, double angle, uint32_t first_arc) {
     d->piece.count = 0;
     d->piece.before = before;
     d->piece.begin = begin;
     d->piece.begin_angle = d->piece.end_angle = angle;
     d->piece.first_arc = first_arc;
-    d->piece.begins_in_corner = d->piece.ends_in_corner = false;
+    d->piece.begins_in_corner = d->piece.ends_in_corner = d->piece.is_sharp = false;
 }
 
 static void put_arc(divider *d, const narc_chain_arc *arc, double from, double to) {
@@ -242,10 +241,17 @@ static void put_arc(divider *d, const narc_chain_arc *arc, double from, double t
     if (p->count == 0)
         p->first_arc = arc->number;
     p->arcs[++p->count] = (narc_arc){arc->x, arc->y, arc->radius, start, start + (to - from)};
+    p->is_sharp = p->is_sharp || is_sharp(d->chain, arc);
     p->end_angle = start + (to - from);
 }
 
-static void end_piece(divider *d, narc_point end, place after) {
+/* A corner where a front ends, of no more turn than a seam has. */
+static void put_seam(divider *d, narc_point at, double start, uint32_t number) {
+    const narc_chain_arc corner = {.x = at.x, .y = at.y, .start = start, .turn = NARC_CHAIN_SEAM, .number = number};
+    put_arc(d, &corner, 0, corner.turn);
+}
+
+static void end_piece(divider *d, narc_point end, narc_chain_place after) {
     piece *p = &d->piece;
     narc_encoded_shape encoded;
     narc_error reason = {.status = NARC_OK};
@@ -260,19 +266,17 @@ static void end_piece(divider *d, narc_point end, place after) {
     double size = measure_front(p, begin);
     if (size <= POINT * d->reach)
         size = d->reach / 8;
-    narc_point points[4];
-    look_beyond(d->chain, p->begin, p->begin_angle, p->before, -1, 2 * BEYOND * size, points);
-    look_beyond(d->chain, end, p->end_angle, after, 1, 2 * BEYOND * size, points + 2);
-    const narc_beyond beyond = place_beyond(points, middle);
+    const front_end ends[2] = {{begin, p->begin_angle, p->before}, {stop, p->end_angle, after}};
+    const narc_solid solid = measure_solid(d, p->arcs + 1, p->count, ends, middle, 2 * size, p->is_sharp);
     if (p->begins_in_corner)
         begin = move(begin, p->begin_angle - NARC_PI / 2, FIN * size);
     if (p->ends_in_corner) {
         const double angle = p->end_angle;
         stop = move(stop, angle + NARC_PI / 2, FIN * size);
-        put_arc(d, &(narc_chain_arc){stop.x, stop.y, 0, angle, NARC_CHAIN_SEAM, 0}, 0, NARC_CHAIN_SEAM);
+        put_seam(d, stop, angle, 0);
     }
     const size_t count = close_run(p, begin, stop, FAR * size);
-    const narc_status status = narc_encode_run(p->arcs, count, &beyond, &encoded, &reason);
+    const narc_status status = narc_encode_run(p->arcs, count, &solid, &encoded, &reason);
     if (status != NARC_OK)
         fail_piece(d, status, p->first_arc, &reason);
     else
@@ -296,9 +300,9 @@ static void add_line(divider *d, narc_point from, narc_point to, const narc_chai
     const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length;
     for (double k = 1; k < parts && d->status == NARC_OK; k++) {
         const double at = (length - common) * (k / parts), end = at + common;
-        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end}, (place){after, 0});
-        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at}, (place){before, before->turn},
-                   d->piece.end_angle, after->number);
+        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end}, (narc_chain_place){after, 0});
+        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at},
+                   (narc_chain_place){before, before->turn}, d->piece.end_angle, after->number);
     }
 }
 
@@ -314,8 +318,9 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         const double end = fmin(cut + seam, to), begin = fmax(cut - seam, fmax(at, from));
         put_arc(d, arc, at, end);
         d->piece.ends_in_corner = arc->radius == 0;
-        end_piece(d, narc_find_chain_point(arc, end), (place){arc, end});
-        open_piece(d, narc_find_chain_point(arc, begin), (place){arc, begin}, arc->start + begin, arc->number);
+        end_piece(d, narc_find_chain_point(arc, end), (narc_chain_place){arc, end});
+        open_piece(d, narc_find_chain_point(arc, begin), (narc_chain_place){arc, begin}, arc->start + begin,
+                   arc->number);
         d->piece.begins_in_corner = arc->radius == 0;
         at = begin;
     }
@@ -382,12 +387,10 @@ static void divide_run(divider *d, size_t first, size_t end) {
         from = narc_find_chain_point(begins, -over);
     if (end_over > 0)
         to = narc_find_chain_point(ends, ends->turn + end_over);
-    open_piece(d, from, before ? (place){before, before->turn} : (place){begins, 0},
+    open_piece(d, from, before ? (narc_chain_place){before, before->turn} : (narc_chain_place){begins, 0},
                begins->start - (has_corner ? NARC_CHAIN_SEAM : over), begins->number);
     if (has_corner)
-        put_arc(d,
-                &(narc_chain_arc){from.x, from.y, 0, begins->start - NARC_CHAIN_SEAM, NARC_CHAIN_SEAM, before->number},
-                0, NARC_CHAIN_SEAM);
+        put_seam(d, from, begins->start - NARC_CHAIN_SEAM, before->number);
     const bool is_cut = chain->closed && !before; /* a closed convex chain begins and ends where an arc is cut */
     d->piece.begins_in_corner = is_cut && begins->radius == 0;
     narc_point at = from;
@@ -402,10 +405,9 @@ static void divide_run(divider *d, size_t first, size_t end) {
     if (has_end_line)
         add_line(d, at, to, after);
     if (has_end_corner)
-        put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, NARC_CHAIN_SEAM, after->number}, 0,
-                NARC_CHAIN_SEAM);
+        put_seam(d, to, d->piece.end_angle, after->number);
     d->piece.ends_in_corner = is_cut && ends->radius == 0;
-    end_piece(d, to, after ? (place){after, 0} : (place){ends, ends->turn});
+    end_piece(d, to, after ? (narc_chain_place){after, 0} : (narc_chain_place){ends, ends->turn});
     d->out->run++;
 }
 
@@ -427,12 +429,11 @@ static void divide_concave(divider *d, size_t k) {
         const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};
         narc_encoded_shape encoded;
         narc_error reason = {.status = NARC_OK};
-        const double length = BEYOND * fmax(find_distance(start, end), VALLEY_SIZE * near);
-        narc_point points[4];
-        look_beyond(chain, start, own.start, (place){arc, low}, 1, length, points);
-        look_beyond(chain, end, own.end, (place){arc, high}, -1, length, points + 2);
-        const narc_beyond beyond = place_beyond(points, middle);
-        const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &beyond, &encoded, &reason);
+        const front_end ends[2] = {{{start.x - middle.x, start.y - middle.y}, own.start, {arc, low}},
+                                   {{end.x - middle.x, end.y - middle.y}, own.end, {arc, high}}};
+        const narc_solid solid =
+            measure_solid(d, &own, 1, ends, middle, fmax(find_distance(start, end), near), ends_in_sharp(chain, arc));
+        const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &solid, &encoded, &reason);
         if (status != NARC_OK)
             fail_piece(d, status, arc->number, &reason);
         else
@@ -442,8 +443,9 @@ static void divide_concave(divider *d, size_t k) {
     }
 }
 
-narc_status narc_divide_chain(const narc_chain *chain, narc_chain_division *division, narc_error *error) {
-    divider d = {.chain = chain, .out = division, .error = error};
+narc_status narc_divide_chain(const narc_chain *chain, const narc_curves *curves, narc_chain_division *division,
+                              narc_error *error) {
+    divider d = {.chain = chain, .curves = curves, .out = division, .error = error};
     size_t first = 0;
     while (d.status == NARC_OK) {
         size_t end = first;

@@ -190,16 +190,16 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
 /* ------------------------------------------------------------------------------------------------ pieces of chains */
 
 /* Of a piece, whose header is known. */
-static narc_beyond *find_beyond(narc_encoded_shape *shape) {
-    return &shape->records[narc_count_records(&shape->header) - 1].beyond;
+static narc_solid *find_solid(narc_encoded_shape *shape) {
+    return &shape->records[narc_count_records(&shape->header) - 1].solid;
 }
 
-narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_beyond *beyond,
-                            narc_encoded_shape *out_shape, narc_error *error) {
+narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_solid *solid, narc_encoded_shape *out_shape,
+                            narc_error *error) {
     const narc_status status = narc_encode_shape(arcs, count, out_shape, error);
     if (status == NARC_OK) {
         out_shape->header.first_arc |= NARC_PIECE_RUN;
-        *find_beyond(out_shape) = *beyond;
+        *find_solid(out_shape) = *solid;
     }
     return status;
 }
@@ -243,7 +243,7 @@ static void write_concave(narc_encoded_shape *shape, float least_bound) {
         (int16_t)(find_diamond_angle(arc->start_x, arc->start_y) * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET);
 }
 
-narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_beyond *beyond,
+narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_solid *solid,
                                 narc_encoded_shape *out_shape, narc_error *error) {
     narc_point start, end;
     narc_find_normal(arc->start, &start.x, &start.y);
@@ -256,7 +256,7 @@ narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const n
                                                   .end_x = (float)end.x,
                                                   .end_y = (float)end.y};
     write_concave(out_shape, (float)least_bound);
-    *find_beyond(out_shape) = *beyond;
+    *find_solid(out_shape) = *solid;
     const double bound = (double)out_shape->header.bound_radius;
     if (!narc_is_size(out_shape->header.bound_radius))
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound, "its bounding radius is %g, not in %g .. %g", bound,
@@ -431,6 +431,16 @@ static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, d
            has_room(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner, room);
 }
 
+static bool is_solid(const narc_solid *solid) {
+    const float lengths[] = {solid->thickness, solid->clearance[0], solid->clearance[1], solid->depth};
+    bool is = true;
+    for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++)
+        is = is && lengths[k] >= 0 && isfinite(lengths[k]);
+    for (size_t k = 0; k < sizeof solid->unused / sizeof *solid->unused; k++)
+        is = is && has_same_bits(solid->unused[k], 0);
+    return is;
+}
+
 /* Is it a concave arc with the header that it should have? Its circle may be larger: that of a valley's bottom is. */
 static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error) {
     const narc_shape_header header = shape->header;
@@ -444,6 +454,8 @@ static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error)
     if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || !(fabs(end_x * end_x + end_y * end_y - 1) <= UNIT_SLACK) ||
         !(x * end_y - y * end_x >= NARC_TOLERANCE / 4))
         return fail_stored(error, "a concave arc that does not turn");
+    if (!is_solid(find_solid(shape)))
+        return fail_stored(error, "a solid that no piece of a chain has");
     write_concave(shape, header.bound_radius);
     if (memcmp((const char *)&shape->header, (const char *)&header, sizeof header) != 0 ||
         -(double)a->radius > 5 * NARC_MAX_RADIUS_RATIO * (double)header.bound_radius)
@@ -479,6 +491,8 @@ narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
         return status;
     if (mark && !is_closed_run(&o))
         return fail_stored(error, "a piece of a chain that is none");
+    if (mark && !is_solid(find_solid(shape)))
+        return fail_stored(error, "a solid that no piece of a chain has");
     write_records(&o, &shape->header, shape->records);
     if (shape->header.first_arc != header.first_arc)
         return fail_stored(error, "arcs out of order");

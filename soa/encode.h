@@ -19,12 +19,12 @@ typedef struct narc_encoded_shape {
 narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error);
 
 /* Encodes a closed run of a chain: its arcs are those of store.h, NARC_PIECE_RUN. */
-narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_beyond *beyond,
-                            narc_encoded_shape *out_shape, narc_error *error);
+narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_solid *solid, narc_encoded_shape *out_shape,
+                            narc_error *error);
 
 /* Encodes a concave arc of a chain, radius below 0 or -0, with normals from `start` counter-clockwise to `end`. Its
  * circle gets this radius at least. NARC_ERROR_RADIUS (too flat), NARC_ERROR_SIZE. */
-narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_beyond *beyond,
+narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_solid *solid,
                                 narc_encoded_shape *out_shape, narc_error *error);
 
 /* The form of a shape that is a box or a capsule, else one with info 0. */

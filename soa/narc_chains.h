@@ -24,18 +24,18 @@
  *   right for bodies that are less deep in the ground than half the entry's front is long, and where the ground is
  *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
  *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
- *   air is within the closure, or beyond a concave arc: there is no contact unless the body reaches the entry's surface.
- *   So none is deeper than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as
- *   a gear in a ring, none is deeper than the smaller one's front is large, or an eighth of the larger one's. Rods and
- *   other bodies deeper than their inscribed circle is wide may lose contacts earlier, and what leans round an end of
- *   thin ground may be told of falsely: docs/terrain.md has the figures.
+ *   air is within the closure, or beyond a concave arc: there is no contact with what it does not touch. Each entry knows
+ *   how thick its chain's solid is behind it, and how far other surfaces are from its ends, and a contact is never deeper
+ *   than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as a gear in a ring, none
+ *   is deeper than the smaller one's front is large, or an eighth of the larger one's. Rods and other bodies deeper than
+ *   their inscribed circle is wide may lose contacts earlier: docs/terrain.md has the rule.
  *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
  *   narc_merge_contacts() or narc_merge_manifolds().
  *
  *   Of an entry's shape narc_shape_flags() has NARC_SHAPE_RUN or NARC_SHAPE_CONCAVE. narc_get_arcs() gives a concave arc
  *   as it is in a chain, and of a run all arcs of the closed shape: its front is what lies between edge 1 and edge
  *   count - 5, arcs 1 .. count - 6 (edge i is the one before arc i). Features of rows are numbered so. narc_get_aabb()
- *   and the boxes of bodies are those of the front alone.
+ *   and the boxes of bodies hold the front, and behind it all places down to which it may have contacts.
  */
 #ifndef NARC_CHAINS_H
 #define NARC_CHAINS_H
@@ -49,13 +49,23 @@ extern "C" {
 /* The run of entries that are concave arcs, which are of none, and of bodies that are no entries. */
 #define NARC_NO_RUN UINT32_MAX
 
-/* How a chain is divided; zero-initialised options are all defaults. */
+/* How a chain is divided; zero-initialised options are all defaults.
+ *   closed         not 0: an edge, or a common point, joins the last arc to the first one
+ *   first_run      the number of the first run, so that chains of one scene have runs of their own
+ *   weld           the longest straight part of an entry; 0: 32 times the mean of the edges as given
+ *   least_radius   concave arcs with a smaller radius, valleys too, are refused: those too tight for bodies
+ *   thickness      of a solid that other chains bound, too: how thick it is where it is thinnest; 0: the chain bounds it
+ *                  all, or it is as thick as can be
+ *   both_sides     not 0: the chain is a line, and the air is on both of its sides: each has entries, and runs, of its
+ *                  own, those of the left side behind the others. Ends are round, of radius 0 */
 typedef struct narc_chain_options {
-    uint32_t closed;     /* not 0: an edge, or a common point, joins the last arc to the first one */
-    uint32_t first_run;  /* the number of the first run, so that chains of one scene have runs of their own */
-    double weld;         /* the longest straight part of an entry; 0: 32 times the mean of the edges as given */
-    double least_radius; /* concave arcs with a smaller radius, valleys too, are refused: those too tight for bodies */
-    void *reserved[4];   /* NULL */
+    uint32_t closed;
+    uint32_t first_run;
+    double weld;
+    double least_radius;
+    float thickness;
+    uint32_t both_sides;
+    void *reserved[1 + sizeof(void *) / 4]; /* NULL */
 } narc_chain_options;
 
 /* A part of a chain, a shape about its own middle. */
@@ -71,7 +81,8 @@ typedef struct narc_chain_entry {
 
 /* Adds a chain of `count` arcs (1 .. 2^30), in their order, to a store. The entries, in the order of the chain (of a
  * closed one from any place), go to `out_entries`, which has room for `capacity`, their number to `out_count`. Each
- * entry is a use of its shape, which narc_remove_shape() gives back.
+ * entry is a use of its shape, which narc_remove_shape() gives back. With `both_sides` those of the left side follow,
+ * walked back: along them the numbers of arcs fall.
  *   Plain points within a straight line vanish. Straight lines longer than `weld` are divided into parts of one length,
  * of which two that follow each other have a quarter of `weld` in common. So a body that touches no wider a stretch of
  * the line has all of its contact, both points, on one part. Of a wider one that lies across such a stretch, tilted by
@@ -84,8 +95,8 @@ typedef struct narc_chain_entry {
  * NARC_ERROR_NOT_CONVEX (an edge runs backwards), NARC_ERROR_NOT_SIMPLE (the chain crosses or touches itself),
  * NARC_ERROR_SIZE (a part is too small or too large), NARC_ERROR_MEMORY, and NARC_ERROR_CAPACITY, where `out_count`
  * alone is set, to what is needed (`out_entries` may be NULL if the capacity is 0). On error the store is as it was.
- *   Takes exclusive access to the store, and time in proportion to `count`, but for the search for crossings: n log n
- * for a chain that does not come near itself often. Pure otherwise; the same bits on every machine. */
+ *   Takes exclusive access to the store, and time in proportion to n log n, for a chain that does not come near itself
+ * often. Pure otherwise; the same bits on every machine. */
 NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, size_t count,
                                     const narc_chain_options *options, narc_chain_entry *out_entries, size_t capacity,
                                     size_t *out_count, narc_error *error);
@@ -103,6 +114,8 @@ NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, s
  *   - Of two rows with one normal (within 1e-3 rad) and the same points (within 2^-12 of their distance from the
  *     position of a; deep ones of one depth in the body's surface or the ground's) the one with more points stays, else
  *     that of a concave arc, or the first one, with the smaller separation of each point: a seam, told by both.
+ *   - Where an edge of a body lies along a line that goes over into a concave arc, and ends on that, both rows are joined.
+ *   - Of two rows below 0 of faces that look away from each other, the two sides of a thin solid, the deeper one goes.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
 NARC_API size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count);
 NARC_API size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count);

@@ -100,9 +100,10 @@ typedef struct narc_pairs {
  *                     stale, or made up, or another pair's, costs time and changes no bit of the answer. Untouched on
  *                     an error other than NARC_ERROR_CAPACITY
  *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once, so no more than there
- *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
- *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
- *                     of the selection, and bit k of overlaps is that of pair selection[k]
+ *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes
+ *                     of an empty container asks of none. Hints, margins, rows' numbers and dense rows stay those of the
+ *                     whole batch; rows are listed in the order of the selection, and bit k of overlaps is that of pair
+ *                     selection[k]
  *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
  *                     multiple of 64, and so is `count` unless it reaches to the end; only its words are written
  *   dense             contacts and manifolds: row k is that of pair k, with count 0 where there is nothing, and there
@@ -112,7 +113,9 @@ typedef struct narc_pairs {
  *                     row; below 0 they go backwards, from the one at out_rows; 0: no gaps
  *   workers           threads to use; NULL: the calling one. Lists are made by several only as far as they have room
  *                     for a row for each pair
- *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are */
+ *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are
+ *   front_only        not 0: a body deeper in a piece of a chain than the centre of its bounding circle, which is then
+ *                     behind the piece, has no contact with it: so it jumps up through a platform, and lands on it */
 typedef struct narc_query {
     float margin;
     float second_margin;
@@ -126,7 +129,8 @@ typedef struct narc_query {
     ptrdiff_t row_stride;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    uint32_t front_only;
+    void *reserved[3]; /* NULL */
 } narc_query;
 
 /* ------------------------------------------------------------------------------------------------ rows */

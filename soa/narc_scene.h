@@ -21,7 +21,8 @@
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
- *   looks like: of equal fractions or distances the body with the lower number counts.
+ *   looks like: of equal fractions or distances the body with the lower number counts. Equal is what is equal as a float:
+ *   so of motions so long that fractions underflow a body further away may count.
  *
  * Example
  *
@@ -193,7 +194,7 @@ typedef struct narc_ray_hit {
  * (from more than 1e9 extents away, the digits of doubles are lost too). A ray that passes a body by no more than that
  * may hit or miss it, but one that touches it on its way, if only at a corner or along a side, hits it. So through a point that
  * two bodies hold, such as tiles' common corner, no ray passes unless it hits both (of shapes less than 250 of their radii
- * from their own origin). A touch has a fraction and a normal as any hit; at most, the normal is across the ray. A corner is
+ * from their own origin). A touch has a fraction and a normal as any hit: against the ray, or across it. A corner is
  * hit as the end of an edge, a segment along the ray at its end, against the normal. Boxes only have to hold their bodies:
  * larger ones change no bit. Pieces of chains (narc_chains.h) are hit from the air: a
  * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken

@@ -32,134 +32,244 @@ static double find_reach(const narc_toucher *a, const narc_toucher *b) {
     const narc_toucher *const body = narc_is_piece(a->header) ? b : a;
     double size;
     if (!narc_is_piece(body->header))
-        return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, &size) +
-                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size) +
+        return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, 0, &size) +
+                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, 0, &size) +
                               WIDTH_ROOM * (double)body->header->bound_radius);
     const double size_a = find_piece_size(a), size_b = find_piece_size(b);
     const double least = size_a < size_b ? size_a : size_b, most = 0.125 * (size_a < size_b ? size_b : size_a);
     return least > most ? least : most;
 }
 
-/* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points
- * and, in directions between two, a circle about the last one. Points are both ends and what lies beyond them.
- *   of a concave arc   its sector, and the centre
- *   of a run           its front and what lies before its chord. In directions of the front it has no end: along those a
- *                      contact says how deep it is */
-enum { SURFACE_POINTS = 7 };
-typedef struct surface {
-    double x[SURFACE_POINTS], y[SURFACE_POINTS];
-    double radius, from_x, from_y, to_x, to_y;
-    double room; /* for rounding */
-    int count;
-} surface;
+typedef struct spot {
+    double x, y;
+} spot;
 
-#define SURFACE_ROOM 0x1p-16 /* of the piece's size and the body's together */
+static double cross(spot a, spot b) { return a.x * b.y - a.y * b.x; }
+static double dot(spot a, spot b) { return a.x * b.x + a.y * b.y; }
+static spot subtract(spot a, spot b) { return (spot){a.x - b.x, a.y - b.y}; }
+static spot add(spot a, double length, spot d) { return (spot){a.x + length * d.x, a.y + length * d.y}; }
+static double get_least(double a, double b) { return a < b ? a : b; }
+static double get_most(double a, double b) { return a > b ? a : b; }
 
-static surface see_surface(const narc_toucher *piece, const narc_toucher *body) {
-    const size_t count = piece->header->count, first = piece->header->first_arc & NARC_FIRST_ARC;
-    const bool hollow = narc_is_concave(piece->header);
-    const narc_stored_arc *const low = &piece->arcs[hollow ? 0 : (count - first) % count].arc,
-                                 *const high = &piece->arcs[hollow ? 0 : (2 * count - 5 - first) % count].arc;
-    const narc_beyond *const beyond = &piece->arcs[count].beyond;
-    const double from_x = (double)(hollow ? low->start_x : low->end_x),
-                 from_y = (double)(hollow ? low->start_y : low->end_y),
-                 to_x = (double)(hollow ? low->end_x : high->start_x),
-                 to_y = (double)(hollow ? low->end_y : high->start_y);
-    const double own = hollow ? (double)low->radius : 0; /* a run ends with corners */
-    const double x[SURFACE_POINTS] = {(double)low->center_x + own * from_x,
-                                      (double)high->center_x + own * to_x,
-                                      (double)beyond->x[0],
-                                      (double)beyond->x[1],
-                                      (double)beyond->x[2],
-                                      (double)beyond->x[3],
-                                      (double)low->center_x};
-    const double y[SURFACE_POINTS] = {(double)low->center_y + own * from_y,
-                                      (double)high->center_y + own * to_y,
-                                      (double)beyond->y[0],
-                                      (double)beyond->y[1],
-                                      (double)beyond->y[2],
-                                      (double)beyond->y[3],
-                                      (double)low->center_y};
-    const double c = piece->x * body->x + piece->y * body->y, s = piece->x * body->y - piece->y * body->x;
-    const double part = piece->scale / body->scale, sign = hollow ? -1 : 1;
-    surface out = {.radius = hollow ? -part * own : INFINITY,
-                   .from_x = sign * (c * from_x - s * from_y),
-                   .from_y = sign * (s * from_x + c * from_y),
-                   .to_x = sign * (c * to_x - s * to_y),
-                   .to_y = sign * (s * to_x + c * to_y),
-                   .room = SURFACE_ROOM * (find_piece_size(piece) / body->scale + (double)body->header->bound_radius),
-                   .count = hollow ? SURFACE_POINTS : SURFACE_POINTS - 1};
-    for (int k = 0; k < SURFACE_POINTS; k++) {
-        out.x[k] = body->other_x / body->scale + part * (c * x[k] - s * y[k]);
-        out.y[k] = body->other_y / body->scale + part * (s * x[k] + c * y[k]);
-    }
+/* Is a direction in a sector of at most half a turn? */
+static bool holds(spot start, spot end, spot d) {
+    return cross(start, d) >= 0 && cross(d, end) >= 0 && dot(start, d) + dot(end, d) >= 0;
+}
+
+/* An arc as a body sees it, in the body's axes and unit: its circle, the directions of its ends from the centre,
+ * counter-clockwise, and these ends, in the order of the piece's normals. */
+typedef struct seen_arc {
+    spot center, start, end, first, last;
+    double radius;
+} seen_arc;
+
+static seen_arc see_own(const narc_stored_arc *a) {
+    const double radius = (double)a->radius, sign = radius < 0 ? -1 : 1;
+    seen_arc out = {.center = {(double)a->center_x, (double)a->center_y}, .radius = sign * radius};
+    const spot start = {(double)a->start_x, (double)a->start_y}, end = {(double)a->end_x, (double)a->end_y};
+    out.start = (spot){sign * start.x, sign * start.y};
+    out.end = (spot){sign * end.x, sign * end.y};
+    out.first = add(out.center, radius, start);
+    out.last = add(out.center, radius, end);
     return out;
 }
 
-/* Is a direction between the two? They are less than half a turn apart. */
-static bool faces(const surface *s, double x, double y) {
-    return s->from_x * y - s->from_y * x >= 0 && x * s->to_y - y * s->to_x >= 0 &&
-           x * (s->from_x + s->to_x) + y * (s->from_y + s->to_y) > 0;
+/* A body beside a piece. `turn`, `part`, `at`: the piece's axes, unit and origin in the body's. */
+typedef struct view {
+    const narc_toucher *piece, *body;
+    spot turn, at;
+    double part;
+    double room; /* for rounding */
+} view;
+
+#define FRONT_ROOM 0x1p-18 /* of the piece's size and the body's together */
+
+static view make_view(const narc_toucher *piece, const narc_toucher *body) {
+    return (view){piece,
+                  body,
+                  {piece->x * body->x + piece->y * body->y, piece->x * body->y - piece->y * body->x},
+                  {body->other_x / body->scale, body->other_y / body->scale},
+                  piece->scale / body->scale,
+                  FRONT_ROOM * (find_piece_size(piece) / body->scale + (double)body->header->bound_radius)};
 }
 
-/* Is a direction of length 1, from the body, one along which it is apart, where the body reaches `height`? */
-static bool is_apart(const surface *s, double x, double y, double height) {
-    const int center = SURFACE_POINTS - 1;
-    double best = faces(s, -x, -y) ? s->radius - (s->x[center] * x + s->y[center] * y) : -INFINITY;
-    for (int k = 0; k < s->count; k++) {
-        const double along = -(s->x[k] * x + s->y[k] * y);
-        best = along > best ? along : best;
+static spot turn_by(spot turn, spot d) { return (spot){turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y}; }
+
+static spot see_place(const view *v, spot p) { return add(v->at, v->part, turn_by(v->turn, p)); }
+
+/* An arc of the piece, by its number. */
+static seen_arc see_arc(const view *v, size_t number) {
+    const size_t count = v->piece->header->count, first = v->piece->header->first_arc & NARC_FIRST_ARC;
+    const seen_arc own = see_own(&v->piece->arcs[(number + count - first) % count].arc);
+    return (seen_arc){see_place(v, own.center), turn_by(v->turn, own.start), turn_by(v->turn, own.end),
+                      see_place(v, own.first),  see_place(v, own.last),      v->part * own.radius};
+}
+
+/* ------------------------------------------------------------------------------------------------ near an end */
+
+/* Does one of the body's deepest places, along its outward normal w, that lie behind the front, lie near an end? */
+static bool lies_near_end(const view *v, spot w) {
+    const narc_shape_header *const header = v->piece->header;
+    const bool hollow = narc_is_concave(header);
+    const narc_solid *const solid = &v->piece->arcs[header->count].solid;
+    const seen_arc first = see_arc(v, 0), last = hollow ? first : see_arc(v, header->count - 5u);
+    const spot along = {-w.y, w.x}, end[2] = {hollow ? first.first : first.last, hollow ? last.last : last.first};
+    double size, low = INFINITY, high = -INFINITY;
+    const double height = narc_find_front_height(v->body->header, v->body->arcs, w.x, w.y, 0, &size);
+    const double flat = height - v->room - 0x1p-20 * size;
+    for (size_t k = 0; k < v->body->header->count; k++) {
+        const seen_arc arc = see_own(&v->body->arcs[k].arc);
+        const spot places[3] = {arc.first, arc.last, add(arc.center, arc.radius, w)};
+        for (int i = 0; i < (holds(arc.start, arc.end, w) ? 3 : 2); i++)
+            if (dot(places[i], w) >= flat) {
+                low = get_least(low, dot(places[i], along));
+                high = get_most(high, dot(places[i], along));
+            }
     }
-    return best + s->room < -height;
+    const double at[2] = {dot(end[0], along), dot(end[1], along)};
+    const double from = hollow ? low : get_most(low, get_least(at[0], at[1])),
+                 to = hollow ? high : get_least(high, get_most(at[0], at[1]));
+    if (from > to + 2 * v->room)
+        return false;
+    for (int i = 0; i < 2; i++) {
+        const double x = get_least(get_most(at[i], from), get_most(from, to)) - at[i], y = height - dot(end[i], w);
+        const double reach = v->part * (double)solid->clearance[i];
+        if (x * x + y * y <= reach * reach)
+            return true;
+    }
+    return false;
 }
 
-/* Is a body apart from it? Then so along a normal of one of them, or the way from a point to a centre. */
-static bool misses(const surface *s, const narc_toucher *body) {
+/* ------------------------------------------------------------------------------------------------ meeting the front */
+
+static double find_line_square(spot c, spot p, spot q) {
+    const spot way = subtract(q, p), to = subtract(c, p);
+    const double square = dot(way, way), along = dot(to, way);
+    const double part = square > 0 ? get_least(get_most(along / square, 0), 1) : 0;
+    const spot off = add(to, -part, way);
+    return dot(off, off);
+}
+
+/* Does the body meet a segment, or a point? If its inscribed circle does; not if its bounding circle does not; else they
+ * are apart along a normal of one of them or the way from a centre to an end, or meet. */
+static bool meets_line(const view *v, spot p, spot q) {
+    const narc_shape_header *const header = v->body->header;
+    const spot inner = {(double)header->inner_x, (double)header->inner_y},
+               bound = {(double)header->bound_x, (double)header->bound_y}, way = subtract(q, p);
+    const double inner_radius = (double)header->inner_radius, bound_radius = (double)header->bound_radius + v->room;
     double size;
-    for (int k = 0; k < s->count; k++)
-        for (int i = 0; i < s->count; i++) {
-            const double x = s->y[i] - s->y[k], y = s->x[k] - s->x[i], length = sqrt(x * x + y * y);
-            if (length > 0 && is_apart(s, x / length, y / length,
-                                       narc_find_front_height(body->header, body->arcs, x / length, y / length, &size)))
-                return true;
+    if (inner_radius > 0 && find_line_square(inner, p, q) <= inner_radius * inner_radius)
+        return true;
+    if (find_line_square(bound, p, q) > bound_radius * bound_radius)
+        return false;
+    const double length = sqrt(dot(way, way));
+    if (length > 0) {
+        const spot n = {way.y / length, -way.x / length};
+        const double height = dot(p, n);
+        if (height > narc_find_front_height(header, v->body->arcs, n.x, n.y, 0, &size) + v->room ||
+            -height > narc_find_front_height(header, v->body->arcs, -n.x, -n.y, 0, &size) + v->room)
+            return false;
+    }
+    for (size_t k = 0; k < header->count; k++) {
+        const seen_arc a = see_own(&v->body->arcs[k].arc);
+        const spot to[2] = {subtract(p, a.center), subtract(q, a.center)};
+        const double radius = a.radius + v->room;
+        if (dot(to[0], a.start) > radius && dot(to[1], a.start) > radius)
+            return false;
+        for (int i = 0; i < 2; i++) {
+            const double away = sqrt(dot(to[i], to[i]));
+            if (away > radius && holds(a.start, a.end, to[i]) && dot(to[1 - i], to[i]) > radius * away)
+                return false;
         }
-    for (size_t k = 0; k < body->header->count; k++) {
-        const narc_stored_arc *const a = &body->arcs[k].arc;
-        const double c_x = (double)a->center_x, c_y = (double)a->center_y, radius = (double)a->radius;
-        const double u_x = (double)a->start_x, u_y = (double)a->start_y, v_x = (double)a->end_x, v_y = (double)a->end_y;
-        if (is_apart(s, u_x, u_y, c_x * u_x + c_y * u_y + radius))
-            return true;
-        for (int i = 0; i < s->count; i++) {
-            const double x = s->x[i] - c_x, y = s->y[i] - c_y, length = sqrt(x * x + y * y);
-            if (u_x * y - u_y * x >= 0 && x * v_y - y * v_x >= 0 && length > 0 &&
-                is_apart(s, x / length, y / length, (c_x * x + c_y * y) / length + radius))
+    }
+    return true;
+}
+
+/* Does the outline of the body cross an arc of the front? */
+static bool crosses_arc(const view *v, const seen_arc *arc) {
+    const narc_shape_header *const header = v->body->header;
+    const spot center = arc->center;
+    const double r = arc->radius;
+    for (size_t k = 0; k < header->count; k++) {
+        const seen_arc a = see_own(&v->body->arcs[k].arc),
+                       b = see_own(&v->body->arcs[k + 1 < header->count ? k + 1 : 0].arc);
+        const spot way = subtract(a.center, center);
+        const double radius = a.radius + v->room, square = dot(way, way), away = sqrt(square);
+        if (away > 0 && away <= r + radius && away >= fabs(r - radius)) {
+            const double along = (square + r * r - radius * radius) / (2 * away),
+                         across = sqrt(get_most(0, r * r - along * along));
+            for (int side = -1; side <= 1; side += 2) {
+                const spot at = {(along * way.x - side * across * way.y) / away,
+                                 (along * way.y + side * across * way.x) / away};
+                if (holds(arc->start, arc->end, at) && holds(a.start, a.end, subtract(at, way)))
+                    return true;
+            }
+        }
+        const spot from = subtract(add(a.last, v->room, a.end), center),
+                   edge = subtract(add(b.first, v->room, a.end), add(a.last, v->room, a.end));
+        const double length = dot(edge, edge), half = dot(from, edge),
+                     root = half * half - length * (dot(from, from) - r * r);
+        for (int side = -1; side <= 1 && length > 0 && root >= 0; side += 2) {
+            const double part = (-half + side * sqrt(root)) / length;
+            if (part >= 0 && part <= 1 && holds(arc->start, arc->end, add(from, part, edge)))
                 return true;
         }
     }
     return false;
 }
 
-/* Does the middle of a body lie on the air's side, beside the piece? */
-static bool lies_before(const surface *s, const narc_toucher *body) {
-    const int from = s->radius < INFINITY ? SURFACE_POINTS - 1 : 0;
-    const double x = (double)body->header->inner_x - s->x[from], y = (double)body->header->inner_y - s->y[from];
-    if (s->radius < INFINITY)
-        return x * x + y * y <= s->radius * s->radius && faces(s, x, y);
-    const double way_x = s->x[1] - s->x[0], way_y = s->y[1] - s->y[0], along = x * way_x + y * way_y;
-    return along >= 0 && along <= way_x * way_x + way_y * way_y && x * way_y - y * way_x >= 0;
+/* Does the body meet an arc of the front, whose ends it does not meet? */
+static bool meets_arc(const view *v, const seen_arc *arc) {
+    const narc_shape_header *const header = v->body->header;
+    const spot inner = subtract((spot){(double)header->inner_x, (double)header->inner_y}, arc->center),
+               bound = subtract((spot){(double)header->bound_x, (double)header->bound_y}, arc->center);
+    const double off = fabs(sqrt(dot(inner, inner)) - arc->radius);
+    if (off <= (double)header->inner_radius && holds(arc->start, arc->end, inner))
+        return true;
+    if (fabs(sqrt(dot(bound, bound)) - arc->radius) > (double)header->bound_radius + v->room)
+        return false;
+    return crosses_arc(v, arc);
 }
 
-/* Of two bodies, one of them a piece: do they reach each other's surface? */
-bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation) {
+static bool meets_front(const view *v) {
+    const narc_shape_header *const header = v->piece->header;
+    const seen_arc first = see_arc(v, 0);
+    if (narc_is_concave(header))
+        return meets_line(v, first.first, first.first) || meets_line(v, first.last, first.last) || meets_arc(v, &first);
+    spot last = first.last;
+    for (size_t number = 1; number + 5 <= header->count; number++) {
+        const seen_arc arc = see_arc(v, number);
+        if (meets_line(v, last, arc.first) || (number + 6 <= header->count && arc.radius > 0 && meets_arc(v, &arc)))
+            return true;
+        last = arc.last;
+    }
+    return false;
+}
+
+/* Is the middle of a body, `depth` deep along its outward normal w, behind the front? */
+static bool is_behind(const narc_toucher *body, spot w, double depth) {
+    double size;
+    const double height = narc_find_front_height(body->header, body->arcs, w.x, w.y, 0, &size);
+    return depth > body->scale * (height - (double)body->header->bound_x * w.x - (double)body->header->bound_y * w.y);
+}
+
+bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation, bool front_only) {
     const bool of_a = narc_is_piece(a->header);
     const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
-    const double depth = -separation;
-    if (narc_is_shallow(a->header, a->scale, b->header, b->scale, separation))
+    const double depth = -separation, sign = of_a ? -1 : 1; /* normals point from A to B */
+    const spot w = {sign * body->x, sign * body->y};
+    if (depth <= 0)
         return true;
-    if (depth <= 0 || depth > find_reach(a, b))
-        return depth <= 0;
-    if (narc_is_piece(body->header))
+    const double reach = find_reach(a, b);
+    if (depth > reach || narc_is_piece(body->header))
+        return depth <= reach;
+    if (front_only && is_behind(body, w, depth))
+        return false;
+    const double thickness = (double)piece->arcs[piece->header->count].solid.thickness;
+    if (narc_is_shallow(body->header, body->scale, piece->scale * thickness, separation))
         return true;
-    const surface seen = see_surface(piece, body);
-    return lies_before(&seen, body) || !misses(&seen, body);
+    const view seen = make_view(piece, body);
+    if (signbit(thickness)) /* of a line in the air that side tells of a body on which there is less of it */
+        return depth <= reach / 2 && meets_front(&seen);
+    return lies_near_end(&seen, w) || meets_front(&seen);
 }

@@ -3,7 +3,7 @@
  * save.c - a store as bytes, and back.
  *
  * All numbers are little-endian, floats as their bits (IEEE 754). A start of 40 bytes:
- *   "NARCSHPS", version 2 (4 bytes), indices, removed indices, the last that was removed (4 bytes each; 2^32 - 1:
+ *   "NARCSHPS", version 3 (4 bytes), indices, removed indices, the last that was removed (4 bytes each; 2^32 - 1:
  * none),
  *   all bytes (8), a checksum of all other bytes (8)
  * and for each index
@@ -20,7 +20,7 @@
 static const char magic[8] = "NARCSHPS";
 
 enum {
-    VERSION = 2,
+    VERSION = 3,
     AT_VERSION = 8,
     AT_COUNT = 12,
     AT_REMOVED = 16,
@@ -34,7 +34,7 @@ enum {
     HOLE_BYTES = 8
 };
 
-/* Arcs, and behind those of a piece of a chain what lies beyond. */
+/* Arcs, and behind those of a piece of a chain its solid. */
 static size_t count_saved_records(unsigned count, unsigned first_arc) {
     return count + (first_arc & NARC_PIECE_MARKS ? 1 : 0);
 }

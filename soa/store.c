@@ -445,7 +445,7 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
 static double find_stored_height(const narc_shape_header *header, const narc_record *arcs, double x, double y) {
     double best = -INFINITY, extent = 0;
     if (narc_is_piece(header)) {
-        best = narc_find_front_height(header, arcs, x, y, &extent);
+        best = narc_find_front_height(header, arcs, x, y, narc_find_front_depth(header, arcs), &extent);
         return best + NARC_ROUNDING_ROOM * extent;
     }
     for (size_t i = 0; i < header->count; i++) {

@@ -113,16 +113,21 @@ typedef struct narc_stored_arc {
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
-/* Behind the arcs of a piece of a chain: four points that the chain leads to beyond its ends, two at each, of the piece
- * as it is stored. Between an end and its two points lies what of the chain is near (chain_pieces.c). */
-typedef struct narc_beyond {
-    float x[4], y[4];
-} narc_beyond;
+/* Behind the arcs of a piece of a chain, what is known of the solid there, in the unit of the shape (soa/piece.h):
+ *   thickness   So far, at least, the solid goes on behind every place of the front, against its normals there; 0 if
+ *               it does not along some, as at a corner that turns by more than a right angle; -0 of a line in the air.
+ *   clearance   Of both ends of the front, in the order of the arcs: so far, at least, all is that is not the surface
+ *               around them.
+ *   depth       No contact that reaches the front is deeper behind it. Boxes hold all of that. */
+typedef struct narc_solid {
+    float thickness, clearance[2], depth;
+    float unused[4]; /* 0 */
+} narc_solid;
 
 typedef union narc_record {
     int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
-    narc_beyond beyond;
+    narc_solid solid;
 } narc_record;
 
 /* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
@@ -149,7 +154,7 @@ enum { NARC_READ_AHEAD = 2 };
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
-/* All records of a shape: its angles, its arcs and, of a piece, what lies beyond. */
+/* All records of a shape: its angles, its arcs and, of a piece, its solid. */
 static inline size_t narc_count_records(const narc_shape_header *header) {
     return narc_angle_records(header->count) + header->count + narc_is_piece(header);
 }

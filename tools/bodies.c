@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "calls.h"
 #include "elementary.h"
@@ -25,10 +26,11 @@ static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle
 static float read_scale(table *rows, const narc_shapes *store, uint32_t shape) {
     const narc_body sized = {.cosine = 1, .scale = (float)row_number(rows, SCALE), .shape = shape};
     const narc_bodies one = narc_view_bodies(&sized, 1);
+    narc_error error;
     if (!(row_number(rows, SCALE) > 0))
         fail_field(rows, SCALE, "must be more than 0");
-    if (narc_validate_bodies(store, &one, NULL) != NARC_OK)
-        fail_field(rows, SCALE, "makes the body's radius less than %g or more than %g,", NARC_MIN_SIZE, NARC_MAX_SIZE);
+    if (narc_validate_bodies(store, &one, &error) != NARC_OK) /* "body 0: scale is ..." */
+        fail_field(rows, SCALE, "%s,", error.message + strlen("body 0: scale "));
     return sized.scale;
 }
 
@@ -257,9 +259,14 @@ narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies) {
 size_t count_unboxed(const narc_shapes *store, const body_list *bodies) {
     const narc_bodies view = view_bodies(bodies);
     narc_box *boxes = allocate(bodies->count, sizeof *boxes);
-    size_t count = 0;
+    size_t count = 0, counted = SIZE_MAX; /* a row, whose parts follow each other */
     narc_error error;
-    check_call(narc_compute_boxes(store, &view, &(narc_box_options){.out_skipped = &count}, boxes, &error), &error);
+    check_call(narc_compute_boxes(store, &view, NULL, boxes, &error), &error);
+    for (size_t k = 0; k < bodies->count; k++)
+        if (!(boxes[k].min_x <= boxes[k].max_x) && bodies->items[k].row != counted) {
+            counted = bodies->items[k].row;
+            count++;
+        }
     free(boxes);
     return count;
 }

@@ -55,8 +55,8 @@ void drop_own_pairs(const body_list *bodies, pair_list *pairs);
 /* The bodies' bounding boxes in the world, to be freed. */
 narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies);
 
-/* How many have none in single precision, as narc_compute_boxes() says: they are too far out. print_unboxed() tells of
- * them in a report, if there are any. */
+/* How many rows of the file have none in single precision, as narc_compute_boxes() says: they are too far out.
+ * print_unboxed() tells of them in a report, if there are any. */
 size_t count_unboxed(const narc_shapes *store, const body_list *bodies);
 void print_unboxed(FILE *file, size_t count);
 

@@ -158,10 +158,9 @@ static void cast_rays(const settings *chosen, job *work) {
     check_call(narc_create_index(NULL, &index), &(narc_error){.message = "not enough memory"});
     show_stage("casting", rays.count, "rays", false);
     const double start = seconds_now();
-    check_call(narc_compute_boxes(work->store, &bodies,
-                                  &(narc_box_options){.workers = &chosen->workers, .out_skipped = &work->unboxed},
-                                  boxes, &error),
-               &error);
+    check_call(
+        narc_compute_boxes(work->store, &bodies, &(narc_box_options){.workers = &chosen->workers}, boxes, &error),
+        &error);
     const narc_index_options building = {.workers = &chosen->workers};
     check_call(narc_build_index(index, boxes, bodies.count, &building, &error), &error);
     const double built = seconds_now();
@@ -171,6 +170,7 @@ static void cast_rays(const settings *chosen, job *work) {
     work->build_seconds = built - start;
     narc_destroy_index(index);
     free(boxes);
+    work->unboxed = count_unboxed(work->store, &work->bodies);
     for (size_t k = 0; k < work->row_count; k++) {
         work->hit_count += work->hits[k].count;
         work->hit_rays += k % options.most == 0 && work->hits[k].count;

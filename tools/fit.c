@@ -286,6 +286,11 @@ static void explain(const fitting *how, const narc_parts_request *cut, bool is_c
  * distance of their shapes: with a number of arcs that is known only when they have been fitted once. */
 static bool fit_parts(fitting *how, const outline *of, narc_fit_request request, collider *out, narc_error *error) {
     const double extent = measure_extent(of);
+    if (extent > 0 && extent < NARC_MIN_SIZE) {
+        snprintf(error->message, sizeof error->message, "its size is %g, at least %g is possible", extent,
+                 NARC_MIN_SIZE);
+        return false;
+    }
     const bool approximates = request.goal > NARC_FIT_BOUND_DISTANCE;
     const double whole = request.tolerance, share = approximates ? SHARE_OF_LAPPED_PARTS : SHARE_OF_PARTS;
     narc_parts_request cut = {.most = how->parts, .tolerance = share * whole, .flatness = request.flatness};

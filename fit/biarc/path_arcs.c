@@ -317,6 +317,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     narc_status status = check_contour(builder, path, contour);
     narc_error *const error = builder->error, reason;
     const narc_crossing *crossing = NULL;
+    bool meets = false; /* arcs where lines do not */
     if (status)
         return status;
     builder->error = &reason;
@@ -339,6 +340,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
         status = any ? cut_flat_arcs(builder, begin, flat, room) : NARC_OK;
         status = status ? status : ask_store(builder, begin);
         crossing = status == NARC_ERROR_NOT_SIMPLE ? find_crossing(builder, contour, true) : NULL;
+        meets = meets || (status == NARC_ERROR_NOT_SIMPLE && !crossing);
         if (status == NARC_ERROR_NOT_SIMPLE && !crossing)
             builder->tolerance /= 2;
         else if (status == NARC_ERROR_RADIUS)
@@ -360,6 +362,9 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
         return fail_crossing(builder, path, crossing);
     const bool is_round = status == NARC_ERROR_NOT_SIMPLE && builder->open &&
                           is_same(chains->arcs[begin].start, chains->arcs[chains->arc_count - 1].end);
+    if (status && status != NARC_ERROR_MEMORY && meets && !is_round)
+        return narc_fail(error, status, contour, whole,
+                         "contour %zu: it is too thin for the tolerance %g: its sides meet", contour, whole);
     return status ? narc_fail(error, status, contour, reason.value, "contour %zu: %s", contour,
                               is_round ? "it ends where it begins, as no open stroke does" : reason.message)
                   : NARC_OK;

@@ -166,10 +166,12 @@ NOINLINE void put_piece_heights(const narc_shapes *shapes, const int32_t shape[V
             double size = 0;
             is_piece[l] = narc_is_piece(header) ? 1 : 0;
             support[l] = 0;
-            if (is_piece[l] > 0)
-                support[l] = (float)(narc_find_front_height(header, narc_arcs_of(shapes, header), (double)x[l],
-                                                            (double)y[l], &size) +
+            if (is_piece[l] > 0) {
+                const narc_record *arcs = narc_arcs_of(shapes, header);
+                support[l] = (float)(narc_find_front_height(header, arcs, (double)x[l], (double)y[l],
+                                                            narc_find_front_depth(header, arcs), &size) +
                                      (double)HEIGHT_ROOM * size);
+            }
         }
         const vf own = v_add(v_mul(v_load(support), scale), margin);
         height[k] = v_select(v_lt(v_set(0), v_load(is_piece)), own, height[k]);

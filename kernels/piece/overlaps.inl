@@ -37,7 +37,8 @@ struct piece_pairs {
 /* Clears the bits of those that have no contact: rows come in the order of the pairs. */
 static void ask_contacts(const narc_batch *batch, struct piece_pairs *pairs, uint64_t *bits) {
     size_t skipped = 0, further = 0, row = 0;
-    const narc_query query = {.selection = {pairs->number, sizeof *pairs->number}};
+    const narc_query query = {.selection = {pairs->number, sizeof *pairs->number},
+                              .front_only = batch->query->front_only};
     narc_batch selected = *batch;
     selected.query = &query;
     const narc_rows rows = {.base = (char *)pairs->contact, .stride = sizeof *pairs->contact, .further = &further};

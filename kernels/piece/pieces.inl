@@ -55,38 +55,57 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
 }
 
 /* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
- * (soa/piece.h). `n`: in A's frame. */
+ * (soa/piece.h). `n`: in A's frame. Most are shallow: of them no more is looked at than that. */
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
     const narc_batch *const batch = call->batch;
-    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
-    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
-    int32_t pair[V_WIDTH];
-    float field[2][5][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
-    for (int side = 0; side < 2; side++) {
-        const vf fields[5] = {get(queue, side ? SCALE_B : SCALE_A, k), normal[side].x, normal[side].y, way[side].x,
-                              way[side].y};
-        for (int f = 0; f < 5; f++)
-            v_store(field[side][f], fields[f]);
-    }
+    const bool front_only = batch->query->front_only != 0;
+    const vm of_a = has_mark(get_bits(queue, INFO_A, k), NARC_PIECE_MARKS);
+    const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
+    const vi last = vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count));
+    const uint32_t piece_is_a = vm_bits(of_a);
+    int32_t pair[V_WIDTH], solid[V_WIDTH];
+    float scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
+    uint32_t left = 0;
     get_pairs(queue, k, pair);
+    vi_store(solid, last);
+    v_store(scale[0], get(queue, SCALE_A, k));
+    v_store(scale[1], get(queue, SCALE_B, k));
     v_store(depth, separation);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
-        const int l = FIND_LOWEST(lanes);
+        const int l = FIND_LOWEST(lanes), side = piece_is_a >> l & 1 ? 0 : 1;
+        const size_t number = find_number(call, pair[l]);
+        const narc_shape_header *const body = side ? find_header(batch, batch->a, batch->pairs->a, number)
+                                                   : find_header(batch, batch->b, batch->pairs->b, number);
+        const double thickness = (double)batch->shapes->records[(uint32_t)solid[l]].solid.thickness;
+        if (front_only || narc_is_piece(body) ||
+            !narc_is_shallow(body, (double)scale[1 - side][l], (double)scale[side][l] * thickness, (double)depth[l]))
+            left |= lanes & (0 - lanes);
+    }
+    if (!left)
+        return vm_front(0);
+    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
+    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
+    float field[2][4][V_WIDTH];
+    for (int side = 0; side < 2; side++) {
+        const vf fields[4] = {normal[side].x, normal[side].y, way[side].x, way[side].y};
+        for (int f = 0; f < 4; f++)
+            v_store(field[side][f], fields[f]);
+    }
+    for (; left; left &= left - 1) {
+        const int l = FIND_LOWEST(left);
         const size_t number = find_number(call, pair[l]);
         const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
                                                     find_header(batch, batch->b, batch->pairs->b, number)};
         narc_toucher touching[2];
-        if (narc_is_shallow(header[0], (double)field[0][0][l], header[1], (double)field[1][0][l], (double)depth[l]))
-            continue;
         for (int side = 0; side < 2; side++)
             touching[side] = (narc_toucher){header[side],
                                             narc_arcs_of(batch->shapes, header[side]),
+                                            (double)scale[side][l],
                                             (double)field[side][0][l],
                                             (double)field[side][1][l],
                                             (double)field[side][2][l],
-                                            (double)field[side][3][l],
-                                            (double)field[side][4][l]};
-        unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l]) ? 0 : 1;
+                                            (double)field[side][3][l]};
+        unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));
 }

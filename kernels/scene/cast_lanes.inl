@@ -34,12 +34,13 @@ INLINE spot turn_back(spot rotation, spot p) {
 }
 INLINE spot get_spot(const float *x, const float *y) { return (spot){d_of_floats(x), d_of_floats(y)}; }
 
-/* Times of 0 or more as floats that are not later. */
+/* Times of 0 or more as floats that are not later. What is less by half a step or more is rounded to the float before: in
+ * proportion, and where floats underflow, by three quarters of their step. */
 INLINE vd round_down(vd time) {
     float lane[V_WIDTH];
     d_put_floats(lane, time);
-    const vd rounded = d_of_floats(lane);
-    d_put_floats(lane, d_select(d_lt(time, rounded), rounded - rounded * d_set(0x1p-24), rounded));
+    const vd rounded = d_of_floats(lane), below = rounded - (rounded * d_set(0x1p-24) + d_set(0x1.8p-150));
+    d_put_floats(lane, d_select(d_lt(time, rounded), below, rounded));
     return d_of_floats(lane);
 }
 

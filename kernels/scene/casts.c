@@ -145,8 +145,8 @@ INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outlin
         const vd given = d_set((double)casts->tolerance),
                  sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
                                find_tolerance(&casts->side[1], k, &outline[1], h)),
-                 usual = d_min(d_set(MOVED_PART) * moved, sizes), named = d_select(d_lt(zero, given), given, usual);
-        enough = d_select(turns & d_lt(enough, named), named, enough);
+                 part = d_min(d_set(MOVED_PART) * moved, sizes), usual = d_select(d_lt(enough, part), part, enough);
+        enough = d_select(turns, d_select(d_lt(zero, given), given, usual), enough);
     }
     d_store(casts->end + k, end);
     d_store(casts->enough + k, enough);

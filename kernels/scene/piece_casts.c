@@ -62,7 +62,7 @@ static narc_toucher make_toucher(const struct body_frame *frame, const struct bo
 
 static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation) {
     const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
-    return narc_is_reached(&of_a, &of_b, separation);
+    return narc_is_reached(&of_a, &of_b, separation, false);
 }
 
 static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
@@ -584,7 +584,7 @@ static double find_front_reach(const struct body_frame *frame, place n) {
     double size;
     const place own = turn_to_shape(frame, n);
     return find_dot(frame->position, n) +
-           frame->scale * narc_find_front_height(frame->header, frame->arcs, own.x, own.y, &size);
+           frame->scale * narc_find_front_height(frame->header, frame->arcs, own.x, own.y, 0, &size);
 }
 
 /* How far a body is from a run's front alone, at least. In *out_beside, the greatest gap beside its ends. */

@@ -113,9 +113,10 @@ INLINE struct axis set_axis(int min, int max, double start, double room, double 
                          clip_inverse(inverse)};
 }
 
-/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is. */
+/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
+ * that underflow. */
 INLINE void set_limit(struct walk *w, float fraction) {
-    const double distance = (double)fraction * (1 + 0x1p-22) * w->ray.length - w->base;
+    const double distance = ((double)fraction * (1 + 0x1p-22) + 0x1p-149) * w->ray.length - w->base;
     w->limit_fraction = fraction;
     w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
 }
@@ -276,7 +277,7 @@ INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const str
         return false;
     if (!is_part || inside == NARC_INSIDE_STOPS || !met.is_within)
         return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
-               (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner)) &&
+               (!is_part || inside == NARC_INSIDE_STOPS || inside == NARC_INSIDE_IGNORES || !starts_in(batch, w, owner)) &&
                (!is_part || replace_row(w, owner, out));
     return inside == NARC_INSIDE_LEAVES && put_meeting(frame, &w->ray, &met, INFINITY, out) &&
            leave_thing(batch, w, owner, met.distance, out) && replace_row(w, owner, out);

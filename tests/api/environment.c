@@ -189,6 +189,7 @@ static void set_isa(void) {
     REQUIRE(narc_set_isa("SCALAR", &error) == NARC_ERROR_ISA_UNKNOWN);
     REQUIRE(error.status == NARC_ERROR_ISA_UNKNOWN && strstr(error.message, "SCALAR"));
     REQUIRE(narc_set_isa("", NULL) == NARC_ERROR_ISA_UNKNOWN);
+    REQUIRE(narc_set_isa("a\xff\n\xc3", &error) == NARC_ERROR_ISA_UNKNOWN && strstr(error.message, "'a\?\?\?'"));
     REQUIRE(narc_set_isa(unsupported_name(), &error) == NARC_ERROR_ISA_UNSUPPORTED);
     REQUIRE(error.status == NARC_ERROR_ISA_UNSUPPORTED && strstr(error.message, unsupported_name()));
     REQUIRE(strcmp(narc_get_isa(), "scalar") == 0);

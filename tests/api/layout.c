@@ -69,7 +69,8 @@ static void check_pointers(void) {
            AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
                AT(reserved, 40));
     LAYOUT(narc_chain_options, 56,
-           AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(reserved, 24));
+           AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(thickness, 24) &&
+               AT(both_sides, 28) && AT(reserved, 32));
     LAYOUT(narc_workers, 24, AT(context, 0) && AT(count, 8) && AT(run, 16));
     LAYOUT(narc_error, 216, AT(status, 0) && AT(index, 8) && AT(value, 16) && AT(message, 24));
     LAYOUT(narc_allocator, 24, AT(allocate, 0) && AT(release, 8) && AT(context, 16));
@@ -87,7 +88,8 @@ static void check_pointers(void) {
     LAYOUT(narc_query, 144,
            AT(margin, 0) && AT(second_margin, 4) && AT(flat_angle, 8) && AT(dense, 12) && AT(margins, 16) &&
                AT(hints, 32) && AT(selection, 48) && AT(selection_count, 64) && AT(first, 72) && AT(count, 80) &&
-               AT(row_stride, 88) && AT(workers, 96) && AT(out_skipped, 104) && AT(reserved, 112));
+               AT(row_stride, 88) && AT(workers, 96) && AT(out_skipped, 104) && AT(front_only, 112) &&
+               AT(reserved, 120));
     LAYOUT(narc_pair_options, 120,
            AT(margin, 0) && AT(skin, 4) && AT(motion_x, 8) && AT(motion_y, 24) && AT(reach, 40) && AT(id, 56) &&
                AT(filter, 72) && AT(workers, 80) && AT(reserved, 88));

@@ -270,6 +270,12 @@ TEST(test_laps) {
     assert_true(lapped.parts.distance <= 0.2);
     check_cover(&lapped, lapped.parts.distance, 0);
     check_fits(&lapped, NARC_FIT_DISTANCE);
+    narc_parts none; /* laps count: without them 0.05 is enough */
+    narc_error error;
+    expect_error(
+        narc_cut_path(of.path, &(narc_parts_request){.most = 20, .tolerance = 0.05, .lap = 0.1}, &none, &error),
+        NARC_ERROR_NO_SOLUTION, &error, "the tolerance 0.05 is too small for parts, at least 0.10");
+    assert_true(error.value > NARC_LAP_REACH * 0.1 && error.value < 0.12);
     free_cover(&plain);
     free_cover(&lapped);
     free_outline(&of);

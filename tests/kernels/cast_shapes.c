@@ -447,6 +447,7 @@ TEST(test_largest_motions) {
         assert_true(skipped[0] == 0 && skipped[1] == 0);
         narc_impact best = {.count = NARC_CAST_MISS};
         for (size_t k = 0; k < BODIES; k++) {
+            assert_true(pairs[k].separation >= -1e-4f * size); /* fractions are rounded down */
             same += best.count && pairs[k].count && pairs[k].fraction == best.fraction;
             if (pairs[k].count && (!best.count || pairs[k].fraction < best.fraction))
                 best = pairs[k];

@@ -392,6 +392,63 @@ TEST(test_thin_rods_that_turn) {
     }
 }
 
+/* A tolerance that is named holds, however large the other body is: boxes, capsules and discs that spin, against segments
+ * and thin boxes of up to 4,000 times their size, told to come a little deeper than they are. So one that moves on does
+ * not stand where it is. */
+TEST(test_named_tolerances) {
+    enum { PAIRS = 40 };
+    struct test_random random = test_random_named("named tolerances");
+    struct tally tally = {.at_start = 0};
+    for (size_t k = 0; k < test_trials(40); k++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+        const double half = random_log_between(&random, 1, 2000);
+        struct shape wall = box_of(2 * half, 0.01, 0);
+        const struct shape spinning[] = {box_of(0.3, 0.3, 0), box_of(0.6, 0.04, 0), capsule_of(0.6, 0.03),
+                                         circle_of(0.1)};
+        struct shape body = spinning[k % 4];
+        narc_error error;
+        if (k % 8 < 4)
+            expect_ok(
+                narc_build_segment((narc_point){-half, 0}, (narc_point){half, 0}, 0, wall.arcs, &wall.count, &error),
+                &error);
+        if (k % 4 == 3)
+            body.arcs[0].center_x = 0.05; /* else it is as if it did not turn */
+        scene_add_shape(&scene, &wall);
+        scene_add_shape(&scene, &body);
+        struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+        m.target = -(float)random_log_between(&random, 1e-4, 0.01);
+        m.tolerance = (float)random_log_between(&random, 1e-6, 1e-4);
+        for (size_t pair = 0; pair < PAIRS; pair++) {
+            struct body on = turned_body(pair % 4 ? random_between(&random, -4, 4) : 0, 1), wall_at = turned_body(0, 1);
+            on.shape = 1;
+            on.x = random_between(&random, -0.5, 0.5) * half;
+            on.y = 0;
+            scene_add_two(&m.scene, wall_at, on);
+            const struct reference_body a = scene_reference(&m.scene, (uint32_t)(2 * pair));
+            const double above = (double)m.target + (double)m.tolerance * random_log_between(&random, 1.5, 1000);
+            struct body *const placed = &m.scene.bodies[2 * pair + 1];
+            for (int step = 0; step < 60; step++) { /* up to where it is so deep */
+                const struct reference_body b = scene_reference(&m.scene, (uint32_t)(2 * pair + 1));
+                placed->y += above - reference_find_gap(&a, &b).gap;
+            }
+            m.motion[2 * pair + 1] =
+                (struct motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
+                                (float)random_between(&random, -1.5, 1.5)};
+        }
+        narc_impact *const rows = cast_all(&m, 1, NULL);
+        for (size_t pair = 0; pair < PAIRS; pair++) {
+            check_row(&m, pair, &rows[pair], &tally);
+            const double most = (double)m.target + (double)m.tolerance + 1e-6;
+            if (rows[pair].count == NARC_CAST_HIT && (double)rows[pair].separation > most)
+                fail_cast(&m, pair, &rows[pair], "not so near", (double)rows[pair].separation, most);
+        }
+        guard_release(rows);
+        destroy_moving(&m);
+    }
+    print_tally("named tolerances", &tally);
+    assert_true(tally.outcomes[NARC_CAST_HIT] > 0 && tally.outcomes[NARC_CAST_UNFINISHED] == 0);
+}
+
 /* With next to no turn a cast is the straight one's: what becomes of it, and when, but for what turning moves. */
 TEST(test_small_turns) {
     struct test_random random = test_random_named("small turns");

@@ -1021,6 +1021,55 @@ TEST(test_cut_lines) {
 
 /* ------------------------------------------------------------------------------------------------ junctions */
 
+/* A ball that rolls over junctions with common tangents, on the ground or a little in it, at and beside them: one contact,
+ * with the ground's own normal. */
+TEST(test_rolling_over_junctions) {
+    struct test_random random = test_random_named("rolling over junctions");
+    const double radius = 0.3;
+    const struct shape ball = circle_of(radius);
+    double worst = 0;
+    for (size_t round = 0; round < test_trials(20); round++) {
+        struct ground *g = malloc(sizeof *g);
+        uint32_t runs[ENTRIES];
+        begin_chain(g, 20, 0, PI / 2);
+        add_turn(g, random_between(&random, 1, 4), 0.2);
+        for (int k = 0; k < 20; k++) {
+            const double turn = random_between(&random, 0.05, 0.4), large = random_between(&random, 1, 4);
+            const bool left = g->angle < PI / 2 && random_below(&random, 4);
+            add_turn(g, left ? large : -large, left ? turn : -turn);
+            if (random_below(&random, 2))
+                add_line(g, random_between(&random, 0.1, 2));
+            if (g->angle < PI / 2 - 0.5)
+                add_turn(g, large, 0.5);
+        }
+        end_chain(g);
+        assert_true(place_chain(g, NULL, 1, 8));
+        const uint32_t shape = scene_add_shape(&g->scene, &ball);
+        for (uint32_t e = 0; e < g->entry_count; e++)
+            runs[e] = g->entries[e].run;
+        for (int trial = 0; trial < 400; trial++) {
+            const narc_arc *arc = &g->arcs[2 + random_below(&random, g->arc_count - 3)]; /* not at the open end */
+            const double part = (double)random_below(&random, 3) * random_log_between(&random, 1e-8, 0.45);
+            const double normal = arc->start + part * (arc->end - arc->start), c = cos(normal), s = sin(normal);
+            const double deep = (double)random_below(&random, 2) * random_log_between(&random, 1e-6, 0.02);
+            const struct spot p = find_chain_point(arc, normal);
+            struct body body = turned_body(random_between(&random, -PI, PI), 1);
+            body.x = p.x + (radius - deep) * c;
+            body.y = p.y + (radius - deep) * s;
+            body.shape = shape;
+            g->scene.body_count = g->entry_count;
+            scene_add_body(&g->scene, body);
+            const narc_manifold row = merge_one(&g->scene, runs, g->entry_count);
+            worst = fmax(worst, hypot((double)row.normal_x + c, (double)row.normal_y + s));
+            assert_true(fabs((double)row.point[0].separation + deep) < 2e-5);
+        }
+        destroy_scene(&g->scene);
+        free(g);
+    }
+    print_message("  normals off by %.2g at most\n", worst);
+    assert_true(worst < 2e-5);
+}
+
 /* The separation next to -deep of a box with a corner that points against the normal, `deep` below the place `beside` a chain's
  * arc's start, along the tangent there. */
 static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,

@@ -130,6 +130,46 @@ TEST(finds_what_asking_every_body_finds) {
     }
 }
 
+/* Rays so long that fractions underflow: bodies at different places are hit at the same one, and the lower number counts,
+ * in any tree. */
+TEST(longest_rays_go_by_number) {
+    enum { BODIES = 65, RAYS = 100 };
+    struct test_random random = test_random_named("longest rays");
+    size_t same = 0;
+    for (size_t trial = 0; trial < test_trials(4); trial++) {
+        struct room room = create_room(&random, (narc_precision)(trial % 2), BODIES, 9);
+        struct test_ray ray[RAYS] = {{.fraction = 1}};
+        for (size_t b = 0; b < BODIES; b++) {
+            struct body *const body = &room.scene.bodies[b];
+            body->x = 0x1p-23 * random_between(&random, 0, 9);
+            body->y *= 0x1p-23;
+            body->scale *= 0x1p-23f;
+            round_position(body, room.scene.precision);
+        }
+        for (size_t k = 0; k < RAYS; k++) {
+            const double angle = random_between(&random, -4, 4), length = random_log_between(&random, 1e36, 3.4e38);
+            ray[k] = (struct test_ray){(float)(0x1p-23 * random_between(&random, -9, 18)),
+                                       (float)(0x1p-23 * random_between(&random, -9, 18)), (float)(length * cos(angle)),
+                                       (float)(length * sin(angle)), 1};
+        }
+        const narc_rays view = view_rays(ray, RAYS);
+        index_room(&room, false, false);
+        narc_ray_hit *const all = cast_one_by_one(&room, ray, RAYS, NARC_INSIDE_STOPS);
+        for (size_t k = 1; k < RAYS * BODIES; k++)
+            same += all[k].count && all[k - 1].count && all[k].fraction > 0 && all[k].fraction == all[k - 1].fraction;
+        for (size_t k = 0; k < 4; k++) {
+            const narc_ray_options options = {.most = k < 2 ? 1 : 5};
+            index_room(&room, k % 2, false);
+            narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+            compare_rows(&room, all, &view, &options, false, found);
+            guard_release(found);
+        }
+        free(all);
+        destroy_room(&room);
+    }
+    assert_true(same > 0);
+}
+
 /* ------------------------------------------------------------------------------------------------ things */
 
 enum { THINGS = 12, PARTS = 5, THING_RAYS = 60 };

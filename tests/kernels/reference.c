@@ -323,4 +323,54 @@ TEST(test_ground_under_discs) {
     }
 }
 
+/* The distance of a body from the ground is that of the nearest of many points of its outline, but for the way between
+ * them; it is in the air if they all are. */
+TEST(test_clearance_of_ground) {
+    enum { DIRECTIONS = 512, PARTS = 8 };
+    struct test_random random = test_random_named("clearance of ground");
+    static narc_arc arcs[CHAIN_ARCS];
+    size_t in_air = 0, met = 0;
+    for (size_t trial = 0; trial < test_trials(20 * CHAIN_FAMILIES); trial++) {
+        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES), arcs);
+        const struct shape shape = make_rider(&random, &chain, (enum chain_family)(trial % CHAIN_FAMILIES));
+        struct ground *ground = make_ground(&chain);
+        const double gap = random_between(&random, -0.1, 0.3);
+        const struct body body = approach_chain(&random, &chain, ground, &shape, gap);
+        const struct reference_body posed = pose_shape(&shape, &body);
+        const struct ground_clearance found = ground_find_clearance(ground, &posed);
+        narc_point last = {0, 0};
+        double least = INFINITY, lowest = INFINITY, way = 0;
+        for (int k = 0; k <= DIRECTIONS; k++) {
+            narc_point own;
+            narc_find_support(shape.arcs, shape.count, cos(2 * PI * k / DIRECTIONS), sin(2 * PI * k / DIRECTIONS), &own,
+                              NULL);
+            const narc_point at = {posed.x + posed.scale * (posed.cosine * own.x - posed.sine * own.y),
+                                   posed.y + posed.scale * (posed.sine * own.x + posed.cosine * own.y)};
+            for (int i = 0; i < PARTS && k > 0; i++) {
+                const double part = (double)i / PARTS;
+                const narc_point p = {last.x + part * (at.x - last.x), last.y + part * (at.y - last.y)};
+                least = fmin(least, ground_outline_distance(ground, p));
+                lowest = fmin(lowest, ground_distance(ground, p).distance);
+            }
+            way = fmax(way, k > 0 ? hypot(at.x - last.x, at.y - last.y) : 0);
+            last = at;
+        }
+        const bool is_around =
+            reference_point_distance(&posed, arcs[0].center_x + arcs[0].radius * cos(arcs[0].start) - posed.x,
+                                     arcs[0].center_y + arcs[0].radius * sin(arcs[0].start) - posed.y) < 0;
+        const double room = way / PARTS + 1e-4 * reference_extent(&posed);
+        if (found.distance > least + room || (found.distance > 0 && found.distance < least - room) ||
+            (found.in_air && lowest < -1e-4 * reference_extent(&posed)) ||
+            (!found.in_air && chain.closed && lowest > room && !is_around))
+            fail_msg("%s: distance %.9g, %s the air; of many points %.9g, %.9g",
+                     chain_family_name((enum chain_family)(trial % CHAIN_FAMILIES)), found.distance,
+                     found.in_air ? "in" : "not in", least, lowest);
+        in_air += found.in_air;
+        met += !(found.distance > 0);
+        destroy_ground(ground);
+    }
+    print_message("  %zu in the air, %zu meet the ground\n", in_air, met);
+    assert_true(test_trials(100) < 100 || (in_air > test_trials(100) && met > test_trials(20)));
+}
+
 TEST_MAIN("reference")

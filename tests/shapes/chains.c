@@ -483,7 +483,8 @@ TEST(refuses_bad_arguments) {
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = -1}, NARC_ERROR_ARGUMENT, 0, "weld is -1");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = NAN}, NARC_ERROR_ARGUMENT, 0, "weld is");
     check_refused(arcs, GROUND, &(narc_chain_options){.least_radius = NAN}, NARC_ERROR_ARGUMENT, 0, "least radius");
-    check_refused(arcs, GROUND, &(narc_chain_options){.reserved = {0, 0, 0, arcs}}, NARC_ERROR_ARGUMENT, 0, "reserved");
+    check_refused(arcs, GROUND, &(narc_chain_options){.thickness = NAN}, NARC_ERROR_ARGUMENT, 0, "the thickness");
+    check_refused(arcs, GROUND, &(narc_chain_options){.reserved = {0, arcs}}, NARC_ERROR_ARGUMENT, 0, "reserved");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = 1e-9}, NARC_ERROR_COUNT, 2, "parts");
     assert_int_equal(narc_add_chain(shapes, arcs, GROUND, NULL, NULL, 0, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 7);
@@ -836,7 +837,7 @@ TEST(keeps_pieces_as_shapes) {
     narc_destroy_shapes(shapes);
 }
 
-/* The box is that of the front alone. */
+/* The box is that of the front, and of what lies behind it as far as contacts are told. */
 TEST(finds_boxes_of_fronts) {
     struct test_random random = test_random_named("front boxes");
     for (size_t trial = 0; trial < test_trials(50); trial++) {
@@ -847,20 +848,26 @@ TEST(finds_boxes_of_fronts) {
             const struct front f = get_front(shapes, &entries[k]);
             const double angle = random_between(&random, 0, 7), scale = random_log_between(&random, 0.1, 10);
             const double c = cos(angle), s = sin(angle);
+            const narc_shape_header *header = &shapes->headers[entries[k].shape];
+            const double depth = (double)narc_arcs_of(shapes, header)[header->count].solid.depth;
             narc_aabb box, seen = {INFINITY, INFINITY, -INFINITY, -INFINITY};
             enum { STEPS = 2000 };
             for (size_t i = 0; i < f.count; i++)
                 for (int step = 0; step <= STEPS; step++) {
                     const narc_arc *arc = &f.arcs[i];
-                    const narc_point p =
-                        point_at(arc, arc->start + find_turn(arc->start, arc->end) * ((double)step / STEPS));
-                    const double x = p.x - entries[k].x, y = p.y - entries[k].y;
-                    const double own[] = {scale * (c * x - s * y), scale * (s * x + c * y)};
-                    seen = (narc_aabb){fmin(seen.min_x, own[0]), fmin(seen.min_y, own[1]), fmax(seen.max_x, own[0]),
-                                       fmax(seen.max_y, own[1])};
+                    const double normal = arc->start + find_turn(arc->start, arc->end) * ((double)step / STEPS);
+                    const narc_point p = point_at(arc, normal);
+                    for (int back = 0; back < 2; back++) {
+                        const double x = p.x - entries[k].x - back * depth * cos(normal),
+                                     y = p.y - entries[k].y - back * depth * sin(normal);
+                        const double own[] = {scale * (c * x - s * y), scale * (s * x + c * y)};
+                        seen = (narc_aabb){fmin(seen.min_x, own[0]), fmin(seen.min_y, own[1]), fmax(seen.max_x, own[0]),
+                                           fmax(seen.max_y, own[1])};
+                    }
                 }
             assert_true(narc_get_aabb(shapes, entries[k].shape, (float)c, (float)s, (float)scale, &box));
-            const double room = 2e-5 * scale * f.size, least = 1e-7 * scale * f.size; /* the pose in floats */
+            const double room = scale * (2e-5 * f.size + 1.1e-3 * depth),
+                         least = 1e-7 * scale * f.size; /* the pose in floats */
             assert_true(box.min_x <= seen.min_x + least && box.min_y <= seen.min_y + least &&
                         box.max_x >= seen.max_x - least && box.max_y >= seen.max_y - least);
             assert_true(box.min_x >= seen.min_x - room && box.min_y >= seen.min_y - room &&

@@ -138,7 +138,7 @@ TEST(saves_recorded_bytes) {
     unsigned char *bytes = save(shapes, &size);
     const uint64_t hash = test_hash(TEST_HASH_START, bytes, size);
     printf("  %zu bytes, 0x%016" PRIx64 "\n", size, hash);
-    assert_true(hash == 0x49d01c9afad1a53fu);
+    assert_true(hash == 0xb3e02012f6908cacu);
     narc_destroy_shapes(shapes);
     free(bytes);
 }
@@ -160,8 +160,8 @@ TEST(refuses_bad_arguments) {
     const narc_allocator allocator = ledger_allocator(&ledger);
     expect_error(narc_load_shapes(&allocator, bytes, size, &loaded, &error), NARC_ERROR_MEMORY, &error, "no store");
     assert_true(error.value == 0);
-    bytes[AT_VERSION] = 1;
-    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 1");
+    bytes[AT_VERSION] = 2;
+    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 2");
     assert_null(loaded);
     assert_int_equal(narc_count_saved_bytes(NULL), START);
     narc_destroy_shapes(shapes);

@@ -15,6 +15,9 @@
 /* Rounding at the ends of pieces, relative to their coordinates: a foot belongs to both pieces there. */
 static const double end_tolerance = 1e-12;
 
+/* How far what is in the air is from the normals at open ends, relative to the body. */
+static const double end_room = 1e-3;
+
 /* Feet that are as near, relative to the body, and as far apart, are two. */
 static const double doubt = 1e-3;
 
@@ -27,7 +30,7 @@ struct piece {
     double radius, length, half, room; /* what rounding leaves between pieces */
     double size;                       /* of all of its arc or edge; INFINITY if that is next to a point */
     size_t run;
-    double grain;
+    double grain, thickness;
 };
 
 /* Most halvings of a stretch of the outline, and two. */
@@ -74,6 +77,7 @@ static void add_arc(struct ground *ground, const narc_arc *arc, size_t run) {
         piece.to = on_arc(arc, high);
         piece.radius = fabs(arc->radius);
         piece.size = fabs(arc->radius * sweep) > point_size ? fabs(arc->radius * sweep) : INFINITY;
+        piece.thickness = arc->radius == 0 && sweep > PI / 2 + 1e-6 ? 0 : INFINITY; /* the tip of a wedge */
         piece.room = end_tolerance * (1 + fabs(piece.from.x) + fabs(piece.from.y) + piece.radius);
         piece.low = concave ? (narc_point){cos(high), sin(high)} : (narc_point){cos(low), sin(low)};
         piece.high = concave ? (narc_point){cos(low), sin(low)} : (narc_point){cos(high), sin(high)};
@@ -97,7 +101,8 @@ static void find_grains(struct ground *ground) {
     }
 }
 
-struct ground *make_ground(const struct chain *chain) {
+/* Which pieces are there; their grain and thickness are not known. */
+static struct ground *walk_pieces(const struct chain *chain) {
     struct ground *ground = calloc(1, sizeof *ground);
     ground->pieces = malloc(5 * chain->count * sizeof *ground->pieces);
     ground->open = !chain->closed;
@@ -113,6 +118,7 @@ struct ground *make_ground(const struct chain *chain) {
         const narc_point along = minus(edge.to, edge.from);
         edge.length = length_of(along);
         edge.size = edge.length > point_size ? edge.length : INFINITY;
+        edge.thickness = INFINITY;
         edge.room = end_tolerance * (1 + fabs(edge.from.x) + fabs(edge.from.y) + fabs(arc->radius));
         edge.along = (narc_point){along.x / edge.length, along.y / edge.length};
         edge.low = (narc_point){edge.along.y, -edge.along.x};
@@ -122,13 +128,18 @@ struct ground *make_ground(const struct chain *chain) {
         run += signbit(arc->radius) != 0;
         run = chain->closed && run == hollows ? 0 : run; /* the last one is the first one */
     }
-    find_grains(ground);
     return ground;
 }
 
 void destroy_ground(struct ground *ground) {
     free(ground->pieces);
     free(ground);
+}
+
+/* Is the direction of a vector that of an arc's point, seen from its centre? */
+static bool faces(const struct piece *piece, narc_point away) {
+    const double sign = piece->is_concave ? -1 : 1;
+    return sign * cross(piece->low, away) >= -piece->room && sign * cross(away, piece->high) >= -piece->room;
 }
 
 static bool find_foot(const struct piece *piece, narc_point point, struct ground_foot *out) {
@@ -142,14 +153,15 @@ static bool find_foot(const struct piece *piece, narc_point point, struct ground
                                     piece->low.x,
                                     piece->low.y,
                                     piece->run,
-                                    piece->grain};
+                                    piece->grain,
+                                    piece->thickness};
         return true;
     }
     const double sign = piece->is_concave ? -1 : 1;
     const narc_point away = {sign * (point.x - piece->center.x), sign * (point.y - piece->center.y)};
     const double distance = length_of(away);
     const narc_point normal = distance > 0 ? (narc_point){away.x / distance, away.y / distance} : piece->low;
-    if (cross(piece->low, away) < -piece->room || cross(away, piece->high) < -piece->room)
+    if (!faces(piece, minus(point, piece->center)))
         return false;
     *out = (struct ground_foot){
         sign * (distance - piece->radius),
@@ -157,7 +169,8 @@ static bool find_foot(const struct piece *piece, narc_point point, struct ground
         normal.x,
         normal.y,
         piece->run,
-        piece->grain};
+        piece->grain,
+        piece->thickness};
     return true;
 }
 
@@ -201,6 +214,192 @@ size_t ground_feet(const struct ground *ground, narc_point point, struct ground_
         out[k] = all[k];
     free(all);
     return count;
+}
+
+/* ------------------------------------------------------------------------------------------------ how thick it is */
+
+/* How far it is along a direction of length 1 to where a piece crosses that, further than `least`. */
+static double find_crossing(const struct piece *piece, narc_point from, narc_point along, double least) {
+    const narc_point to = minus(piece->is_edge ? piece->from : piece->center, from);
+    if (piece->is_edge) {
+        const double area = cross(along, piece->along), way = cross(to, piece->along) / area,
+                     place = cross(to, along) / area;
+        return way > least && place >= -piece->room && place <= piece->length + piece->room ? way : INFINITY;
+    }
+    const double middle = dot(to, along),
+                 half = sqrt(fmax(0, piece->radius * piece->radius - dot(to, to) + middle * middle));
+    double best = INFINITY;
+    for (int side = -1; side <= 1; side += 2) {
+        const double way = middle + side * half;
+        const narc_point away = {way * along.x - to.x, way * along.y - to.y};
+        if (way > least && fabs(length_of(away) - piece->radius) <= piece->room && faces(piece, away))
+            best = fmin(best, way);
+    }
+    return best;
+}
+
+/* How thick the solid is behind a piece, at many places: the way against the normal to where there is ground again. */
+static double find_thickness(const struct ground *ground, const struct piece *piece) {
+    enum { PLACES = 24 };
+    double least = piece->thickness;
+    for (int k = 0; k <= PLACES; k++) {
+        const double part = (double)k / PLACES, sign = piece->is_concave ? -1 : 1;
+        narc_point place = {piece->from.x + part * (piece->to.x - piece->from.x),
+                            piece->from.y + part * (piece->to.y - piece->from.y)},
+                   normal = piece->low;
+        if (!piece->is_edge) {
+            const double turn = atan2(cross(piece->low, piece->high), dot(piece->low, piece->high)) * part;
+            normal = (narc_point){cos(turn) * piece->low.x - sin(turn) * piece->low.y,
+                                  sin(turn) * piece->low.x + cos(turn) * piece->low.y};
+            place = (narc_point){piece->center.x + sign * piece->radius * normal.x,
+                                 piece->center.y + sign * piece->radius * normal.y};
+        }
+        for (size_t i = 0; i < ground->count; i++)
+            least = fmin(
+                least, find_crossing(&ground->pieces[i], place, (narc_point){-normal.x, -normal.y}, 1e4 * piece->room));
+    }
+    return least;
+}
+
+/* Of all pieces of a convex stretch the least. */
+static void find_thicknesses(struct ground *ground) {
+    for (size_t k = 0; k < ground->count; k++)
+        ground->pieces[k].thickness = find_thickness(ground, &ground->pieces[k]);
+    for (size_t k = 0; k < ground->count; k++)
+        for (size_t i = 0; i < ground->count; i++)
+            if (ground->pieces[i].run == ground->pieces[k].run && ground->pieces[k].run != GROUND_CONCAVE)
+                ground->pieces[k].thickness = fmin(ground->pieces[k].thickness, ground->pieces[i].thickness);
+}
+
+struct ground *make_ground(const struct chain *chain) {
+    struct ground *ground = walk_pieces(chain);
+    find_grains(ground);
+    find_thicknesses(ground);
+    return ground;
+}
+
+/* ------------------------------------------------------------------------------------------------ how far away it is */
+
+/* How far a point is from a piece. */
+static double piece_distance(const struct piece *piece, narc_point point) {
+    struct ground_foot foot;
+    const narc_point from = minus(point, piece->from), to = minus(point, piece->to);
+    const double ends = sqrt(fmin(dot(from, from), dot(to, to)));
+    return find_foot(piece, point, &foot) ? fmin(fabs(foot.distance), ends) : ends;
+}
+
+double ground_outline_distance(const struct ground *ground, narc_point point) {
+    double least = INFINITY;
+    for (size_t k = 0; k < ground->count; k++)
+        least = fmin(least, piece_distance(&ground->pieces[k], point));
+    return least;
+}
+
+/* How far an edge is from an arc, or 0, where neither ends. */
+static double find_edge_gap(const struct piece *edge, const struct piece *arc) {
+    const narc_point to = minus(arc->center, edge->from);
+    const double foot = dot(to, edge->along), height = cross(edge->along, to), side = height > 0 ? 1 : -1;
+    const narc_point away = {side * edge->low.x, side * edge->low.y};
+    double least = INFINITY;
+    if (foot >= 0 && foot <= edge->length && fabs(height) >= arc->radius && faces(arc, away))
+        least = fabs(height) - arc->radius;
+    const double half = sqrt(fmax(0, arc->radius * arc->radius - height * height));
+    for (int k = -1; k <= 1 && fabs(height) < arc->radius; k += 2) {
+        const double place = foot + k * half;
+        const narc_point from = {edge->from.x + place * edge->along.x - arc->center.x,
+                                 edge->from.y + place * edge->along.y - arc->center.y};
+        if (place >= 0 && place <= edge->length && faces(arc, from))
+            least = 0;
+    }
+    return least;
+}
+
+/* The same of two arcs. */
+static double find_arc_gap(const struct piece *a, const struct piece *b) {
+    const narc_point way = minus(b->center, a->center);
+    const double apart = length_of(way), inner = fabs(a->radius - b->radius), side = a->radius > b->radius ? 1 : -1;
+    const narc_point u = {way.x / apart, way.y / apart};
+    if (!(apart > 0))
+        return INFINITY; /* the ends are as near */
+    if (apart >= a->radius + b->radius)
+        return faces(a, u) && faces(b, (narc_point){-u.x, -u.y}) ? apart - a->radius - b->radius : INFINITY;
+    if (apart <= inner) {
+        const narc_point outwards = {side * u.x, side * u.y};
+        return faces(a, outwards) && faces(b, outwards) ? inner - apart : INFINITY;
+    }
+    const double along = (apart * apart + a->radius * a->radius - b->radius * b->radius) / (2 * apart);
+    const double across = sqrt(fmax(0, a->radius * a->radius - along * along));
+    for (int k = -1; k <= 1; k += 2) {
+        const narc_point from = {along * u.x - k * across * u.y, along * u.y + k * across * u.x};
+        if (faces(a, from) && faces(b, minus(from, way)))
+            return 0;
+    }
+    return INFINITY;
+}
+
+/* The distance of two pieces, 0 if they cross. */
+static double find_piece_gap(const struct piece *a, const struct piece *b) {
+    const double at_a = fmin(piece_distance(b, a->from), piece_distance(b, a->to));
+    const double ends = fmin(at_a, fmin(piece_distance(a, b->from), piece_distance(a, b->to)));
+    if (!a->is_edge && !b->is_edge)
+        return fmin(ends, find_arc_gap(a, b));
+    if (!a->is_edge || !b->is_edge)
+        return fmin(ends, a->is_edge ? find_edge_gap(a, b) : find_edge_gap(b, a));
+    const double from = cross(b->along, minus(a->from, b->from)), to = cross(b->along, minus(a->to, b->from));
+    const double other = cross(a->along, minus(b->from, a->from)), other_to = cross(a->along, minus(b->to, a->from));
+    return from * to <= 0 && other * other_to <= 0 && (from != 0 || to != 0) ? 0 : ends;
+}
+
+/* Of two outlines. */
+static double find_gap(const struct ground *a, const struct ground *b) {
+    double least = INFINITY;
+    for (size_t k = 0; k < a->count; k++)
+        for (size_t i = 0; i < b->count; i++) {
+            const struct piece *p = &a->pieces[k], *q = &b->pieces[i];
+            const narc_point away = minus(p->middle, q->middle);
+            const double reach = least + p->half + q->half;
+            if (dot(away, away) < reach * reach)
+                least = fmin(least, find_piece_gap(p, q));
+        }
+    return least;
+}
+
+/* The normals at the open ends of a chain, far into the solid. */
+static double find_end_gap(const struct ground *ground, const struct ground *outline, double length) {
+    double least = INFINITY;
+    for (int end = 0; end < 2 && ground->open; end++) {
+        struct piece way = {.is_edge = true, .from = ground->ends[end], .length = length};
+        const struct piece *last = &ground->pieces[end ? ground->count - 1 : 0];
+        for (size_t k = 1; k < ground->count && !last->is_edge && !(last->radius > 0); k++)
+            last += end ? -1 : 1; /* below a corner the edge beside it is nearer */
+        const narc_point n = last->is_edge || !end == !last->is_concave ? last->low : last->high;
+        way.along = (narc_point){-n.x, -n.y};
+        way.low = (narc_point){way.along.y, -way.along.x};
+        way.to = (narc_point){way.from.x + length * way.along.x, way.from.y + length * way.along.y};
+        for (size_t k = 0; k < outline->count; k++)
+            least = fmin(least, find_piece_gap(&way, &outline->pieces[k]));
+    }
+    return least;
+}
+
+struct ground_clearance ground_find_clearance(struct ground *ground, const struct reference_body *body) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    const double c = body->cosine * body->scale, s = body->sine * body->scale, scale = hypot(c, s), turn = atan2(s, c);
+    for (size_t k = 0; k < body->count; k++) {
+        const narc_arc *arc = &body->arcs[k];
+        const double sweep = arc->end - arc->start + (arc->end <= arc->start ? 2 * PI : 0);
+        arcs[k] =
+            (narc_arc){body->x + c * arc->center_x - s * arc->center_y, body->y + s * arc->center_x + c * arc->center_y,
+                       scale * fabs(arc->radius), arc->start + turn, arc->start + turn + sweep};
+    }
+    struct ground *outline = walk_pieces(&(struct chain){arcs, body->count, true});
+    const bool is_outside = ground_distance(outline, ground->pieces[0].from).distance > 0;
+    struct ground_clearance out = {is_outside ? find_gap(outline, ground) : 0, false};
+    const double extent = reference_extent(body);
+    out.in_air = out.distance > 0 && ground_distance(ground, outline->pieces[0].from).distance > 0 &&
+                 find_end_gap(ground, outline, 8 * (out.distance + extent)) > end_room * extent;
+    destroy_ground(outline);
+    return out;
 }
 
 /* ------------------------------------------------------------------------------------------------ the outline */
@@ -281,14 +480,6 @@ static void add_sample(struct ground_search *search, double along, double distan
         assert(search->samples);
     }
     search->samples[search->count++] = (struct sample){along, distance};
-}
-
-/* How far a point is from a piece. */
-static double piece_distance(const struct piece *piece, narc_point point) {
-    struct ground_foot foot;
-    const narc_point from = minus(point, piece->from), to = minus(point, piece->to);
-    const double ends = sqrt(fmin(dot(from, from), dot(to, to)));
-    return find_foot(piece, point, &foot) ? fmin(fabs(foot.distance), ends) : ends;
 }
 
 /* Those pieces, in `out`, that a point within `radius` of `middle` may be next to. Such a one is no further from the

@@ -18,14 +18,14 @@ struct chain {
 };
 
 /* A perpendicular from a point to a piece: how long (negative from the solid's side), to where, the outward normal
- * there, which convex stretch of the chain between concave arcs it is, or GROUND_CONCAVE, and the smallest length or
- * radius of the piece and of those beside it. */
+ * there, which convex stretch of the chain between concave arcs it is, or GROUND_CONCAVE, the smallest length or radius
+ * of the piece and of those beside it, and how thick the solid is behind that stretch. */
 struct ground_foot {
     double distance;
     narc_point at;
     double normal_x, normal_y;
     size_t run;
-    double grain;
+    double grain, thickness;
 };
 
 #define GROUND_CONCAVE ((size_t)-1)
@@ -37,6 +37,18 @@ void destroy_ground(struct ground *ground);
 /* The nearest of all feet, which is the signed distance of the ground. Where an open end is nearer than all feet there
  * is no such distance: +INFINITY. */
 struct ground_foot ground_distance(struct ground *ground, narc_point point);
+
+/* How far a point is from the outline. */
+double ground_outline_distance(const struct ground *ground, narc_point point);
+
+/* How far a body is from the ground's outline: in closed form, of each two pieces; 0 if they meet, or if all of the outline
+ * is in the body. Is it all in the air? Of an open chain it is not if it comes near the normals at the ends, on the
+ * solid's side: nothing is said of what is beyond them. */
+struct ground_clearance {
+    double distance;
+    bool in_air;
+};
+struct ground_clearance ground_find_clearance(struct ground *ground, const struct reference_body *body);
 
 /* All feet of a point, nearest first, at most `capacity`. */
 size_t ground_feet(const struct ground *ground, narc_point point, struct ground_foot *out, size_t capacity);

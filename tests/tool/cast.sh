@@ -76,6 +76,9 @@ check "SVG" begins_with rays.svg "<?xml"
 printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,1e39,0,0\n' >far.csv
 works "a body without a box" cast --shapes shapes.json --bodies far.csv --rays rays.csv --out far.txt
 check "it is told of" says "without a box 1 bodies, beyond the range of single precision"
+printf 'shape,x,y,angle\nbar,1,0,0\nbar,1e39,0,0\n' >far.csv
+works "a body of three parts without a box" cast --shapes bar.json --bodies far.csv --rays bar_rays.csv --out far.txt
+check "it is one" says "without a box 1 bodies, beyond the range of single precision"
 
 fails "rays are missing" "narc: --rays is missing" cast $known --out new.csv
 fails "inside" "narc: --inside must be stops, leaves or ignores 'out'" cast $known --rays rays.csv --inside out --out new.csv

@@ -182,6 +182,12 @@ for open in "" --open; do
     crossing two "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)" $open
     crossing tiny "contour 0: its size is 3e-300" $open
 done
+printf '0,0\n1,-1e-7\n2,0\n1,1e-7\n' >fits/thin.csv
+for tolerance in 0.5 1e-07; do
+    fails "a chain that is too thin, $tolerance" \
+        "narc: fits/thin.csv: contour 0: it is too thin for the tolerance $tolerance: its sides meet" \
+        fit fits/thin.csv --chain --tolerance $tolerance --out new.json
+done
 crossing line "contour 0: line 2 meets line 0 of contour 0 at (4, 0)"
 printf '0,0\n4,0\n4,4\n0,4\n0,0\n' >fits/ring.csv
 crossing ring "contour 0: it ends where it begins" --open
@@ -195,6 +201,8 @@ check "parts of a spike: the area without it" is spike 6 100
 works "parts that overlap" fit fits/two.csv --parts 4 --tolerance 0.1 --edges --starts 1 --out parts.json
 check "parts that overlap: the area of both" is two 6 28
 fails "parts of a line" "narc: fits/line.csv: its lines enclose no area" fit fits/line.csv --parts 4 --tolerance 0.05 \
+    --out new.json
+fails "parts of what is tiny" "narc: fits/tiny.csv: its size is 4e-300" fit fits/tiny.csv --parts 4 --tolerance 0.05 \
     --out new.json
 # Ground as a body: a level stretch, a rim and a bowl. A ball on the level, a box that stands in the bowl on two corners.
 cat >ground.json <<'END'

@@ -306,7 +306,7 @@ grep -q 'time step' err.txt && miss "a step that is short enough is told"
 sed 's/"velocity": \[1, 0\]/"velocity": [300, -800]/' good.json >bad.json
 fails "too fast" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json
 # Ground is no grain.
-sed 's/\]}$/, {"name": "ground", "chain": {"closed": false, "arcs": [{"center": [0, 0], "radius": 0, "start": 1.6, "end": 1.6}, {"center": [-2, 0], "radius": 0, "start": 1.6, "end": 1.6}]}}]}/' \
+sed 's/\]}$/, {"name": "ground", "chain": {"closed": false, "arcs": [{"center": [0, 0], "radius": 0, "start": 1.5707963267948966, "end": 1.5707963267948966}, {"center": [-2, 0], "radius": 0, "start": 1.5707963267948966, "end": 1.5707963267948966}]}}]}/' \
     shapes.json >ground.json
 sed 's/"shapes.json"/"ground.json"/' good.json >bad.json
 fails "a chain" "dem: ground.json: shape 'ground' is a chain" bad.json
