@@ -616,6 +616,10 @@ static double find_front_distance(const struct body_frame *run, const struct out
     return most;
 }
 
+/* A gap of a front's that is less than the greatest by no more than this, of the sizes, counts as the greatest: normals
+ * are stored in float, so where one of the body's is the run's but for an ulp the gaps differ by that. */
+#define LEVEL 0x1p-24
+
 static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
     struct body_frame bodies[2];
     struct outline outlines[2];
@@ -628,9 +632,10 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
     const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1],
                  target = (double)casts->target[slot];
     struct outlook out = {(g.most - target) / speed, INFINITY, true};
+    const double level = g.most - LEVEL * (s.reach[0] + s.reach[1]);
     bool told = true;
     for (int side = 0; side < 2; side++) {
-        if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || g.of_front[side] == g.most)
+        if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || g.of_front[side] >= level)
             continue;
         const double seen = find_speed_seen(&s, 1 - side, s.reach[1 - side]);
         double beside;
