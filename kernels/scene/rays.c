@@ -277,7 +277,7 @@ INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const str
         return false;
     if (!is_part || inside == NARC_INSIDE_STOPS || !met.is_within)
         return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
-               (!is_part || inside == NARC_INSIDE_STOPS || inside == NARC_INSIDE_IGNORES || !starts_in(batch, w, owner)) &&
+               (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner)) &&
                (!is_part || replace_row(w, owner, out));
     return inside == NARC_INSIDE_LEAVES && put_meeting(frame, &w->ray, &met, INFINITY, out) &&
            leave_thing(batch, w, owner, met.distance, out) && replace_row(w, owner, out);
@@ -318,7 +318,7 @@ INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf,
         const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
         struct body_frame frame;
         if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
-            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners))
+            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners != NULL))
             return true;
     }
     return false;

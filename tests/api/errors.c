@@ -175,7 +175,7 @@ TEST(test_queries) {
     }
     f.call.query = (narc_query){.selection_count = 1};
     check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("selection is NULL"));
-    for (size_t k = 0; k < 4; k++) {
+    for (size_t k = 0; k < sizeof f.call.query.reserved / sizeof *f.call.query.reserved; k++) {
         f.call.query = (narc_query){0};
         f.call.query.reserved[k] = &f;
         check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("reserved"));
