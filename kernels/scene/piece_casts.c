@@ -113,8 +113,9 @@ static bool may_touch(const struct scene *scene, int arc, place u) {
     const narc_shape_header *const header = scene->body.header;
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
-    const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= 0 &&
-                      find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= 0;
+    const double room = 0x1p-19 * sqrt(find_dot(own, own)); /* where arcs meet contacts round in float */
+    const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= -room &&
+                      find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= -room;
     return held && narc_touches(header, find_feature_number(header, arc, false)) &&
            holds_normal(&scene->arc, (place){-u.x, -u.y});
 }
