@@ -202,7 +202,8 @@ TEST(keeps_valleys) {
     expect_ok(narc_write_shapes(&shape, 1, NULL, &text, &size, &error), &error);
     assert_non_null(strstr(text, "\"radius\": -0.0,"));
     assert_null(strstr(text, "\"radius\": -0,"));
-    memcpy(strstr(text, "-0.0"), " 0  ", 4);
+    char *const valley = strstr(text, "-0.0"); /* " 0  " */
+    valley[0] = valley[2] = valley[3] = ' ';
     narc_shape_list *list = read_text(text, store);
     assert_false(signbit(list->items[0].arcs[1].radius));
     for (int k = 0; k < 2; k++)
