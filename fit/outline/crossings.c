@@ -176,7 +176,8 @@ narc_status narc_find_crossings(const narc_contours *contours, bool closed, doub
                    : narc_fail(error, s.status, 0, MOST_CROSSINGS, "its lines cross more than %d times",
                                MOST_CROSSINGS / 2);
     }
-    qsort(s.found.items, s.found.count, sizeof *s.found.items, compare_crossings);
+    if (s.found.items) // none that cross: no array to sort
+        qsort(s.found.items, s.found.count, sizeof *s.found.items, compare_crossings);
     *out_crossings = s.found;
     return NARC_OK;
 }
