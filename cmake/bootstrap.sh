@@ -11,8 +11,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes; with NARC_TEST_PRESET=ci warnings are errors
   gate       what a change must pass besides: style, long tests, the applications, benchmarks that run, without
-             dependencies, sanitizers, fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly. It
-             goes on in the build of NARC_TEST_PRESET=ci
+             dependencies, sanitizers, fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded
+             answers on WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
@@ -27,9 +27,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
-             angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: slopes, collisions, piles of
-             discs and long grains, biaxial tests, hoppers, packings, flows, a drum besides, in an hour on two cores.
-             apps/dem/README.md says what they mean
+             angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
+             biaxial tests, hoppers besides. apps/dem/README.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.

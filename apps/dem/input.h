@@ -50,7 +50,7 @@ void dem_free_input(dem_input *input);
 
 void dem_enter_stage(dem *d, const dem_stage *stage);
 
-/* What input_bodies.c reads of it: shapes from the file, which `name` names, then walls and grains. */
+/* input_bodies.c: shapes from the file, which `name` names, then walls and grains. */
 void dem_read_shapes(const json_value *name, const char *path, dem *d);
 void dem_read_walls(const json_value *list, dem *d);
 void dem_read_grains(const json_value *list, dem *d, uint64_t *random);

@@ -9,6 +9,21 @@
 
 #include "input.h"
 
+void dem_go_to(dem *d, const json_value *at) {
+    snprintf(d->place, sizeof d->place, "%.100s: %s%s", at->file, at->place, at->place[0] ? ": " : "");
+}
+
+void *dem_allocate(size_t count, size_t size) {
+    char *memory = NULL;
+    dem_grow(&memory, count, size);
+    memset(memory, 0, count * size);
+    return memory;
+}
+
+json_names dem_materials(const dem *d) {
+    return (json_names){d->materials, d->material_count, sizeof *d->materials, "is not a material"};
+}
+
 /* ------------------------------------------------------------------------------------------------ shapes */
 
 /* NAME/1, NAME/2 ... are the parts of NAME, where their origins tell, if there is no shape of that name. */

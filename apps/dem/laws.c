@@ -288,10 +288,6 @@ INLINE dem_block apply_laws(dem *d, size_t first, size_t end, bool hertz, bool r
     return block;
 }
 
-const char *dem_explain_depth(const dem *d) {
-    return d->step == 0 ? "They are placed so: the run has not begun" : "Use a shorter time step, or stiffer contacts";
-}
-
 __attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {
     const size_t a = d->parts[d->list.pairs[pair].a].body, b = d->parts[d->list.pairs[pair].b].body;
     const dem_contact *row = d->contacts;

@@ -47,7 +47,7 @@ static bool is_inside(const dem *d, const dem_region *r, vec point) {
 /* The area that stresses refer to: the region's, else the periodic cell's, else that of the box around all grains'
  * centres, a reach larger. */
 static double find_area(const dem *d, const dem_region *r) {
-    const dem_region all = dem_bound_grains(d);
+    const dem_region all = dem_bound(d, false);
     const vec given = minus(r->high, r->low), cell = dem_cell_size(d), box = minus(all.high, all.low);
     if (r->given)
         return given.x * given.y;

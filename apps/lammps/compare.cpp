@@ -1,25 +1,74 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
- * compare.cpp - whole steps side by side: LAMMPS' own discs, grains of narc's forms, LAMMPS' own polygons.
+ * compare.cpp - whole steps side by side: LAMMPS' own discs, grains of narc's forms.
  *   compare [--grains N] [--steps N] [--rounds N]
  *
  * Discs of uneven sizes in a periodic box run until nothing is left of the lattice that they began on: dilute, where
  * few touch, and jammed. From their places all styles go on, with grains of the same areas. Times are the
  * processor's, as LAMMPS' own timer has them. Styles take turns; of the rounds the median counts.
  */
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "force.h"
-#include "measure.h"
+#include "lammps.h"
 #include "pair.h"
+#include "simulation.h"
+#include "timer.h"
 
 namespace {
 
+/* What the time of a step goes to. */
+enum { pair, neighbour, modify, communication, rest, whole, section_count };
+
+struct Sizes {
+    int side, steps, rounds; /* grains: side times side */
+};
+
+/* Of the arguments: [--grains N] [--steps N] [--rounds N]. */
+Sizes read_sizes(int count, char **arguments) {
+    int grains = 10000, steps = 200, rounds = 7;
+    bool good = count % 2 == 1;
+    for (int i = 1; i + 1 < count; i += 2) {
+        const char *names[] = {"--grains", "--steps", "--rounds"};
+        int *const values[] = {&grains, &steps, &rounds};
+        const auto found =
+            std::find_if(names, names + 3, [&](const char *name) { return !std::strcmp(arguments[i], name); });
+        good = good && found != names + 3;
+        if (good)
+            *values[found - names] = std::atoi(arguments[i + 1]);
+    }
+    const int side = static_cast<int>(std::lround(std::sqrt(std::max(grains, 0))));
+    if (!good || side < 10 || steps < 1 || rounds < 1) {
+        std::fprintf(stderr, "usage: compare [--grains N] [--steps N] [--rounds N]\n");
+        std::exit(2);
+    }
+    return {side, steps, rounds};
+}
+
+/* The processor's time for the last run in some unit, which after `timer full` LAMMPS has, and which does not count what
+ * else the machine does. */
+void add_times(const Simulation &simulation, double unit, std::vector<double> *times) {
+    using LAMMPS_NS::Timer;
+    const auto spent = [&](Timer::ttype section) { return unit * simulation.lammps->timer->get_cpu(section); };
+    double row[section_count] = {spent(Timer::PAIR), spent(Timer::NEIGH), spent(Timer::MODIFY), spent(Timer::COMM)};
+    row[whole] = spent(Timer::TOTAL);
+    row[rest] = row[whole] - row[pair] - row[neighbour] - row[modify] - row[communication];
+    for (int k = 0; k < section_count; k++)
+        times[k].push_back(row[k]);
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
 const double pi = std::acos(-1.0);
-const char *const polygon_style = "body/rounded/polygon";
 const std::string law = " 1e4 NULL 20 NULL 0.5 1\npair_coeff * *\n";
 const std::string discs =
     "set group all density/disc 1\npair_style gran/hooke/history" + law + "fix nve all nve/sphere disc\n";
@@ -57,42 +106,10 @@ Packing make_packing(int side, double share) {
     return packing;
 }
 
-/* Octagons in the discs: corners are 0.98 of a radius from the centre, and all within 0.02 of them. The last number of a
- * body is the diameter of the rounding. */
-void create_polygons(Simulation &simulation, const Packing &packing) {
-    const double corner = 0.98, round = 0.02, eighth = pi / 4;
-    FILE *file = std::fopen("polygons.data", "w");
-    std::fprintf(file,
-                 "polygons\n\n%zu atoms\n%zu bodies\n1 atom types\n0 %.17g xlo xhi\n0 %.17g ylo yhi\n"
-                 "-0.5 0.5 zlo zhi\n\nAtoms\n\n",
-                 packing.grains.size(), packing.grains.size(), packing.width, packing.height);
-    int id = 0;
-    for (const Grain &grain : packing.grains)
-        std::fprintf(file, "%d 1 1 %.17g %.17g %.17g 0\n", ++id, pi * grain.radius * grain.radius, grain.x, grain.y);
-    std::fprintf(file, "\nBodies\n\n");
-    id = 0;
-    for (const Grain &grain : packing.grains) {
-        const double scale = grain.radius, inertia = pi / 4 * std::pow(grain.radius, 4);
-        std::fprintf(file, "%d 1 %d\n8\n%.12f %.12f %.12f 0 0 0\n", ++id, 6 + 3 * 8 + 1, inertia, inertia, 2 * inertia);
-        for (int k = 0; k < 8; k++)
-            std::fprintf(file, "%.12f %.12f 0\n", scale * corner * std::cos(grain.angle + eighth * k),
-                         scale * corner * std::sin(grain.angle + eighth * k));
-        std::fprintf(file, "%.12f\n", 2 * scale * round);
-    }
-    std::fclose(file);
-    simulation.run("units lj\ndimension 2\natom_style body rounded/polygon 1 8\ncomm_modify vel yes\nboundary p p p\n"
-                   "newton on\nread_data polygons.data");
-    simulation.run(motion +
-                   "pair_style body/rounded/polygon 20 10 0.5 0.1 0.1\npair_coeff * * 10000 0\nfix nve all nve/body");
-    std::remove("polygons.data");
-}
-
 void begin(Style &style, const Packing &packing) {
     style.simulation = std::make_unique<Simulation>(MPI_COMM_WORLD);
     Simulation &to = *style.simulation;
-    if (style.name == polygon_style) {
-        create_polygons(to, packing);
-    } else if (!std::strcmp(style.name, "gran/hooke/history")) {
+    if (!std::strcmp(style.name, "gran/hooke/history")) {
         create_discs(to, packing);
     } else {
         to.create(packing);
@@ -115,29 +132,30 @@ void take_turn(Style &style, int steps, size_t grains) {
             2.0 * static_cast<double>(*static_cast<const size_t *>(contacts)) / static_cast<double>(grains);
 }
 
-/* (LAMMPS' style for polygons has room for a few contacts of two, and ends the program where it is crowded.) */
-void compare(const char *what, double share, bool polygons, const Sizes &sizes) {
+void compare(const char *what, double share, const Sizes &sizes) {
     const Packing packing = make_packing(sizes.side, share);
-    Style styles[6] = {{"gran/hooke/history", "discs"},         {"narc/hooke/history", "disc"},
-                       {"narc/hooke/history", "ellipse8"},      {"narc/hooke/history", "pebble8"},
-                       {"narc/hooke/history", "octagon_sharp"}, {polygon_style, "rounded 8-gons"}};
-    Style *const end = styles + (polygons ? 6 : 5);
-    for (Style *style = styles; style < end; style++)
-        begin(*style, packing);
+    Style styles[] = {{"gran/hooke/history", "discs"},
+                      {"narc/hooke/history", "disc"},
+                      {"narc/hooke/history", "ellipse8"},
+                      {"narc/hooke/history", "pebble8"},
+                      {"narc/hooke/history", "octagon_sharp"}};
+    for (Style &style : styles)
+        begin(style, packing);
     for (int round = 0; round < sizes.rounds; round++)
-        for (Style *style = styles; style < end; style++)
-            take_turn(*style, style < styles + 5 ? sizes.steps : (sizes.steps + 9) / 10, packing.grains.size());
+        for (Style &style : styles)
+            take_turn(style, sizes.steps, packing.grains.size());
     std::printf("\n%s: %zu grains on %g of the area, %d rounds of %d steps, ns a grain and step\n\n", what,
                 packing.grains.size(), share, sizes.rounds, sizes.steps);
     std::printf(
         "| pair style | grains | contacts of a grain | pair | neighbour | modify | communication | rest | whole "
         "step | of discs |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-    for (const Style *style = styles; style < end; style++) {
-        std::printf("| `%s` | %s | ", style->name, style->grains);
-        if (style->contacts > 0)
-            std::printf("%.2f ", style->contacts);
-        print_times(style->times);
-        std::printf("| %.2f |\n", median(style->times[whole]) / median(styles[0].times[whole]));
+    for (const Style &style : styles) {
+        std::printf("| `%s` | %s | ", style.name, style.grains);
+        if (style.contacts > 0)
+            std::printf("%.2f ", style.contacts);
+        for (const std::vector<double> &of_section : style.times)
+            std::printf("| %.1f ", median(of_section));
+        std::printf("| %.2f |\n", median(style.times[whole]) / median(styles[0].times[whole]));
     }
     std::fflush(stdout);
 }
@@ -145,10 +163,10 @@ void compare(const char *what, double share, bool polygons, const Sizes &sizes) 
 } // namespace
 
 int main(int count, char **arguments) {
-    const Sizes sizes = read_sizes("compare", count, arguments);
+    const Sizes sizes = read_sizes(count, arguments);
     MPI_Init(&count, &arguments);
-    compare("dilute", 0.5, true, sizes);
-    compare("jammed", 0.9, false, sizes);
+    compare("dilute", 0.5, sizes);
+    compare("jammed", 0.9, sizes);
     MPI_Finalize();
     return 0;
 }
