@@ -22,9 +22,9 @@ void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides)
         vec n = {cos(arc->start), sin(arc->start)};
         double length = u.y * n.x - u.x * n.y;
         if (count > 1 && length > LEAST_EDGE * size) {
-            const double along = (before->radius - arc->radius) / dot(u, u);
-            length = sqrt(fmax(dot(u, u) - along * along * dot(u, u), 0));
-            n = plus(times(along, u), times(length / dot(u, u), (vec){u.y, -u.x}));
+            const double rise = before->radius - arc->radius, square = dot(u, u);
+            length = sqrt(fmax(square - rise * rise, 0));
+            n = plus(times(rise / square, u), times(length / square, (vec){u.y, -u.x}));
         } else {
             length = 0;
         }

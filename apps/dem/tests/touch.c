@@ -97,6 +97,19 @@ TEST(test_depth_never_jumps) {
     dem_destroy(&d);
 }
 
+/* Two circles of radius 1 and 0.5 and their tangents: the library says how deep they are. */
+TEST(test_edges_between_unequal_arcs) {
+    const double turn = acos(0.25);
+    const narc_arc arcs[] = {{0, 0, 1, turn, PI}, {0, 0, 1, PI, 2 * PI - turn}, {2, 0, 0.5, -turn, turn}};
+    dem d;
+    dem_create(&d, plain_settings());
+    const uint32_t shape = dem_add_shape(&d, "drop", arcs, 3);
+    uint64_t random = 4;
+    for (int trial = 0; trial < 1000; trial++)
+        draw_pose(&d, shape, &random);
+    dem_destroy(&d);
+}
+
 /* What a force of 1 does in a small motion is what the depth loses: by central differences of 1e-6. */
 TEST(test_force_is_the_gradient_of_the_depth) {
     dem d = plain_world();
