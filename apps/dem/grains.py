@@ -4,12 +4,11 @@
   python3 grains.py draw FRAME.vtk PICTURE [--color FIELD|none] [--top VALUE] [--no-forces]
                     [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES]
   python3 grains.py contacts CONTACTS ...        fabric, anisotropy, distribution of forces
-  python3 grains.py average TABLE [--from TIME]  means of the columns, and how well they are known
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
 
-TABLE is apps/dem's table of measures or a log of LAMMPS, GRAINS apps/dem's table of grains or a dump of LAMMPS, CONTACTS
-apps/dem's .vtk or a dump of LAMMPS' compute narc/contact with the ID contacts; of a dump the last frame counts. A
-picture has the kind that its name ends in: .png, .svg, .pdf."""
+GRAINS is apps/dem's table of grains or a dump of LAMMPS, CONTACTS apps/dem's .vtk or a dump of LAMMPS' compute
+narc/contact with the ID contacts; of a dump the last frame counts. A picture has the kind that its name ends in: .png,
+.svg, .pdf."""
 import argparse
 import math
 
@@ -71,22 +70,12 @@ def make_columns(head, rows):
 
 
 def read_table(path):
-    """A table of apps/dem; the tables of a log of LAMMPS, one after the other; the last frame of a dump."""
+    """A table of apps/dem; the last frame of a dump of LAMMPS."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
     if lines[0].startswith("ITEM:"):
         start = max(i for i, line in enumerate(lines) if line.startswith(("ITEM: ATOMS", "ITEM: ENTRIES")))
         return make_columns(lines[start].split()[2:], [line.split() for line in lines[start + 1 :] if line])
-    if lines[0].startswith("LAMMPS"):
-        head, rows, inside = [], [], False
-        for words in map(str.split, lines):
-            if words[:1] == ["Step"]:
-                head, inside = words, True
-            elif words[:1] == ["Loop"]:
-                inside = False
-            elif inside and len(words) == len(head):
-                rows.append(words)
-        return make_columns(head, rows)
     return make_columns(lines[0].split(","), [line.split(",") for line in lines[1:] if line])
 
 
@@ -106,12 +95,6 @@ def find_force_distribution(forces, bins=12, highest=4):
     edges = np.linspace(0, highest, bins + 1)
     counts, _ = np.histogram(forces / forces.mean(), edges)
     return 0.5 * (edges[1:] + edges[:-1]), counts / (len(forces) * np.diff(edges))
-
-
-def average(values, blocks=8):
-    """The mean, and its standard error by the means of blocks, which are longer than what is correlated."""
-    means = [block.mean() for block in np.array_split(values, min(blocks, len(values)))]
-    return values.mean(), np.std(means, ddof=1) / math.sqrt(len(means)) if len(means) > 1 else math.nan
 
 
 def find_repose(x, y, radius, half):
@@ -219,13 +202,6 @@ def print_contacts(paths):
             print("force / mean %.3f density %.4f" % (force, density))
 
 
-def print_averages(path, start):
-    table = read_table(path)
-    time = table["time"] if "time" in table else table["Step"]
-    for name, values in table.items():
-        print("%s %.6g +- %.2g" % ((name,) + average(values[time >= start])))
-
-
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
@@ -238,9 +214,6 @@ def main():
     one.add_argument("--width", type=float, default=8)
     one.add_argument("--no-forces", dest="forces", action="store_false")
     commands.add_parser("contacts").add_argument("paths", nargs="+")
-    one = commands.add_parser("average")
-    one.add_argument("table")
-    one.add_argument("--from", dest="start", type=float, default=-math.inf)
     one = commands.add_parser("repose")
     one.add_argument("grains")
     one.add_argument("--half", type=float, required=True)
@@ -250,8 +223,6 @@ def main():
         draw(**options)
     elif command == "contacts":
         print_contacts(options["paths"])
-    elif command == "average":
-        print_averages(options["table"], options["start"])
     else:
         print("%.1f %.1f degrees" % tuple(find_repose(*load_grains(options["grains"]), options["half"])))
 
