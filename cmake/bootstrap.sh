@@ -24,8 +24,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
-  lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
-             tables of times beside LAMMPS' own styles; all goes to out/lammps/
+  lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, and a biaxial compression on 1 and 2 ranks, which
+             goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
@@ -383,9 +383,6 @@ lammps() {
         check_momentum biaxial-1.log
         check_momentum biaxial-2.log
     ) || fail "the compression failed"
-    say "times"
-    cmake --build build/lammps --target tables >out/lammps/tables.txt || fail "measuring failed"
-    grep '|' out/lammps/tables.txt
     say "written"
     ls -l out/lammps
 }

@@ -6,21 +6,6 @@
 
 #include "dem.h"
 
-/* At the point that is furthest from the origin the normal points away from the origin, so the arc's centre is on the
- * same line: the point is the support in that direction, or in the opposite one if the arc is flatter. */
-static double find_reach(const narc_arc *arcs, size_t count) {
-    double reach = 0;
-    for (size_t i = 0; i < 2 * count; i++) {
-        const narc_arc *arc = &arcs[i / 2];
-        const double sign = i % 2 ? -1 : 1;
-        const bool central = arc->center_x == 0 && arc->center_y == 0;
-        narc_point p = {0, 0};
-        narc_find_support(arcs, count, central ? 1 : sign * arc->center_x, sign * arc->center_y, &p, NULL);
-        reach = fmax(reach, hypot(p.x, p.y));
-    }
-    return reach;
-}
-
 /* Moves an outline by -centroid, and adds it to the store: one index for each, also of equal ones. */
 static void add_outline(dem *d, const char *name, const narc_arc *arcs, size_t count, const narc_mass *mass,
                         double *reach) {
@@ -33,7 +18,7 @@ static void add_outline(dem *d, const char *name, const narc_arc *arcs, size_t c
     d->outlines[k].side_count = count;
     make_touch_sides(moved, count, d->outlines[k].sides);
     d->outline_count++;
-    *reach = fmax(*reach, find_reach(moved, count));
+    *reach = fmax(*reach, find_outline_reach(moved, count));
 }
 
 uint32_t dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count) {

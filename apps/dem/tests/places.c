@@ -77,14 +77,6 @@ TEST(test_free_places) {
     dem_destroy(&d);
 }
 
-TEST(test_full_region) {
-    dem d = make_room();
-    const dem_filling filling = plain_filling(2000);
-    uint64_t random = 5;
-    EXPECT_ERROR(&d, "found no free place in 5000 tries", dem_fill_randomly(&d, &filling, &random));
-    dem_destroy(&d);
-}
-
 /* Infinite mass is what walls have. */
 TEST(test_mass_out_of_range) {
     dem d = plain_world();

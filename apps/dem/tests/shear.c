@@ -165,17 +165,3 @@ TEST(test_sheared_bits) {
     dem_destroy(&two);
     dem_destroy(&again);
 }
-
-TEST(test_sheared_refusals) {
-    for (int i = 0; i < 3; i++) {
-        dem_settings settings = sheared_settings();
-        settings.periodic_x = i != 0;
-        settings.gravity.y = i == 1 ? -1 : 0;
-        dem d = make_world(settings, plain_law());
-        add_grain(&d, DISC, 8, 8, 0, 0);
-        if (i == 2)
-            add_plate(&d, "floor", 0, 0, 0, 1);
-        expect_start_error(&d, "a sheared cell is periodic in x and y");
-        dem_destroy(&d);
-    }
-}

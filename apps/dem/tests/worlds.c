@@ -91,8 +91,6 @@ static void add_shapes(dem *d) {
     assert_int_equal(dem_add_compound(d, "ell", arcs, bars, 2), ELL);
 }
 
-void expect_start_error(dem *d, const char *message) { EXPECT_ERROR(d, message, dem_start(d)); }
-
 dem make_world(dem_settings settings, dem_contact_law law) {
     dem d;
     dem_create(&d, settings);
