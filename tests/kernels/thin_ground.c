@@ -432,6 +432,39 @@ TEST(test_both_sides) {
     }
 }
 
+/* Open ground ends straight below its end: a triangle that stands beside it, on the extension of a slope's inner side, is
+ * in the air. */
+TEST(test_beside_open_ends) {
+    struct test_random random = test_random_named("beside open ends");
+    for (size_t trial = 0; trial < test_trials(100); trial++) {
+        struct setting *s = begin_setting();
+        const double slope = random_between(&random, 0.3, 0.5), level = random_between(&random, 0.1, 0.4);
+        const bool has_corner = trial % 2;
+        struct turtle t = create_turtle(0, 0, has_corner ? 0 : PI / 2);
+        walk_arc(&t, 0, has_corner ? PI / 2 : 0); /* at the right end */
+        walk_line(&t, level);
+        walk_arc(&t, 0, slope + 0.05);
+        walk_line(&t, 0.1);
+        walk_arc(&t, 0.5, -0.05);
+        const double x = t.x, y = t.y;
+        walk_line(&t, 2);
+        walk_arc(&t, 0, 0);
+        add_ground(s, &t, (narc_chain_options){0});
+        free(t.arcs);
+        const double beside = random_log_between(&random, 1e-3, 0.1), along = random_between(&random, 0.01, 0.05);
+        const double foot_x = x - along * cos(slope), foot_y = y - along * sin(slope);
+        const double depth = (beside - foot_x) / sin(slope), size = depth * random_between(&random, 1.02, 1.5);
+        const double lean = PI / 3 - random_between(&random, 0, PI / 6 - slope);
+        narc_body body = turn_body(add_shape(s, regular_of(3, size)), beside + size * cos(lean),
+                                   foot_y - depth * cos(slope) + size * sin(lean), lean - PI);
+        const struct told *told = ask(s, &body, (narc_query){0});
+        if (told->count > 0)
+            fail_msg("trial %zu: a triangle %g beside the end is told of %g", trial, beside,
+                     (double)find_deepest(&told->rows[0]));
+        end_setting(s);
+    }
+}
+
 /* A platform that is ground for what comes from above. */
 TEST(test_front_only) {
     struct setting *s = begin_setting();
