@@ -316,7 +316,7 @@ double narc_find_clearance(const narc_curves *curves, narc_point point, narc_cha
     for (int k = 0; k < 2; k++)
         least = fmin(least, ended[k] ? find_part_distance(&t->curves[ends[k].curve], k ? 0 : ends[k].part,
                                                           k ? ends[k].part : 1, point)
-                                     : INFINITY);
+                                     : find_distance(point, k ? t->curves[0].from : t->curves[count - 1].to));
     for (int k = 0; k < 2 && !t->closed; k++)
         least = fmin(least, find_curve_distance(&t->end_sides[k], point));
     const size_t first = ended[0] ? (size_t)ends[0].curve + 1 : t->count, last = ended[1] ? (size_t)ends[1].curve : 0;
