@@ -262,23 +262,31 @@ TEST(test_level_line_into_a_bowl) {
     }
 }
 
+#define VAULT_TURN 1.4
+static const double vault_radius = 8, vault_thickness = 0.4;
+
+/* Arcs of one circle above, and of another one below. */
+static struct turtle walk_vault(size_t parts) {
+    struct turtle t = create_turtle(0, 0, PI / 2 - VAULT_TURN / 2);
+    for (int side = 0; side < 2; side++) {
+        const double radius = side ? vault_radius - vault_thickness : vault_radius,
+                     turn = side ? -VAULT_TURN : VAULT_TURN;
+        for (size_t k = 0; k < parts; k++)
+            walk_arc(&t, radius, turn / (double)parts);
+        walk_arc(&t, 0, PI / 2);
+        walk_line(&t, vault_thickness);
+        walk_arc(&t, 0, PI / 2);
+    }
+    return t;
+}
+
 /* Boxes of entries meet those of all bodies that they answer: a tip that comes in through the next one, too. */
 TEST(test_boxes_reach_back) {
     struct test_random random = test_random_named("boxes reach back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct setting *s = begin_setting();
         const size_t parts = 4 + random_below(&random, 20);
-        const double radius = 8, thick = 0.4, turn = 1.4 / (double)parts;
-        struct turtle t = create_turtle(0, 0, PI / 2 - 0.7); /* a vault */
-        for (size_t k = 0; k < parts; k++)
-            walk_arc(&t, radius, turn);
-        for (int end = 0; end < 2; end++) {
-            walk_arc(&t, 0, PI / 2);
-            walk_line(&t, thick);
-            walk_arc(&t, 0, PI / 2);
-            for (size_t k = 0; k < parts && end == 0; k++)
-                walk_arc(&t, radius - thick, -turn);
-        }
+        struct turtle t = walk_vault(parts);
         add_ground(s, &t, ring);
         narc_box boxes[ENTRIES], own;
         const narc_bodies ground = narc_view_bodies(s->bodies, s->count);
@@ -287,9 +295,9 @@ TEST(test_boxes_reach_back) {
         const uint32_t triangle = add_shape(s, regular_of(3, 0.075));
         const narc_arc *first = &t.arcs[0];
         for (int k = 0; k < 400; k++) {
-            const double angle = PI / 2 - 0.7 + turn * (double)(1 + random_below(&random, parts - 1)) +
+            const double angle = t.arcs[1 + random_below(&random, parts - 1)].start +
                                  random_log_between(&random, 1e-6, 1e-2) * (k % 2 ? 1 : -1);
-            const double reach = radius - thick + random_log_between(&random, 1e-3, 0.012),
+            const double reach = vault_radius - vault_thickness + random_log_between(&random, 1e-3, 0.012),
                          tilt = angle + random_between(&random, -0.5, 0.5);
             const narc_body body = turn_body(triangle, first->center_x + reach * cos(angle) - 0.075 * cos(tilt),
                                              first->center_y + reach * sin(angle) - 0.075 * sin(tilt), tilt);
@@ -312,19 +320,8 @@ TEST(test_boxes_reach_back) {
 /* The corner of a triangle is 6 mm deep in a ceiling of arcs of one circle, right beside a seam: pairs of boxes without a
  * margin have the entry that tells of it. */
 TEST(test_box_beside_a_seam) {
-    enum { PARTS = 16 };
-    const double radius = 8, thick = 0.4, turn = 1.4 / PARTS;
     struct setting *s = begin_setting();
-    struct turtle t = create_turtle(0, 0, PI / 2 - 0.7);
-    for (int k = 0; k < PARTS; k++)
-        walk_arc(&t, radius, turn);
-    for (int end = 0; end < 2; end++) {
-        walk_arc(&t, 0, PI / 2);
-        walk_line(&t, thick);
-        walk_arc(&t, 0, PI / 2);
-        for (int k = 0; k < PARTS && end == 0; k++)
-            walk_arc(&t, radius - thick, -turn);
-    }
+    struct turtle t = walk_vault(16);
     add_ground(s, &t, ring);
     const size_t count = s->count + 1;
     assert_true(count < ENTRIES);
@@ -354,6 +351,37 @@ TEST(test_box_beside_a_seam) {
     narc_destroy_broad_phase(broad);
     free(t.arcs);
     end_setting(s);
+}
+
+/* Two arcs of a lens, one of them much larger than the lens, meet where it is deepest in a line of several entries: the
+ * normal there is the line's up to rounding, and casts begin with what contacts say. */
+TEST(test_lenses_in_a_slope) {
+    struct test_random random = test_random_named("lenses in a slope");
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        struct setting *s = begin_setting();
+        const double slope = random_between(&random, -0.5, 0.5);
+        struct turtle t = create_turtle(0, 0, PI / 2 + slope);
+        walk_arc(&t, 0, 0);
+        walk_line(&t, 20);
+        walk_arc(&t, 0, 0);
+        add_ground(s, &t, (narc_chain_options){.weld = 3});
+        free(t.arcs);
+        const struct shape lens = make_shape(&random, FAMILY_LENS);
+        const uint32_t shape = add_shape(s, lens);
+        for (int k = 0; k < 40; k++) {
+            const narc_arc *arc = &lens.arcs[random_below(&random, lens.count)];
+            const double angle = slope - PI / 2 - arc->end, depth = random_log_between(&random, 1e-4, 1e-2);
+            const double c = cos(angle), d = sin(angle), along = random_between(&random, 8, 12);
+            const double x = arc->center_x + arc->radius * cos(arc->end),
+                         y = arc->center_y + arc->radius * sin(arc->end);
+            const narc_body body = turn_body(shape, -along * cos(slope) + depth * sin(slope) - (c * x - d * y),
+                                             -along * sin(slope) - depth * cos(slope) - (d * x + c * y), angle);
+            const struct told *told = ask(s, &body, (narc_query){0});
+            assert_true(told->count > 0);
+            expect_near((double)find_deepest(&told->rows[0]), -depth, 1e-5, "separation");
+        }
+        end_setting(s);
+    }
 }
 
 /* A bent sheet of two chains, its upper side and its lower one, which know nothing of each other: a plank over the ridge. */
