@@ -7,7 +7,7 @@
 #include "dem.h"
 
 /* A body of mass 0, without speed. */
-static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec place, vec turn, double scale) {
+static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec position, vec turn, double scale) {
     const dem_shape *shape = &d->shapes[shape_index];
     const dem_outline *outline = &d->outlines[shape->first_outline];
     const touch_side *side = outline->sides;
@@ -16,7 +16,7 @@ static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec p
     dem_grow(&d->bodies, d->body_count + 1, sizeof *d->bodies);
     dem_grow(&d->parts, d->part_count + shape->outline_count, sizeof *d->parts);
     dem_body *b = &d->bodies[d->body_count];
-    *b = (dem_body){.place = place,
+    *b = (dem_body){.position = position,
                     .turn = turn,
                     .scale = (float)scale,
                     .reach = s * shape->reach,
@@ -33,7 +33,7 @@ static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec p
 
 void dem_add_grain(dem *d, dem_grain grain) {
     const vec turn = {cos(grain.angle), sin(grain.angle)};
-    dem_body *b = add_body(d, grain.shape, grain.material, grain.place, turn, grain.scale);
+    dem_body *b = add_body(d, grain.shape, grain.material, grain.position, turn, grain.scale);
     const dem_shape *shape = &d->shapes[grain.shape];
     const double s = (double)b->scale, pillar = d->materials[grain.material].density * d->settings.thickness;
     b->velocity = grain.velocity;
@@ -69,7 +69,7 @@ void dem_add_walls(dem *d) {
     narc_error error;
     uint32_t block = UINT32_MAX;
     for (dem_wall *w = d->walls; w < d->walls + d->wall_count; w++) {
-        vec place = w->place, turn = {cos(w->angle), sin(w->angle)};
+        vec position = w->position, turn = {cos(w->angle), sin(w->angle)};
         if (w->kind == DEM_PLATE) {
             if (block == UINT32_MAX) {
                 dem_demand(d, narc_build_box(2 * half, 2 * half, 0, arcs, &count, &error), "a plate", &error);
@@ -78,10 +78,10 @@ void dem_add_walls(dem *d) {
             w->shape = block;
             w->scale = 1;
             w->half = 0.5 * d->shapes[block].extent * side_by_extent;
-            place = minus(place, times(half, w->normal));
+            position = minus(position, times(half, w->normal));
             turn = (vec){w->normal.y, -w->normal.x};
         }
-        add_body(d, w->shape, w->material, place, turn, w->scale);
+        add_body(d, w->shape, w->material, position, turn, w->scale);
     }
 }
 
@@ -93,7 +93,7 @@ narc_bodies dem_make_poses(dem *d) {
     for (size_t i = 0; i < d->part_count; i++) {
         const dem_body *b = &d->bodies[d->parts[i].body];
         const float cosine = (float)b->turn.x, sine = (float)b->turn.y;
-        d->poses[i] = (narc_body){b->place.x, b->place.y, cosine, sine, b->scale, d->parts[i].outline};
+        d->poses[i] = (narc_body){b->position.x, b->position.y, cosine, sine, b->scale, d->parts[i].outline};
     }
     return narc_view_bodies(d->poses, d->part_count);
 }
@@ -102,7 +102,7 @@ dem_region dem_bound(const dem *d, bool with_walls) {
     dem_region r = {.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
     for (size_t k = 0; k < d->grain_count + (with_walls ? d->wall_count : 0); k++) {
         const bool grain = k < d->grain_count;
-        const vec p = grain ? d->bodies[k].place : d->walls[k - d->grain_count].place;
+        const vec p = grain ? d->bodies[k].position : d->walls[k - d->grain_count].position;
         const double reach = grain ? d->bodies[k].reach : 0;
         r.low = (vec){fmin(r.low.x, p.x - reach), fmin(r.low.y, p.y - reach)};
         r.high = (vec){fmax(r.high.x, p.x + reach), fmax(r.high.y, p.y + reach)};
@@ -122,12 +122,13 @@ vec dem_cell_size(const dem *d) { return minus(d->settings.high, d->settings.low
 
 void dem_fail_lost(dem *d) {
     const narc_bodies bodies = dem_make_poses(d);
-    narc_error error = {.message = "its place is out of range"};
+    narc_error error = {.message = "its position is out of range"};
     size_t k = 0;
     if (narc_validate_bodies(d->store, &bodies, &error) != NARC_OK)
         k = d->parts[error.index].body;
     else
-        while (k + 1 < d->body_count && fabs(d->bodies[k].place.x) + fabs(d->bodies[k].place.y) < NARC_MAX_DISTANCE)
+        while (k + 1 < d->body_count &&
+               fabs(d->bodies[k].position.x) + fabs(d->bodies[k].position.y) < NARC_MAX_DISTANCE)
             k++;
     dem_fail(d, "step %llu: %s %zu is lost (%s): forces became too large. Use a shorter time step",
              (unsigned long long)d->step, dem_name_kind(d, k), dem_number(d, k), error.message);

@@ -12,7 +12,7 @@
  *       shapes.c      outlines, shapes
  *       bodies.c      grains and walls, and as narc sees them
  *       boundary.c    wrapping, shear
- *       place.c       where grains start
+ *       filling.c     where grains start
  *       neighbours.c  boxes, pairs with a skin, images, history
  *       walls.c       motion of walls, servo control
  *       laws.c        forces of contacts and bodies
@@ -113,8 +113,8 @@ typedef struct dem_settings {
 
 /* What a step needs comes first: memory comes in lines. */
 typedef struct dem_body {
-    vec place; /* of the centre of mass, the shape's origin */
-    vec turn;  /* the rotation, a unit vector */
+    vec position; /* of the centre of mass, the shape's origin */
+    vec turn;     /* the rotation, a unit vector */
     vec velocity;
     double spin;
     vec force; /* of contacts alone; gravity is added where velocities change */
@@ -123,13 +123,13 @@ typedef struct dem_body {
     double extent, disc;                  /* of the scaled shape; the radius of a disc, 0: it is none */
     float scale;
     uint32_t shape, material, first_part;
-    int32_t cell_x, cell_y;    /* how often it crossed the periodic border, for true displacements */
-    double reach;              /* of the scaled shape */
-    vec list_place, list_turn; /* where it was when the pairs were found */
+    int32_t cell_x, cell_y;       /* how often it crossed the periodic border, for true displacements */
+    double reach;                 /* of the scaled shape */
+    vec list_position, list_turn; /* where it was when the pairs were found */
     double mass, inertia;
 } dem_body;
 
-/* The convex parts of all bodies, in their order: what narc is asked about, with the place of their body. Parts of one
+/* The convex parts of all bodies, in their order: what narc is asked about, with the position of their body. Parts of one
  * body form no pair. A body of one outline has one, so without others part k is body k. */
 typedef struct dem_part {
     uint32_t body, outline;
@@ -156,7 +156,7 @@ typedef struct dem_wall {
     dem_wall_kind kind;
     uint32_t shape, material; /* as it begins: dem_start() makes it a body */
     double scale;
-    vec place;
+    vec position;
     double angle;
     vec normal;   /* a plate's, into the grains' half plane */
     double half;  /* of the side of its block: how far its face is from its body's place */
@@ -276,7 +276,7 @@ struct dem {
     size_t extra_count;
     uint32_t *match;
 
-    char place[256];          /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
+    char input_path[256];     /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
     char error[512];          /* what went wrong */
     void (*on_error)(dem *d); /* NULL: the program ends; it must not return */
 };
@@ -323,13 +323,13 @@ uint32_t dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const 
 /* A grain as it is added. */
 typedef struct dem_grain {
     uint32_t shape, material;
-    vec place;
+    vec position;
     double angle, scale; /* the scale is rounded to float */
     vec velocity;
     double spin;
 } dem_grain;
 
-/* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
+/* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .position}, and of a box .shape, .scale
  * and .angle, of a plate .normal (of any length); its place is a point of its border. */
 void dem_add_grain(dem *d, dem_grain grain);
 void dem_add_wall(dem *d, dem_wall wall);
@@ -389,7 +389,7 @@ void dem_shear_cell(dem *d);                            /* the way of a step */
 vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
 double dem_find_drift(const dem *d);                    /* the speed of the cell above */
 
-/* ---------------------------------------------------------------------------------------------------------- place.c */
+/* ---------------------------------------------------------------------------------------------------------- filling.c */
 
 enum { DEM_MAX_CHOICES = 64 };
 
@@ -533,17 +533,17 @@ void dem_write_vtk(dem *d, const char *stem, uint64_t number);
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
 /* What a run is beside the state: kept in a restart file, so that it goes on where it was. */
-typedef struct dem_place {
+typedef struct dem_progress {
     uint64_t input;        /* hash of what the input says of bodies, laws and boundaries */
     uint64_t stage;        /* index */
     uint64_t stage_step;   /* steps done in it */
     uint64_t csv_position; /* bytes */
     uint64_t frame;        /* number of the next frame */
-} dem_place;
+} dem_progress;
 
-void dem_write_restart(dem *d, const dem_place *place, const char *path);
+void dem_write_restart(dem *d, const dem_progress *progress, const char *path);
 
 /* Into a world with the same input, after dem_start(). */
-void dem_read_restart(dem *d, dem_place *place, const char *path);
+void dem_read_restart(dem *d, dem_progress *progress, const char *path);
 
 #endif

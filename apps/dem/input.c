@@ -265,7 +265,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
         read_output(&output, d, input);
     dem_go_to(d, &root);
     dem_start(d);
-    d->place[0] = 0;
+    d->input_path[0] = 0;
     input->hash = hash_input(&root, d);
     cJSON_Delete((cJSON *)root.item);
 }

@@ -44,7 +44,7 @@ typedef struct dem_input {
     uint64_t hash; /* of all but stages and output */
 } dem_input;
 
-/* Reads the file, makes the world and starts it. Errors end the program: "dem: file: place: problem 'value'". */
+/* Reads the file, makes the world and starts it. Errors end the program: "dem: file: path: problem 'value'". */
 void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_input);
 void dem_free_input(dem_input *input);
 

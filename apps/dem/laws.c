@@ -112,7 +112,7 @@ INLINE vec find_way(const dem *d, const dem_pair *pair, const dem_body *a, const
         const vec n = d->walls[b - d->bodies - (ptrdiff_t)d->grain_count].normal; /* 0 of a box */
         shift = minus(shift, times(dot(shift, n), n));
     }
-    return plus(minus(b->place, a->place), shift);
+    return plus(minus(b->position, a->position), shift);
 }
 
 /* The normal and the point of two ends are their means, by what each bears. */

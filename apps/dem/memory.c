@@ -29,7 +29,7 @@ void dem_fail(dem *d, const char *format, ...) {
     va_end(arguments);
     if (d->on_error)
         d->on_error(d);
-    dem_quit("%s%s", d->place, d->error);
+    dem_quit("%s%s", d->input_path, d->error);
 }
 
 void dem_demand(dem *d, narc_status status, const char *what, const narc_error *error) {

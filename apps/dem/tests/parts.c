@@ -73,13 +73,13 @@ TEST(test_dimers_on_a_plate) {
     d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_grain(&d, DIMER, 0, 0.5, 0, 0);
-    dem_add_grain(&d, (dem_grain){.shape = DIMER, .place = {5, 1}, .angle = PI / 2, .scale = 1});
+    dem_add_grain(&d, (dem_grain){.shape = DIMER, .position = {5, 1}, .angle = PI / 2, .scale = 1});
     dem_start(&d);
     step(&d, 3000);
     assert_int_equal(d.contact_count, 3);
     const double weight = 10 * d.bodies[0].mass;
     assert_true(fabs(d.bodies[0].force.y / weight - 1) < 1e-3 && fabs(d.bodies[1].force.y / weight - 1) < 1e-3);
-    assert_true(fabs(d.bodies[0].place.y - (0.5 - weight / 2 / 1e5)) < 1e-6);
-    assert_true(fabs(d.bodies[1].place.y - (1 - weight / 1e5)) < 1e-6);
+    assert_true(fabs(d.bodies[0].position.y - (0.5 - weight / 2 / 1e5)) < 1e-6);
+    assert_true(fabs(d.bodies[1].position.y - (1 - weight / 1e5)) < 1e-6);
     dem_destroy(&d);
 }

@@ -95,8 +95,8 @@ TEST(test_lattice) {
     dem_fill_lattice(&d, &filling, &random);
     assert_int_equal(d.grain_count, 60);
     for (size_t k = 0; k < 60; k++) {
-        assert_true(fabs(d.bodies[k].place.x - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
-        assert_true(fabs(d.bodies[k].place.y - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
+        assert_true(fabs(d.bodies[k].position.x - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
+        assert_true(fabs(d.bodies[k].position.y - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
     }
     filling.count = 61;
     EXPECT_ERROR(&d, "has no room for 61 grains", dem_fill_lattice(&d, &filling, &random));

@@ -190,7 +190,7 @@ TEST(test_bricks_stand_still) {
     dem_start(&d);
     step(&d, 60000);
     const size_t contacts = d.contact_count;
-    const double x = d.bodies[22].place.x, y = d.bodies[22].place.y;
+    const double x = d.bodies[22].position.x, y = d.bodies[22].position.y;
     for (int i = 0; i < 20000; i++) {
         step(&d, 1);
         assert_int_equal(d.contact_count, contacts);
@@ -198,9 +198,9 @@ TEST(test_bricks_stand_still) {
     dem_measures m;
     dem_measure(&d, NULL, &m);
     print_message("%zu contacts, fastest %.3g, moved by %.3g\n", contacts, m.fastest,
-                  hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y));
+                  hypot(d.bodies[22].position.x - x, d.bodies[22].position.y - y));
     assert_int_equal(contacts, 5 + 4 * 9);
     assert_true(m.fastest < 1e-12 && m.energy.kinetic < 1e-22);
-    assert_true(hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y) < 1e-10);
+    assert_true(hypot(d.bodies[22].position.x - x, d.bodies[22].position.y - y) < 1e-10);
     dem_destroy(&d);
 }
