@@ -23,6 +23,7 @@ typedef struct {
     vector position;
     double angle, scale;
 } pose;
+
 /* The signed distance of two bodies: positive when they are apart, minus the penetration depth when they overlap.
  * -INFINITY if a shape has no arcs. Shapes are not checked. */
 double formula_separation(shape a, pose pose_a, shape b, pose pose_b);
