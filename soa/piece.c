@@ -91,7 +91,7 @@ static narc_point turn_by(narc_point turn, narc_point d) {
     return (narc_point){turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y};
 }
 
-static narc_point see_place(const view *v, narc_point p) {
+static narc_point see_point(const view *v, narc_point p) {
     return narc_add_scaled(v->at, v->part, turn_by(v->turn, p));
 }
 
@@ -99,13 +99,13 @@ static narc_point see_place(const view *v, narc_point p) {
 static seen_arc see_arc(const view *v, size_t number) {
     const size_t count = v->piece->header->count, first = v->piece->header->first_arc & NARC_FIRST_ARC;
     const seen_arc own = see_own(&v->piece->arcs[(number + count - first) % count].arc);
-    return (seen_arc){see_place(v, own.center), turn_by(v->turn, own.start), turn_by(v->turn, own.end),
-                      see_place(v, own.first),  see_place(v, own.last),      v->part * own.radius};
+    return (seen_arc){see_point(v, own.center), turn_by(v->turn, own.start), turn_by(v->turn, own.end),
+                      see_point(v, own.first),  see_point(v, own.last),      v->part * own.radius};
 }
 
 /* ------------------------------------------------------------------------------------------------ near an end */
 
-/* Does one of the body's deepest places, along its outward normal w, that lie behind the front, lie near an end? */
+/* Does one of the body's deepest points, along its outward normal w, that lie behind the front, lie near an end? */
 static bool lies_near_end(const view *v, narc_point w) {
     const narc_shape_header *const header = v->piece->header;
     const bool concave = narc_is_concave(header);
@@ -118,11 +118,11 @@ static bool lies_near_end(const view *v, narc_point w) {
     const double flat = height - v->room - 0x1p-20 * size;
     for (size_t k = 0; k < v->body->header->count; k++) {
         const seen_arc arc = see_own(&v->body->arcs[k].arc);
-        const narc_point places[3] = {arc.first, arc.last, narc_add_scaled(arc.center, arc.radius, w)};
+        const narc_point points[3] = {arc.first, arc.last, narc_add_scaled(arc.center, arc.radius, w)};
         for (int i = 0; i < (holds(arc.start, arc.end, w) ? 3 : 2); i++)
-            if (narc_dot(places[i], w) >= flat) {
-                low = get_least(low, narc_dot(places[i], along));
-                high = get_most(high, narc_dot(places[i], along));
+            if (narc_dot(points[i], w) >= flat) {
+                low = get_least(low, narc_dot(points[i], along));
+                high = get_most(high, narc_dot(points[i], along));
             }
     }
     const double at[2] = {narc_dot(end[0], along), narc_dot(end[1], along)};
@@ -132,8 +132,8 @@ static bool lies_near_end(const view *v, narc_point w) {
         return false;
     for (int i = 0; i < 2; i++) {
         const double x = get_least(get_most(at[i], from), get_most(from, to)) - at[i], y = height - narc_dot(end[i], w);
-        const double reach = v->part * (double)solid->clearance[i];
-        if (x * x + y * y <= reach * reach)
+        const double clearance = v->part * (double)solid->clearance[i];
+        if (x * x + y * y <= clearance * clearance)
             return true;
     }
     return false;
