@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Is no word a part of an identifier that the last table of docs/architecture.md has others for? Comments and strings may
 # have it. Run as
-#   cmake -D SOURCE=<the project's folder> -P words.cmake
+#   cmake -D SOURCE=<the project's folder> -P document_words.cmake
 cmake_minimum_required(VERSION 3.22)
 set(folders include soa kernels dispatch methods files tools tests/support tests/api)
 
