@@ -3,7 +3,7 @@
 # have it. Run as
 #   cmake -D SOURCE=<the project's folder> -P document_words.cmake
 cmake_minimum_required(VERSION 3.22)
-set(folders include soa kernels dispatch methods files tools tests/support tests/api)
+set(folders include soa dispatch/broad_phase methods files tools tests/support tests/api)
 
 file(READ "${SOURCE}/docs/architecture.md" text)
 string(REGEX REPLACE ".*\n\\| Not \\| But \\|\n" "" text "${text}")
@@ -24,10 +24,10 @@ foreach(folder IN LISTS folders)
     string(REGEX REPLACE "[][;]" " " text "${text}")
     string(TOLOWER "${text}" text)
     string(REGEX MATCHALL "[a-z0-9_]*[^a-z](${words})s?[^a-z]" found "${text}")
-    list(TRANSFORM found STRIP)
+    list(TRANSFORM found REPLACE ".*[^a-z](${words})s?[^a-z]$" "\\1")
     list(REMOVE_DUPLICATES found)
-    foreach(name IN LISTS found)
-      message(SEND_ERROR "${path}: ${name}: say another word (docs/architecture.md, Words)")
+    foreach(word IN LISTS found)
+      message(SEND_ERROR "${path}: ${word} (docs/architecture.md, Words, has a better one)")
     endforeach()
   endforeach()
 endforeach()
