@@ -6,7 +6,7 @@
 #define NARC_PAPER_SITUATIONS_H
 
 #include "common.h"
-#include "scenes.h"
+#include "bodies.h"
 
 /* What stands for an outline. */
 enum kind { KIND_ARC, KIND_GON, KINDS };
