@@ -8,9 +8,8 @@
 #include <string.h>
 
 #include "common.h"
+#include "lists.h"
 #include "rows.h"
-
-enum { MOST = 12, TEXT = 64 };
 
 /* Lists of "title = value", divided by ";". A table has a line for each of `lines` and each of `others`, and in it the
  * time of each column's row: "$1" in its name is the value of the first, "$2" of the second. A column that ends with
@@ -95,14 +94,6 @@ static const struct table tables[] = {
 
 /* ------------------------------------------------------------------------------------------------ times */
 
-void replace_word(const char *text, const char *key, const char *value, char *out, size_t size) {
-    const char *word = strstr(text, key);
-    if (word)
-        snprintf(out, size, "%.*s%s%s", (int)(word - text), text, value, word + strlen(key));
-    else
-        snprintf(out, size, "%s", text);
-}
-
 double time_of(const char *names, const char *best_isa) {
     char name[BENCH_NAME], first[BENCH_NAME];
     const char *more = strstr(names, " + ");
@@ -119,34 +110,6 @@ double time_of(const char *names, const char *best_isa) {
 }
 
 /* ------------------------------------------------------------------------------------------------ tables */
-
-struct item {
-    char title[TEXT], value[BENCH_NAME];
-    size_t over; /* the number of another one, from 1 on; 0: none */
-};
-
-/* The items of a list; how many. An empty list has one without words. */
-static size_t read_items(const char *list, struct item items[MOST]) {
-    size_t count = 0;
-    for (bool more = true; more; count++) {
-        struct item *item = &items[count];
-        const size_t length = strcspn(list, ";"), title = strcspn(list, "=");
-        *item = (struct item){.over = 0};
-        if (title < length) {
-            snprintf(item->title, TEXT, "%.*s", (int)title - 1, list);
-            snprintf(item->value, BENCH_NAME, "%.*s", (int)(length - title) - 2, list + title + 2);
-        }
-        char *over = strstr(item->value, " / ");
-        if (over) {
-            item->over = (size_t)(over[3] - '0');
-            *over = 0;
-        }
-        more = list[length] == ';';
-        list += length + more;
-        list += strspn(list, " ");
-    }
-    return count;
-}
 
 static double time_in(const char *row, const char *first, const char *second, const char *best_isa) {
     char one[BENCH_NAME], both[BENCH_NAME];
@@ -180,14 +143,14 @@ static void print_head(const char *title, const struct item *columns, size_t cou
 
 /* Lines of which a row ran. Where the lines have the rows' names, columns stand for "$2" in them. */
 static void print_table(const struct table *table, const char *best_isa, FILE *out) {
-    struct item lines[MOST], others[MOST], columns[MOST];
+    struct item lines[MOST_ITEMS], others[MOST_ITEMS], columns[MOST_ITEMS];
     const size_t line_count = read_items(table->lines, lines);
     const size_t other_count = read_items(table->others ? table->others : "", others);
     const size_t count = read_items(table->columns, columns);
     bool headed = false;
     for (size_t line = 0; line < line_count; line++)
         for (size_t other = 0; other < other_count; other++) {
-            double times[MOST];
+            double times[MOST_ITEMS];
             bool any = false;
             for (size_t k = 0; k < count; k++) {
                 times[k] = table->others ? time_in(columns[k].value, lines[line].value, others[other].value, best_isa)
@@ -267,7 +230,7 @@ static void print_value(FILE *out, double value) {
 
 /* The table of the mixed scene on its side: one column for each series, under its title. */
 static void write_arcs(const char *best_isa, const char *folder) {
-    struct item curves[MOST], counts[MOST];
+    struct item curves[MOST_ITEMS], counts[MOST_ITEMS];
     const size_t curve_count = read_items(series, curves), count = read_items(sizes, counts);
     FILE *file = open_result(folder, "arcs.dat");
     fprintf(file, "n");

@@ -22,9 +22,6 @@ bool is_all_right(FILE *out);
  * two names with " + " between them the sum. */
 double time_of(const char *names, const char *best_isa);
 
-/* Copies `text` with `value` in the place of the word `key`, if it is there. */
-void replace_word(const char *text, const char *key, const char *value, char *out, size_t size);
-
 void print_targets(const char *best_isa, FILE *out);
 
 #endif

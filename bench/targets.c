@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench.h"
+#include "lists.h"
 #include "report.h"
 
 enum bound { AT_LEAST, AT_MOST };

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "families.h"
 #include "paper.h"
 #include "random.h"
 #include "store.h"
@@ -24,7 +23,7 @@ static const double much = 1e-3;
 /* A normal further than this from the exact one, in radians, is another one. */
 static const double another_normal = 0.1;
 
-struct tally {
+struct count {
     size_t false_hits, missed;
     size_t outcomes[4];                 /* of overlaps */
     size_t distance_wrong, depth_wrong; /* by more than `much` */
@@ -35,13 +34,7 @@ struct tally {
 
 struct counts {
     size_t pairs, apart, colliding, near;
-    struct tally tallies[METHODS];
-};
-
-struct family_shapes {
-    narc_shapes *shapes;
-    narc_methods *methods;
-    struct bound bounds[SHAPES];
+    struct count of[METHODS];
 };
 
 /* A chunk of pairs and all that is known of it. */
@@ -55,45 +48,24 @@ struct chunk {
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-static struct family_shapes make_shapes(enum family family, uint64_t *random) {
-    struct family_shapes made = {NULL, NULL, {{0, 0, 0, 0}}};
-    if (narc_create_shapes(NULL, &made.shapes) != NARC_OK)
-        fail("out of memory");
-    narc_error error;
+static struct shapes make_shapes(enum family family, uint64_t *random) {
+    struct shapes made = make_store(SHAPES);
     for (size_t k = 0; k < SHAPES; k++) {
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = make_shape(family, random, arcs);
-        must(narc_add_shape_at(made.shapes, (uint32_t)k, arcs, count, &error), &error);
-        made.bounds[k] = bound_of(arcs, count);
+        add_arcs(&made, arcs, count);
     }
-    must(narc_create_methods(made.shapes, NULL, &made.methods, &error), &error);
+    finish_store(&made);
     return made;
 }
 
-static void place_pairs(const struct family_shapes *made, struct chunk *chunk, uint64_t *random) {
+static void place_pairs(const struct shapes *made, struct chunk *chunk, uint64_t *random) {
     for (size_t k = 0; k < chunk->count; k++) {
         struct body *pair = &chunk->bodies[2 * k];
         pair[0] = random_body(random, random_below(random, SHAPES), 0);
         pair[1] = random_body(random, random_below(random, SHAPES), 0);
         put_in_boxes(made->shapes, &pair[0], &pair[1], random);
     }
-}
-
-static struct chunk make_chunk(size_t count) {
-    return (struct chunk){.count = count,
-                          .bodies = allocate(2 * count, sizeof(struct body)),
-                          .bits = allocate(NARC_BIT_WORDS(count), sizeof(uint64_t)),
-                          .outcomes = allocate(count, 1),
-                          .exact = allocate(count, sizeof(narc_contact)),
-                          .found = allocate(count, sizeof(narc_contact))};
-}
-
-static void free_chunk(struct chunk *chunk) {
-    free(chunk->bodies);
-    free(chunk->bits);
-    free(chunk->outcomes);
-    free(chunk->exact);
-    free(chunk->found);
 }
 
 /* ------------------------------------------------------------------------------------------------ counting */
@@ -103,20 +75,20 @@ struct scales {
     double rounding, size, slack;
 };
 
-static struct scales scales_of(const struct family_shapes *made, const struct body *pair) {
+static struct scales scales_of(const struct shapes *made, const struct body *pair) {
     const struct bound *a = &made->bounds[pair[0].shape], *b = &made->bounds[pair[1].shape];
     return (struct scales){rounding_of(made->bounds, pair), size_of(made->bounds, pair),
                            NARC_ROUNDING_ROOM * (a->extent + b->extent)};
 }
 
-static void tally_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct tally *tally) {
+static void count_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct count *count) {
     const double separation = chunk->exact[k].separation;
     const bool hit = chunk->bits[k / 64] >> k % 64 & 1;
-    tally->outcomes[chunk->outcomes[k]]++;
+    count->outcomes[chunk->outcomes[k]]++;
     if (fabs(separation) <= scales->rounding)
         return;
-    tally->false_hits += hit && separation > 0;
-    tally->missed += !hit && separation < 0;
+    count->false_hits += hit && separation > 0;
+    count->missed += !hit && separation < 0;
 }
 
 /* Is the separation told what narc_methods.h says of it? GJK: the gap along the normal, so at most the exact one, and
@@ -137,30 +109,30 @@ static bool is_as_promised(narc_method method, double exact, double told, uint8_
 }
 
 /* The separation of a pair, and the normal if both answers are that it collides. */
-static void tally_contact(const struct chunk *chunk, size_t k, narc_method method, const struct scales *scales,
-                          struct tally *tally) {
+static void count_contact(const struct chunk *chunk, size_t k, narc_method method, const struct scales *scales,
+                          struct count *count) {
     const double exact = chunk->exact[k].separation, told = chunk->found[k].separation;
     const double error = fabs(told - exact) / scales->size;
     const uint8_t outcome = chunk->outcomes[k];
-    tally->contact_outcomes[outcome]++;
-    tally->broken += !is_as_promised(method, exact, told, outcome, scales);
+    count->contact_outcomes[outcome]++;
+    count->broken += !is_as_promised(method, exact, told, outcome, scales);
     if (isinf(told)) /* no answer: counted as such */
         return;
     if (exact > 0) {
-        tally->distance_wrong += error > much;
-        tally->distance_worst = fmax(tally->distance_worst, error);
+        count->distance_wrong += error > much;
+        count->distance_worst = fmax(count->distance_worst, error);
         return;
     }
-    tally->depth_wrong += error > much;
-    tally->depth_worst = fmax(tally->depth_worst, error);
+    count->depth_wrong += error > much;
+    count->depth_worst = fmax(count->depth_worst, error);
     if (told >= 0)
         return;
     const narc_contact *a = &chunk->exact[k], *b = &chunk->found[k];
     const double dot = (double)a->normal_x * b->normal_x + (double)a->normal_y * b->normal_y;
-    tally->normal_wrong += dot < cos(another_normal);
+    count->normal_wrong += dot < cos(another_normal);
 }
 
-static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
+static void ask_method(const struct shapes *made, struct chunk *chunk, narc_method method, struct count *count) {
     const narc_bodies bodies = bodies_of(chunk->bodies, 2 * chunk->count);
     const narc_pairs pairs = neighbours(chunk->count);
     const narc_method_options options = {.method = method, .out_outcomes = chunk->outcomes};
@@ -170,14 +142,14 @@ static void ask_method(const struct family_shapes *made, struct chunk *chunk, na
     must(narc_find_overlaps_by(made->methods, &bodies, &pairs, &options, &query, chunk->bits, &error), &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
-        tally_overlap(chunk, k, &scales, tally);
+        count_overlap(chunk, k, &scales, count);
     }
     must(narc_find_contacts_by(made->methods, &bodies, &pairs, &options, &query, chunk->found, chunk->count, &found,
                                &error),
          &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
-        tally_contact(chunk, k, method, &scales, tally);
+        count_contact(chunk, k, method, &scales, count);
     }
 }
 
@@ -187,10 +159,15 @@ static bool takes(narc_method method, enum family family) {
 }
 
 static struct counts count_family(const struct settings *settings, enum family family, uint64_t *random) {
-    struct family_shapes made = make_shapes(family, random);
+    struct shapes made = make_shapes(family, random);
     struct counts counts = {0};
+    struct chunk chunk = {.bodies = allocate(2 * settings->chunk, sizeof(struct body)),
+                          .bits = allocate(NARC_BIT_WORDS(settings->chunk), sizeof(uint64_t)),
+                          .outcomes = allocate(settings->chunk, 1),
+                          .exact = allocate(settings->chunk, sizeof(narc_contact)),
+                          .found = allocate(settings->chunk, sizeof(narc_contact))};
     for (size_t left = settings->answer_pairs; left > 0;) {
-        struct chunk chunk = make_chunk(left < settings->chunk ? left : settings->chunk);
+        chunk.count = left < settings->chunk ? left : settings->chunk;
         place_pairs(&made, &chunk, random);
         separate(made.shapes, chunk.bodies, chunk.count, chunk.exact);
         for (size_t k = 0; k < chunk.count; k++) {
@@ -202,11 +179,15 @@ static struct counts count_family(const struct settings *settings, enum family f
         }
         for (size_t method = 0; method < METHODS; method++)
             if (takes(methods[method], family))
-                ask_method(&made, &chunk, methods[method], &counts.tallies[method]);
+                ask_method(&made, &chunk, methods[method], &counts.of[method]);
         counts.pairs += chunk.count;
         left -= chunk.count;
-        free_chunk(&chunk);
     }
+    free(chunk.bodies);
+    free(chunk.bits);
+    free(chunk.outcomes);
+    free(chunk.exact);
+    free(chunk.found);
     narc_destroy_methods(made.methods);
     narc_destroy_shapes(made.shapes);
     return counts;
@@ -229,15 +210,15 @@ static void print_overlaps(const struct counts *counts, FILE *out) {
     for (enum family family = 0; family < FAMILIES; family++)
         for (size_t method = 0; method < METHODS; method++) {
             const struct counts *c = &counts[family];
-            const struct tally *tally = &c->tallies[method];
+            const struct count *count = &c->of[method];
             if (!takes(methods[method], family))
                 continue;
-            fprintf(out, "| %s | %zu | %zu | %zu | %zu | %s |", family_name(family), c->pairs, c->apart, c->colliding,
+            fprintf(out, "| %s | %zu | %zu | %zu | %zu | %s |", family_names[family], c->pairs, c->apart, c->colliding,
                     c->near, narc_method_name(methods[method]));
-            print_part(out, tally->false_hits, c->apart);
-            print_part(out, tally->missed, c->colliding);
-            fprintf(out, " %zu | %zu | %zu |\n", tally->outcomes[NARC_OUTCOME_NONE],
-                    tally->outcomes[NARC_OUTCOME_LIMIT], tally->outcomes[NARC_OUTCOME_ROUNDING]);
+            print_part(out, count->false_hits, c->apart);
+            print_part(out, count->missed, c->colliding);
+            fprintf(out, " %zu | %zu | %zu |\n", count->outcomes[NARC_OUTCOME_NONE],
+                    count->outcomes[NARC_OUTCOME_LIMIT], count->outcomes[NARC_OUTCOME_ROUNDING]);
         }
 }
 
@@ -249,17 +230,17 @@ static void print_contacts(const struct counts *counts, FILE *out) {
     for (enum family family = 0; family < FAMILIES; family++)
         for (size_t method = 0; method < METHODS; method++) {
             const struct counts *c = &counts[family];
-            const struct tally *tally = &c->tallies[method];
+            const struct count *count = &c->of[method];
             if (!takes(methods[method], family))
                 continue;
-            fprintf(out, "| %s | %s |", family_name(family), narc_method_name(methods[method]));
-            print_part(out, tally->distance_wrong, c->apart);
-            fprintf(out, " %.2g |", tally->distance_worst);
-            print_part(out, tally->depth_wrong, c->colliding);
-            fprintf(out, " %.2g |", tally->depth_worst);
-            print_part(out, tally->normal_wrong, c->colliding);
-            fprintf(out, " %zu | %zu | %zu |\n", tally->contact_outcomes[NARC_OUTCOME_NONE],
-                    tally->contact_outcomes[NARC_OUTCOME_LIMIT], tally->contact_outcomes[NARC_OUTCOME_ROUNDING]);
+            fprintf(out, "| %s | %s |", family_names[family], narc_method_name(methods[method]));
+            print_part(out, count->distance_wrong, c->apart);
+            fprintf(out, " %.2g |", count->distance_worst);
+            print_part(out, count->depth_wrong, c->colliding);
+            fprintf(out, " %.2g |", count->depth_worst);
+            print_part(out, count->normal_wrong, c->colliding);
+            fprintf(out, " %zu | %zu | %zu |\n", count->contact_outcomes[NARC_OUTCOME_NONE],
+                    count->contact_outcomes[NARC_OUTCOME_LIMIT], count->contact_outcomes[NARC_OUTCOME_ROUNDING]);
         }
 }
 
@@ -268,11 +249,11 @@ size_t print_answers(const struct settings *settings, uint64_t *random, FILE *ou
     size_t broken = 0;
     for (enum family family = 0; family < FAMILIES; family++) {
         char what[64];
-        snprintf(what, sizeof what, "wrong answers: %s", family_name(family));
+        snprintf(what, sizeof what, "wrong answers: %s", family_names[family]);
         begin_step(what);
         counts[family] = count_family(settings, family, random);
         for (size_t method = 0; method < METHODS; method++)
-            broken += counts[family].tallies[method].broken;
+            broken += counts[family].of[method].broken;
     }
     print_overlaps(counts, out);
     print_contacts(counts, out);

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * situations.c - templates of one n, and the two scenes of the paper: pairs that never collide, pairs that always do.
+ * scenes.c - stores of shapes; templates of one n, and the two scenes of the paper: pairs that never collide, pairs that always do.
  *
  * Both bodies of a pair have random shapes and rotations; the second stands in a random direction from the first. How
  * far depends on the distance at which the two touch.
  */
-#include "situations.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "outlines.h"
+#include "paper.h"
 #include "random.h"
 
 /* A gap, or the room for one, that is less than this is too close to rounding to be counted on. */
@@ -22,47 +20,43 @@ static const double least_part = 1e-3;
 
 enum { ROUNDS = 100 };
 
+const char *const situation_names[SITUATIONS] = {"apart", "colliding"};
+
 /* ------------------------------------------------------------------------------------------------ templates */
 
-struct bound bound_of(const narc_arc *arcs, size_t count) {
-    narc_circle circle = {0};
-    struct bound bound;
-    if (!narc_compute_bounding_circle(arcs, count, &circle))
-        fail("a shape without a bounding circle");
-    bound = (struct bound){circle.x, circle.y, circle.radius, 0};
-    for (size_t k = 0; k < count; k++)
-        bound.extent = fmax(bound.extent, hypot(arcs[k].center_x, arcs[k].center_y) + arcs[k].radius);
-    return bound;
+struct shapes make_store(size_t capacity) {
+    struct shapes shapes = {.bounds = allocate(capacity, sizeof *shapes.bounds)};
+    must(narc_create_shapes(NULL, &shapes.shapes), NULL);
+    return shapes;
 }
 
-static void add_template(struct templates *templates, enum kind kind, size_t index, const narc_arc *arcs) {
+void add_arcs(struct shapes *shapes, const narc_arc *arcs, size_t count) {
+    narc_circle circle = {0};
     narc_error error;
-    must(narc_add_shape_at(templates->shapes[kind], (uint32_t)index, arcs, templates->n, &error), &error);
-    templates->bounds[kind][index] = bound_of(arcs, templates->n);
+    must(narc_add_shape_at(shapes->shapes, (uint32_t)shapes->count, arcs, count, &error), &error);
+    if (!narc_compute_bounding_circle(arcs, count, &circle))
+        fail("a shape without a bounding circle");
+    struct bound *bound = &shapes->bounds[shapes->count++];
+    *bound = (struct bound){circle.x, circle.y, circle.radius, 0};
+    for (size_t k = 0; k < count; k++)
+        bound->extent = fmax(bound->extent, hypot(arcs[k].center_x, arcs[k].center_y) + arcs[k].radius);
+}
+
+void finish_store(struct shapes *shapes) {
+    narc_error error;
+    must(narc_create_methods(shapes->shapes, NULL, &shapes->methods, &error), &error);
 }
 
 struct templates make_templates(size_t n, size_t count, uint64_t *random) {
-    struct templates templates = {.n = n, .count = count};
-    for (enum kind kind = 0; kind < KINDS; kind++) {
-        templates.bounds[kind] = allocate(count, sizeof *templates.bounds[kind]);
-        if (narc_create_shapes(NULL, &templates.shapes[kind]) != NARC_OK)
-            fail("out of memory");
-    }
+    struct templates templates = {n, {make_store(count), make_store(count)}};
     for (size_t k = 0; k < count; k++) {
-        const struct smooth outline = random_smooth(random);
-        double junctions[NARC_MAX_ARCS + 1];
-        narc_arc arcs[NARC_MAX_ARCS];
-        do
-            random_junctions(random, n, junctions);
-        while (!fit_n_arc(&outline, junctions, n, arcs));
-        add_template(&templates, KIND_ARC, k, arcs);
-        fit_n_gon(&outline, junctions, n, arcs);
-        add_template(&templates, KIND_GON, k, arcs);
+        narc_arc arcs[NARC_MAX_ARCS], gon[NARC_MAX_ARCS];
+        make_twins(random, n, arcs, gon);
+        add_arcs(&templates.kinds[KIND_ARC], arcs, n);
+        add_arcs(&templates.kinds[KIND_GON], gon, n);
     }
-    for (enum kind kind = 0; kind < KINDS; kind++) {
-        narc_error error;
-        must(narc_create_methods(templates.shapes[kind], NULL, &templates.methods[kind], &error), &error);
-    }
+    finish_store(&templates.kinds[KIND_ARC]);
+    finish_store(&templates.kinds[KIND_GON]);
     return templates;
 }
 
@@ -89,10 +83,10 @@ static double circles_touch(const struct bound *bounds, const struct body *pair,
 
 static void draw(const struct templates *templates, uint64_t *random, struct body *pair, struct place *place) {
     place->direction = random_direction(random);
-    pair[0] = random_body(random, random_below(random, templates->count), HALF_SQUARE);
-    pair[1] = random_body(random, random_below(random, templates->count), 0);
+    pair[0] = random_body(random, random_below(random, templates->kinds[0].count), HALF_SQUARE);
+    pair[1] = random_body(random, random_below(random, templates->kinds[0].count), 0);
     for (enum kind kind = 0; kind < KINDS; kind++)
-        place->circles[kind] = circles_touch(templates->bounds[kind], pair, place->direction);
+        place->circles[kind] = circles_touch(templates->kinds[kind].bounds, pair, place->direction);
 }
 
 /* The distances at which the pairs touch, as either kind. */
@@ -104,7 +98,7 @@ static void find_places(const struct templates *templates, struct body *bodies, 
             directions[k] = places[k].direction;
             distances[k] = places[k].circles[kind] * 1.001;
         }
-        find_touching(templates->shapes[kind], bodies, directions, count, distances);
+        find_touching(templates->kinds[kind].shapes, bodies, directions, count, distances);
         for (size_t k = 0; k < count; k++)
             places[k].touch[kind] = distances[k];
     }
@@ -133,7 +127,7 @@ static bool put_colliding(struct body *pair, const struct place *place, uint64_t
 static void check_claims(const struct scene *scene, const struct body *bodies, size_t count, narc_contact *contacts,
                          bool *bad) {
     for (enum kind kind = 0; kind < KINDS; kind++) {
-        separate(scene->templates->shapes[kind], bodies, count, contacts);
+        separate(scene->templates->kinds[kind].shapes, bodies, count, contacts);
         for (size_t k = 0; k < count; k++)
             bad[k] |= (contacts[k].separation < 0) != (scene->situation == COLLIDING);
     }
@@ -187,19 +181,4 @@ double rounding_of(const struct bound *bounds, const struct body *pair) {
 
 double size_of(const struct bound *bounds, const struct body *pair) {
     return bounds[pair[0].shape].radius + bounds[pair[1].shape].radius;
-}
-
-struct spread spread_of(const struct scene *scene) {
-    const size_t count = scene->pair_count;
-    narc_contact *contacts = allocate(count, sizeof *contacts);
-    double *sizes = allocate(count, sizeof *sizes);
-    separate(scene->templates->shapes[KIND_ARC], scene->bodies, count, contacts);
-    for (size_t k = 0; k < count; k++)
-        sizes[k] =
-            fabs((double)contacts[k].separation) / size_of(scene->templates->bounds[KIND_ARC], &scene->bodies[2 * k]);
-    const struct spread spread = {quantile(sizes, count, 0), quantile(sizes, count, 0.25), quantile(sizes, count, 0.5),
-                                  quantile(sizes, count, 0.75), quantile(sizes, count, 1)};
-    free(sizes);
-    free(contacts);
-    return spread;
 }
