@@ -53,17 +53,17 @@ static const struct table tables[] = {
      "2,000 bodies = step/n8/pile-2000/$1; 30,000 = step/n8/pile/$1", 1},
     {"ns a pair, mixed scene, 4,096 shapes, n =", series, NULL, sizes, 1},
     {"ns a ray | bodies", "a fan of 1,080 = ray-fan; long = ray-long; short = ray-short", SCENES,
-     "8 arcs = $1/n8/$2/BEST; 8-gons = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1 / 2;"
+     "8 arcs = $1/n8/$2/BEST; 8-gons = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1;"
      "Box2D (times 8-gons) = $1/gons8/$2/box2d / 2; Chipmunk = $1/gons8/$2/chipmunk / 2",
      1},
     {"ns a region | bodies", "that finds 48 = region-48; that finds 3 = region-3", SCENES,
-     "batch = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1 / 1; 2 threads = $1/gons8/$2/BEST/2threads / 1;"
+     "batch = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1; 2 threads = $1/gons8/$2/BEST/2threads / 1;"
      "Box2D (times batch) = $1/gons8/$2/box2d / 1; Chipmunk = $1/gons8/$2/chipmunk / 1; GEOS = $1/gons8/$2/geos / 1",
      1},
     {"ns a point: the nearest body", SCENES, "",
-     "8-gons = nearest/gons8/$1/BEST; one by one = nearest/gons8/$1/BEST/by1 / 1;"
+     "8-gons = nearest/gons8/$1/BEST; one by one = nearest/gons8/$1/BEST/by1;"
      "Chipmunk (times 8-gons) = nearest/gons8/$1/chipmunk / 1; GEOS = nearest/gons8/$1/geos / 1;"
-     "8 arcs = nearest/n8/$1/BEST; one by one = nearest/n8/$1/BEST/by1 / 5;"
+     "8 arcs = nearest/n8/$1/BEST; one by one = nearest/n8/$1/BEST/by1;"
      "2 threads = nearest/n8/$1/BEST/2threads / 5; inside = nearest-inside/n8/$1/BEST / 5;"
      "distance by pair = distance/n8/$1/BEST; of one body = distance-of-one/n8/$1/BEST",
      1},
@@ -71,7 +71,7 @@ static const struct table tables[] = {
      "straight = straight; straight, anywhere = straight-anywhere; turning by up to 1 = turning;"
      "turning by up to 1, anywhere = turning-anywhere; turning by up to 6 = turning-6",
      "contact = impact-contact/$1/flights/BEST; cast (times contact) = impact-$2/$1/flights/BEST / 1;"
-     "one by one = impact-$2/$1/flights/BEST/by1 / 2; Box2D (times cast) = impact-$2/$1/flights/box2d / 2",
+     "one by one = impact-$2/$1/flights/BEST/by1; Box2D (times cast) = impact-$2/$1/flights/box2d / 2",
      1},
     {"ns a box of an index", SCENES, "",
      "built = index-good/gons8/$1/BEST; 2 threads = index-good/gons8/$1/BEST/2threads / 1;"

@@ -261,34 +261,43 @@ static void print_span(const struct claim *claim, struct span span, FILE *out) {
     fprintf(out, isinf(span.least) ? " none" : " %.2f", span.least);
     if (span.most != span.least)
         fprintf(out, " to %.2f", span.most);
-    fprintf(out, ", %s |", holds(claim, span) ? "holds" : "**does not hold**");
+    fprintf(out, ", %s |", holds(claim, span) ? "yes" : "**no**");
 }
 
-/* One explanation; where there are two the scalar one's. */
-static void print_line(const struct paper *paper, const struct claim *claim, const struct item *line, FILE *out) {
+/* The first line of a claim says what it is. One explanation; where there are two the scalar one's; each once. */
+static void print_line(const struct paper *paper, const struct claim *claim, const struct item *line, bool first,
+                       const char **explained, FILE *out) {
     const double low = claim->range->low, high = claim->range->high;
     const char *reason = "";
-    fprintf(out, "| %s | %s%s%s | %s | ", claim->section, claim->text, *line->title ? ": " : "", line->title,
-            claim->measure);
-    if (isinf(high))
-        fprintf(out, low == 0 ? "above %.3g |" : "at least %.3g |", low);
-    else if (isinf(low) || low == 0)
-        fprintf(out, "at most %.2g |", high);
+    if (first)
+        fprintf(out, "| %s | %s%s%s | %s |", claim->section, claim->text, *line->title ? ": " : "", line->title,
+                claim->measure);
     else
-        fprintf(out, "%.2g to %.3g |", low, high);
+        fprintf(out, "| | %s | |", line->title);
+    if (!first)
+        fprintf(out, " |");
+    else if (isinf(high))
+        fprintf(out, low == 0 ? " above %.3g |" : " at least %.3g |", low);
+    else if (isinf(low) || low == 0)
+        fprintf(out, " at most %.2g |", high);
+    else
+        fprintf(out, " %.2g to %.3g |", low, high);
     for (int isa = 0; isa < 2; isa++) {
         const struct span span = find_span(&paper->settings, line->value, isa ? "scalar" : paper->best);
         print_span(claim, span, out);
         if (!isnan(span.least) && !holds(claim, span))
             reason = span.most > high ? claim->above : claim->below;
     }
-    fprintf(out, " %s", reason);
-    if (*reason && claim->evidence) {
-        struct item evidence[MOST_ITEMS];
-        char first[ITEM_VALUE], second[ITEM_VALUE];
-        read_items(claim->evidence, evidence);
-        sscanf(evidence->value, "%95s %95s", first, second);
-        fprintf(out, " (%s: %.2f, %.2f.)", evidence->title, value_of(first), value_of(second));
+    if (*reason && reason != *explained) {
+        fprintf(out, " %s", reason);
+        if (claim->evidence) {
+            struct item evidence[MOST_ITEMS];
+            char one[ITEM_VALUE], other[ITEM_VALUE];
+            read_items(claim->evidence, evidence);
+            sscanf(evidence->value, "%95s %95s", one, other);
+            fprintf(out, " (%s: %.2f, %.2f.)", evidence->title, value_of(one), value_of(other));
+        }
+        *explained = reason;
     }
     fprintf(out, " |\n");
 }
@@ -302,8 +311,9 @@ void print_claims(const struct paper *paper, FILE *out) {
             paper->best);
     for (size_t k = 0; k < sizeof claims / sizeof claims[0]; k++) {
         struct item lines[MOST_ITEMS];
+        const char *explained = "";
         const size_t count = read_items(claims[k].lines, lines);
         for (size_t line = 0; line < count; line++)
-            print_line(paper, &claims[k], &lines[line], out);
+            print_line(paper, &claims[k], &lines[line], line == 0, &explained, out);
     }
 }

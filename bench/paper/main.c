@@ -40,8 +40,9 @@ void begin_step(const char *what) {
 }
 
 int main(int argc, char **argv) {
-    static struct paper paper = {.settings = full};
+    static struct paper paper;
     uint64_t random = 1, answers_random = 2;
+    paper.settings = full;
     paper.settings.folder = "out";
     for (int k = 1; k < argc; k++) {
         const char *folder = option_value(argv[k], "--out=");
