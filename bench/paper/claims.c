@@ -188,7 +188,7 @@ static void put_combined(const struct settings *settings, const char *isa) {
 }
 
 /* The exponent of a power law: the slope of the least-squares line through the logarithms, n from 8 on. */
-double exponent_of(const struct settings *settings, const char *pattern, const char *isa) {
+static double exponent_of(const struct settings *settings, const char *pattern, const char *isa) {
     double count = 0, x_sum = 0, y_sum = 0, xx_sum = 0, xy_sum = 0;
     for (size_t size = 0; size < settings->size_count; size++) {
         const double x = log((double)settings->sizes[size]);

@@ -59,8 +59,6 @@ struct scene {
     enum situation situation;
     size_t pair_count;
     struct body *bodies;
-    size_t drawn_again; /* pairs that had no room between touching and where their circles come apart */
-    size_t left_out;    /* placed pairs that were not what the scene claims, as either kind: replaced by others */
 };
 
 struct templates make_templates(size_t n, size_t count, uint64_t *random);
@@ -122,9 +120,6 @@ void count_bytes(const struct paper *paper);
 void begin_step(const char *what);
 
 /* ------------------------------------------------------------------------------------------------ what is written */
-
-/* The exponent of n of the numbers of a name, from n = 8 on. NaN for fewer than two sizes. */
-double exponent_of(const struct settings *settings, const char *pattern, const char *isa);
 
 void print_claims(const struct paper *paper, FILE *out);
 void print_tables(const struct paper *paper, FILE *out);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * scenes.c - stores of shapes; templates of one n, and the two scenes of the paper: pairs that never collide, pairs that always do.
+ * scenes.c - stores of shapes; templates of one n, and the two scenes of the paper: pairs that never collide, pairs that
+ * always do.
  *
  * Both bodies of a pair have random shapes and rotations; the second stands in a random direction from the first. How
  * far depends on the distance at which the two touch.
@@ -60,16 +61,16 @@ struct templates make_templates(size_t n, size_t count, uint64_t *random) {
     return templates;
 }
 
-/* ------------------------------------------------------------------------------------------------ placing */
+/* ------------------------------------------------------------------------------------------------ pairs */
 
 /* A pair that is being placed: the direction from A to B, and for either kind the distance at which the two touch and
  * the one at which their bounding circles do. */
-struct place {
+struct spacing {
     struct direction direction;
     double touch[KINDS], circles[KINDS];
 };
 
-/* With c the vector between the circles' centres when both bodies are in one place: |c + t d| = sum of the radii. */
+/* With c the vector between the circles' centres when both bodies are at one position: |c + t d| = sum of the radii. */
 static double circles_touch(const struct bound *bounds, const struct body *pair, struct direction d) {
     const struct bound *a = &bounds[pair[0].shape], *b = &bounds[pair[1].shape];
     const double x = (double)pair[1].cosine * b->x - (double)pair[1].sine * b->y - (double)pair[0].cosine * a->x +
@@ -81,26 +82,27 @@ static double circles_touch(const struct bound *bounds, const struct body *pair,
     return sqrt(sum * sum - across * across) - along;
 }
 
-static void draw(const struct templates *templates, uint64_t *random, struct body *pair, struct place *place) {
-    place->direction = random_direction(random);
+static void draw(const struct templates *templates, uint64_t *random, struct body *pair, struct spacing *spacing) {
+    spacing->direction = random_direction(random);
     pair[0] = random_body(random, random_below(random, templates->kinds[0].count), HALF_SQUARE);
     pair[1] = random_body(random, random_below(random, templates->kinds[0].count), 0);
     for (enum kind kind = 0; kind < KINDS; kind++)
-        place->circles[kind] = circles_touch(templates->kinds[kind].bounds, pair, place->direction);
+        spacing->circles[kind] = circles_touch(templates->kinds[kind].bounds, pair, spacing->direction);
 }
 
 /* The distances at which the pairs touch, as either kind. */
-static void find_places(const struct templates *templates, struct body *bodies, struct place *places, size_t count) {
+static void find_spacings(const struct templates *templates, struct body *bodies, struct spacing *spacings,
+                          size_t count) {
     struct direction *directions = allocate(count, sizeof *directions);
     double *distances = allocate(count, sizeof *distances);
     for (enum kind kind = 0; kind < KINDS; kind++) {
         for (size_t k = 0; k < count; k++) {
-            directions[k] = places[k].direction;
-            distances[k] = places[k].circles[kind] * 1.001;
+            directions[k] = spacings[k].direction;
+            distances[k] = spacings[k].circles[kind] * 1.001;
         }
         find_touching(templates->kinds[kind].shapes, bodies, directions, count, distances);
         for (size_t k = 0; k < count; k++)
-            places[k].touch[kind] = distances[k];
+            spacings[k].touch[kind] = distances[k];
     }
     free(directions);
     free(distances);
@@ -108,18 +110,18 @@ static void find_places(const struct templates *templates, struct body *bodies, 
 
 /* Pairs that are apart: anywhere, equally likely, between where they touch and where the circles of either kind come
  * apart. False where there is no room for it. */
-static bool put_apart(struct body *pair, const struct place *place, uint64_t *random) {
-    const double from = fmax(place->touch[KIND_ARC], place->touch[KIND_GON]) + least_gap;
-    const double to = fmin(place->circles[KIND_ARC], place->circles[KIND_GON]);
+static bool put_apart(struct body *pair, const struct spacing *spacing, uint64_t *random) {
+    const double from = fmax(spacing->touch[KIND_ARC], spacing->touch[KIND_GON]) + least_gap;
+    const double to = fmin(spacing->circles[KIND_ARC], spacing->circles[KIND_GON]);
     if (to < from + least_gap)
         return false;
-    put_second(pair, place->direction, random_between(random, from, to));
+    put_second(pair, spacing->direction, random_between(random, from, to));
     return true;
 }
 
-static bool put_colliding(struct body *pair, const struct place *place, uint64_t *random) {
-    const double touch = fmin(place->touch[KIND_ARC], place->touch[KIND_GON]);
-    put_second(pair, place->direction, touch * (1 - pow(least_part, random_unit(random))));
+static bool put_colliding(struct body *pair, const struct spacing *spacing, uint64_t *random) {
+    const double touch = fmin(spacing->touch[KIND_ARC], spacing->touch[KIND_GON]);
+    put_second(pair, spacing->direction, touch * (1 - pow(least_part, random_unit(random))));
     return true;
 }
 
@@ -133,42 +135,41 @@ static void check_claims(const struct scene *scene, const struct body *bodies, s
     }
 }
 
-/* Draws `count` pairs, places them, and keeps those that are good, at the front; how many is returned. */
-static size_t place_round(struct scene *scene, struct body *bodies, size_t count, uint64_t *random) {
-    struct place *places = allocate(count, sizeof *places);
+/* Draws `count` pairs, puts them, and keeps those that are good, at the front; how many is returned. */
+static size_t fill_round(struct scene *scene, struct body *bodies, size_t count, uint64_t *random) {
+    struct spacing *spacings = allocate(count, sizeof *spacings);
     bool *bad = allocate(count, sizeof *bad);
     narc_contact *contacts = allocate(count, sizeof *contacts);
     size_t kept = 0;
     for (size_t k = 0; k < count; k++)
-        draw(scene->templates, random, &bodies[2 * k], &places[k]);
-    find_places(scene->templates, bodies, places, count);
+        draw(scene->templates, random, &bodies[2 * k], &spacings[k]);
+    find_spacings(scene->templates, bodies, spacings, count);
     for (size_t k = 0; k < count; k++) {
         struct body *pair = &bodies[2 * k];
-        if (scene->situation == APART ? put_apart(pair, &places[k], random) : put_colliding(pair, &places[k], random)) {
+        if (scene->situation == APART ? put_apart(pair, &spacings[k], random)
+                                      : put_colliding(pair, &spacings[k], random)) {
             memmove(&bodies[2 * kept], pair, 2 * sizeof *pair);
             kept++;
         }
     }
-    scene->drawn_again += count - kept;
     count = kept;
     check_claims(scene, bodies, count, contacts, bad);
     kept = 0;
     for (size_t k = 0; k < count; k++)
         if (!bad[k])
             memmove(&bodies[2 * kept++], &bodies[2 * k], 2 * sizeof *bodies);
-    scene->left_out += count - kept;
     free(contacts);
     free(bad);
-    free(places);
+    free(spacings);
     return kept;
 }
 
 struct scene make_scene(const struct templates *templates, enum situation situation, size_t pair_count,
                         uint64_t *random) {
-    struct scene scene = {templates, situation, pair_count, allocate(2 * pair_count, sizeof(struct body)), 0, 0};
+    struct scene scene = {templates, situation, pair_count, allocate(2 * pair_count, sizeof(struct body))};
     size_t count = 0;
     for (int round = 0; round < ROUNDS && count < pair_count; round++)
-        count += place_round(&scene, &scene.bodies[2 * count], pair_count - count, random);
+        count += fill_round(&scene, &scene.bodies[2 * count], pair_count - count, random);
     if (count < pair_count)
         fail("a scene of n = %zu did not fill up", templates->n);
     return scene;

@@ -116,30 +116,6 @@ static void print_grid(const struct paper *paper, const struct grid *grid, FILE 
     print_lines(paper, grid, out);
 }
 
-static void print_exponents(const struct paper *paper, FILE *out) {
-    static const char *const tests[] = {"no collision", "collision, contact", "collision, overlap"};
-    struct item lines[MOST_ITEMS];
-    char pattern[ITEM_VALUE];
-    const size_t count = read_items(ALGORITHMS("COL"), lines);
-    fprintf(out, "\n### How the time grows: the exponent of n, fitted from n = 8 on\n\n| |");
-    for (int test = 0; test < 3; test++)
-        fprintf(out, " %s, %s | %s, scalar |", tests[test], paper->best, tests[test]);
-    fprintf(out, "\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (size_t line = 0; line < count; line++) {
-        fprintf(out, "| %s |", lines[line].title);
-        for (int test = 0; test < 3; test++) {
-            replace_word(lines[line].value, "COL",
-                         test == 0   ? "apart"
-                         : test == 1 ? "contact"
-                                     : "overlap",
-                         pattern, sizeof pattern);
-            fprintf(out, " %.2f | %.2f |", exponent_of(&paper->settings, pattern, paper->best),
-                    exponent_of(&paper->settings, pattern, "scalar"));
-        }
-        fputc('\n', out);
-    }
-}
-
 /* Of all methods and n together, the scene's answers. */
 static void print_wrong(const struct paper *paper, FILE *out) {
     static const char *const names[] = {"no collision", "collision, contact", "collision, overlap"};
@@ -158,31 +134,6 @@ static void print_wrong(const struct paper *paper, FILE *out) {
         }
     }
     fprintf(out, " the others none.\n");
-}
-
-/* What was placed where: distances (apart) or depths (colliding) of n-arcs, by the sum of both bounding radii. */
-static void print_scenes(const struct paper *paper, FILE *out) {
-    const size_t count = paper->settings.pair_count;
-    narc_contact *contacts = allocate(count, sizeof *contacts);
-    double *sizes = allocate(count, sizeof *sizes);
-    fprintf(out, "\n### The scenes: distances and depths of the n-arcs, in parts of the sum of both bounding radii\n\n"
-                 "| n | scene | least | quartile | median | quartile | most | no room | left out |\n"
-                 "| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        for (enum situation situation = 0; situation < SITUATIONS; situation++) {
-            const struct scene *scene = &paper->scenes[size][situation];
-            const struct shapes *arcs = &scene->templates->kinds[KIND_ARC];
-            separate(arcs->shapes, scene->bodies, count, contacts);
-            for (size_t k = 0; k < count; k++)
-                sizes[k] = fabs((double)contacts[k].separation) / size_of(arcs->bounds, &scene->bodies[2 * k]);
-            fprintf(out, "| %zu | %s |", scene->templates->n,
-                    situation == APART ? "no collision: distance" : "collision: depth");
-            for (int quarter = 0; quarter <= 4; quarter++)
-                fprintf(out, " %.4f |", quantile(sizes, count, quarter / 4.0));
-            fprintf(out, " %zu | %zu |\n", scene->drawn_again, scene->left_out);
-        }
-    free(sizes);
-    free(contacts);
 }
 
 /* Every method on every instruction set that the machine has. */
@@ -237,8 +188,6 @@ void print_tables(const struct paper *paper, FILE *out) {
     for (size_t k = 0; k < sizeof times / sizeof times[0]; k++)
         print_grid(paper, &times[k], out);
     print_wrong(paper, out);
-    print_exponents(paper, out);
-    print_scenes(paper, out);
     print_lanes(out);
     print_thresholds(paper,
                      (struct grid){"GJK with EPA, collision scene, by threshold", "µs for 1,000 checks", thresholds,
