@@ -87,13 +87,6 @@ static void run_step(struct row *row) {
     row->bench.seconds = 1e-9 * (now() - start);
 }
 
-static size_t add_keys(const narc_pairs *pairs, uint64_t first_a, uint64_t first_b, uint64_t *keys, size_t count) {
-    const uint32_t *a = pairs->a.base, *b = pairs->b.base;
-    for (size_t k = 0; k < pairs->count; k++)
-        keys[count++] = (first_a + a[k]) << 32 | (first_b + b[k]);
-    return count;
-}
-
 /* Both find the same pairs, but that kept boxes are larger, and not the same in both. */
 static double count_step_differences(struct moving *m, const narc_shapes *shapes) {
     step_all(m, shapes, 0);

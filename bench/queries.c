@@ -15,20 +15,16 @@
 
 enum { FAN = 1080, RAYS = 10 * FAN, REGIONS = 10000, POINTS = 20000, MOST_FOUND = 200 /* of a region, in the mean */ };
 
-/* Answers of one way to ask. */
-struct answers {
+struct questions {
+    struct asked asked;
+    narc_points points;
+    uint32_t *bodies; /* of points that are asked about one each */
+
+    /* Answers, as far as the question has them. */
     narc_ray_hit *hits;
     narc_distance *distances;
     float *floats; /* a peer's */
     uint64_t *keys;
-    size_t key_count;
-};
-
-struct questions {
-    struct asked asked;
-    struct answers answers;
-    narc_points points;
-    uint32_t *bodies; /* of points that are asked about one each */
 };
 
 enum ray_kind { RAY_FAN, RAY_LONG, RAY_SHORT };
@@ -93,9 +89,9 @@ static void cast_rays(const struct row *row, size_t batch, narc_ray_hit *out) {
 static void run_rays(struct row *row) {
     struct questions *q = row->state;
     if (row->peer)
-        row->peer->ask(row->peer_state, &q->asked, q->answers.floats);
+        row->peer->ask(row->peer_state, &q->asked, q->floats);
     else
-        cast_rays(row, row->batch ? row->batch : row->question->what == RAY_FAN ? FAN : RAYS, q->answers.hits);
+        cast_rays(row, row->batch ? row->batch : row->question->what == RAY_FAN ? FAN : RAYS, q->hits);
 }
 
 /* Peers may differ in what grazes, and Chipmunk tells 0 of a ray that starts in a body; this library has the same answers
@@ -105,15 +101,15 @@ static void prepare_rays(struct row *row) {
     const size_t count = q->asked.count;
     narc_ray_hit *expected = allocate(count, sizeof *expected);
     q->asked.rays = make_rays(row->scene->half, (enum ray_kind)row->question->what, count);
-    q->answers =
-        (struct answers){.hits = allocate(count, sizeof(narc_ray_hit)), .floats = allocate(count, sizeof(float))};
+    q->hits = allocate(count, sizeof *q->hits);
+    q->floats = allocate(count, sizeof *q->floats);
     cast_rays(row, RAYS, expected);
     run_rays(row);
     for (size_t k = 0; k < count; k++) {
         const float fraction = expected[k].count ? expected[k].fraction : 2;
-        const narc_ray_hit *hit = &q->answers.hits[k];
+        const narc_ray_hit *hit = &q->hits[k];
         row->bench.hits += expected[k].count / (double)count;
-        const float other = q->answers.floats[k];
+        const float other = q->floats[k];
         if (row->peer)
             row->bench.wrong += other > 0 && fabs((double)(fraction - other)) > 1e-3;
         else
@@ -140,24 +136,11 @@ static const narc_box *make_regions(const struct scene *scene, double found, siz
     return regions;
 }
 
-static void run_regions(struct row *row) {
-    struct questions *q = row->state;
-    const narc_index_query query = {.workers = row->threads > 1 ? &row->workers : NULL};
-    narc_pairs pairs;
-    narc_error error;
-    if (row->peer)
-        q->answers.key_count = row->peer->ask(row->peer_state, &q->asked, q->answers.keys);
-    for (size_t k = 0, batch; !row->peer && k < q->asked.count; k += batch) {
-        batch = batch_of(row, k);
-        must(narc_query_index(row->scene->index, q->asked.regions + k, batch, &query, &pairs, &error), &error);
-    }
-}
-
-static size_t list_keys(const narc_pairs *pairs, uint64_t *keys) {
+size_t add_keys(const narc_pairs *pairs, uint64_t first_a, uint64_t first_b, uint64_t *keys, size_t count) {
     const uint32_t *a = pairs->a.base, *b = pairs->b.base;
     for (size_t k = 0; k < pairs->count; k++)
-        keys[k] = (uint64_t)a[k] << 32 | b[k];
-    return pairs->count;
+        keys[count++] = (first_a + a[k]) << 32 | (first_b + b[k]);
+    return count;
 }
 
 static int compare_keys(const void *left, const void *right) {
@@ -178,31 +161,45 @@ size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, siz
     return differences + (left_count - l) + (right_count - r);
 }
 
+/* So many regions in a call. Keys are kept if they are wanted; returns how many. */
+static size_t ask_index(const struct row *row, size_t batch, uint64_t *keys) {
+    const struct questions *q = row->state;
+    const narc_index_query query = {.workers = row->threads > 1 ? &row->workers : NULL};
+    size_t count = 0;
+    for (size_t k = 0; k < q->asked.count; k += batch) {
+        const size_t part = batch < q->asked.count - k ? batch : q->asked.count - k;
+        narc_pairs pairs;
+        narc_error error;
+        must(narc_query_index(row->scene->index, q->asked.regions + k, part, &query, &pairs, &error), &error);
+        if (keys)
+            count = add_keys(&pairs, k, 0, keys, count);
+    }
+    return count;
+}
+
+static void run_regions(struct row *row) {
+    struct questions *q = row->state;
+    if (row->peer)
+        row->peer->ask(row->peer_state, &q->asked, q->keys);
+    else
+        ask_index(row, row->batch ? row->batch : q->asked.count, NULL);
+}
+
 /* What a peer finds, and what this library does one by one, against a batch of it. */
 static void prepare_regions(struct row *row) {
     struct questions *q = begin(row, REGIONS);
     const size_t count = q->asked.count;
     uint64_t *expected = allocate(MOST_FOUND * count, sizeof *expected);
-    narc_pairs pairs;
-    narc_error error;
     q->asked.regions = make_regions(row->scene, row->question->what, count);
-    q->answers.keys = allocate(MOST_FOUND * count, sizeof *q->answers.keys);
-    must(narc_query_index(row->scene->index, q->asked.regions, count, NULL, &pairs, &error), &error);
-    const size_t expected_count = list_keys(&pairs, expected);
+    q->keys = allocate(MOST_FOUND * count, sizeof *q->keys);
+    const size_t expected_count = ask_index(row, count, expected);
+    const size_t found = row->peer ? row->peer->ask(row->peer_state, &q->asked, q->keys)
+                                   : ask_index(row, row->batch ? row->batch : count, q->keys);
     row->bench.hits = (double)expected_count / (double)count;
-    run_regions(row);
-    for (size_t k = 0, batch; !row->peer && k < count; k += batch) {
-        batch = batch_of(row, k);
-        must(narc_query_index(row->scene->index, q->asked.regions + k, batch, NULL, &pairs, &error), &error);
-        const size_t first = q->answers.key_count;
-        q->answers.key_count += list_keys(&pairs, q->answers.keys + first);
-        for (size_t i = first; i < q->answers.key_count; i++)
-            q->answers.keys[i] += (uint64_t)k << 32;
-    }
-    row->bench.wrong = (double)count_differences(expected, expected_count, q->answers.keys, q->answers.key_count);
+    row->bench.wrong = (double)count_differences(expected, expected_count, q->keys, found);
     free(expected);
-    free(q->answers.keys);
-    q->answers.keys = row->peer ? allocate(MOST_FOUND * count, sizeof *q->answers.keys) : NULL;
+    if (!row->peer) /* lists pairs in its index */
+        free(q->keys);
 }
 
 /* ------------------------------------------------------------------------------------------------ the nearest body */
@@ -226,16 +223,16 @@ static void run_nearest(struct row *row) {
     struct questions *q = row->state;
     const int kind = row->question->what;
     if (row->peer) {
-        row->peer->ask(row->peer_state, &q->asked, q->answers.floats);
+        row->peer->ask(row->peer_state, &q->asked, q->floats);
     } else if (kind <= NEAREST_INSIDE) {
-        find_nearest(row, row->batch ? row->batch : q->asked.count, kind == NEAREST_INSIDE, q->answers.distances);
+        find_nearest(row, row->batch ? row->batch : q->asked.count, kind == NEAREST_INSIDE, q->distances);
     } else {
         const narc_bodies bodies = bodies_of_scene(row->scene);
         const narc_index_column one_each = NARC_ARRAY(q->bodies);
         narc_error error;
         must(narc_find_distances(row->scene->shapes, &bodies, &q->points,
-                                 kind == DISTANCE ? one_each : (narc_index_column){q->bodies, 0}, NULL,
-                                 q->answers.distances, &error),
+                                 kind == DISTANCE ? one_each : (narc_index_column){q->bodies, 0}, NULL, q->distances,
+                                 &error),
              &error);
     }
 }
@@ -257,18 +254,18 @@ static void prepare_nearest(struct row *row) {
     q->asked.within = row->layout->layout == LAYOUT_SPARSE ? 6 : 2;
     q->points = (narc_points){.count = count, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
     q->bodies = allocate(count, sizeof *q->bodies);
-    q->answers =
-        (struct answers){.distances = allocate(count, sizeof(narc_distance)), .floats = allocate(count, sizeof(float))};
+    q->distances = allocate(count, sizeof *q->distances);
+    q->floats = allocate(count, sizeof *q->floats);
     find_nearest(row, count, false, expected);
     for (size_t k = 0; k < count; k++)
         q->bodies[k] = expected[k].body;
     run_nearest(row);
     for (size_t k = 0; k < count; k++) {
-        const float separation = expected[k].separation, other = q->answers.distances[k].separation;
+        const float separation = expected[k].separation, other = q->distances[k].separation;
         const bool same_question = row->question->what == NEAREST || row->question->what == DISTANCE;
         row->bench.hits += (separation < 0) / (double)count;
         if (row->peer)
-            row->bench.wrong += fabs((double)(separation - q->answers.floats[k])) > 1e-3 && separation > 0;
+            row->bench.wrong += fabs((double)(separation - q->floats[k])) > 1e-3 && separation > 0;
         else if (same_question)
             row->bench.wrong += other != separation;
     }

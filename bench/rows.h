@@ -52,7 +52,10 @@ const struct row *get_row(size_t index); /* NULL behind the last one */
 /* The number of a row's questions in a call. */
 size_t batch_of(const struct row *row, size_t done);
 
-/* How many keys only one of the two has: pairs of numbers in 64 bits. Sorts both. */
+/* Appends pairs as keys a << 32 | b, of bodies that begin at first_a and first_b; how many keys there are now. */
+size_t add_keys(const narc_pairs *pairs, uint64_t first_a, uint64_t first_b, uint64_t *keys, size_t count);
+
+/* How many keys only one of the two has. Sorts both. */
 size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, size_t right_count);
 
 /* Room for `count` manifolds, one for all rows, since they run one after another: a call may move it. */

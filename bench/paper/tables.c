@@ -116,26 +116,6 @@ static void print_grid(const struct paper *paper, const struct grid *grid, FILE 
     print_lines(paper, grid, out);
 }
 
-/* Of all methods and n together, the scene's answers. */
-static void print_wrong(const struct paper *paper, FILE *out) {
-    static const char *const names[] = {"no collision", "collision, contact", "collision, overlap"};
-    struct item lines[MOST_ITEMS];
-    fprintf(out, "\nWrong answers, of %zu:", paper->settings.size_count * paper->settings.pair_count);
-    for (size_t test = 0; test < sizeof times / sizeof times[0]; test++) {
-        const size_t count = read_items(times[test].lines, lines);
-        for (size_t line = 0; line < count; line++) {
-            double wrong = 0;
-            char pattern[ITEM_VALUE + 8];
-            snprintf(pattern, sizeof pattern, "wrong/%s", lines[line].value);
-            for (size_t size = 0; size < paper->settings.size_count; size++)
-                wrong += value_at(pattern, "", paper->best, paper->settings.sizes[size]);
-            if (wrong > 0)
-                fprintf(out, " %s, %s: %.0f;", lines[line].title, names[test], wrong);
-        }
-    }
-    fprintf(out, " the others none.\n");
-}
-
 /* Every method on every instruction set that the machine has. */
 static void print_lanes(FILE *out) {
     static const char *const tests[] = {"apart", "contact"};
@@ -187,7 +167,6 @@ static void print_thresholds(const struct paper *paper, struct grid grid, FILE *
 void print_tables(const struct paper *paper, FILE *out) {
     for (size_t k = 0; k < sizeof times / sizeof times[0]; k++)
         print_grid(paper, &times[k], out);
-    print_wrong(paper, out);
     print_lanes(out);
     print_thresholds(paper,
                      (struct grid){"GJK with EPA, collision scene, by threshold", "µs for 1,000 checks", thresholds,
