@@ -60,7 +60,7 @@ void make_pairs(struct scene *scene) {
     free(second);
 }
 
-/* Adds a pair of the bodies at two places of a stack, if there are such places: row y has `width` - y * shrink. */
+/* Adds a pair of the bodies at two positions of a stack, if there are such: row y has `width` - y * shrink. */
 static void add_neighbours(struct scene *scene, size_t width, size_t shrink, size_t a, size_t x, size_t y) {
     size_t first = 0;
     for (size_t k = 0; k < y; k++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bodies.c - bodies at random places, pairs that touch, pairs whose boxes overlap.
+ * bodies.c - bodies at random, pairs that touch, pairs whose boxes overlap.
  */
 #include "bodies.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bodies.h - bodies at random places, pairs that touch, pairs whose boxes overlap.
+ * bodies.h - bodies at random, pairs that touch, pairs whose boxes overlap.
  */
 #ifndef NARC_BENCH_BODIES_H
 #define NARC_BENCH_BODIES_H
@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* A body's place; its shape is an index into a store. */
+/* A body's pose; its shape is an index into a store. */
 struct body {
     float x, y, cosine, sine;
     uint32_t shape;
@@ -50,7 +50,7 @@ void find_touching(const narc_shapes *shapes, struct body *bodies, const struct 
 /* The box of a body around its position, in world axes. */
 narc_aabb box_of(const narc_shapes *shapes, const struct body *body);
 
-/* Puts B anywhere where the boxes of both overlap, all places equally likely. */
+/* Puts B anywhere where the boxes of both overlap, all positions equally likely. */
 void put_in_boxes(const narc_shapes *shapes, const struct body *a, struct body *b, uint64_t *random);
 
 #ifdef __cplusplus

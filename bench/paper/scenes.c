@@ -63,7 +63,7 @@ struct templates make_templates(size_t n, size_t count, uint64_t *random) {
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-/* A pair that is being placed: the direction from A to B, and for either kind the distance at which the two touch and
+/* Of a pair the direction from A to B, and for either kind the distance at which the two touch and
  * the one at which their bounding circles do. */
 struct spacing {
     struct direction direction;

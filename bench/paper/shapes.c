@@ -131,8 +131,8 @@ static size_t make_thin(uint64_t *random, narc_arc *out) {
         const double aspect = random_scale(random, 4, 10), turn = random_between(random, 0, 2 * pi);
         double normals[NARC_MAX_ARCS + 1];
         for (size_t k = 0; k < count; k++) {
-            const double place = turn + 2 * pi / (double)count * ((double)k + random_between(random, -0.3, 0.3));
-            normals[k] = atan2(sin(place) * aspect, cos(place));
+            const double parameter = turn + 2 * pi / (double)count * ((double)k + random_between(random, -0.3, 0.3));
+            normals[k] = atan2(sin(parameter) * aspect, cos(parameter));
             while (k > 0 && normals[k] < normals[k - 1])
                 normals[k] += 2 * pi;
         }
