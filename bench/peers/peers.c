@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-#define MISSING(peer, query, who, library)                                                                             \
-    const struct peer peer = {.question = query, .name = who, .missing = "built without " library}
+#define MISSING(id, query, who, library)                                                                               \
+    const struct peer id = {.question = query, .name = who, .missing = "built without " library}
 #ifndef BENCH_BOX2D
 const char *box2d_name(void) { return "no Box2D"; }
 MISSING(box2d_collide, "contact", "box2d", "Box2D");
