@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
+ * filling.c - where grains start. A random filling puts grain after grain at a random position with a random angle, and
  * tries again while it would touch: narc_find_contacts() decides, of grains whose circles touch, and of walls.
  */
 #include <math.h>
@@ -37,7 +37,7 @@ double dem_draw_size(const dem_sizes *sizes, uint64_t *random) {
     }
 }
 
-/* All but the place. */
+/* All but the position. */
 static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random) {
     const size_t choice = (size_t)(draw_unit(random) * (double)f->shape_count);
     dem_grain grain = {.shape = f->shapes[choice], .material = f->material};
@@ -51,8 +51,8 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
 
 /* ------------------------------------------------------------------------------------------------ random */
 
-static narc_body make_body(uint32_t shape, vec place, vec turn, double scale) {
-    return (narc_body){place.x, place.y, (float)turn.x, (float)turn.y, (float)scale, shape};
+static narc_body make_body(uint32_t shape, vec position, vec turn, double scale) {
+    return (narc_body){position.x, position.y, (float)turn.x, (float)turn.y, (float)scale, shape};
 }
 
 static vec find_turn(double angle) { return (vec){cos(angle), sin(angle)}; }
@@ -87,35 +87,35 @@ static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wa
         narc_point lowest;
         narc_find_support(arcs, count, direction.x, direction.y, &lowest, NULL);
         const double depth = grain->scale * dot((vec){lowest.x, lowest.y}, direction);
-        if (dot(minus(grain->place, wall->place), wall->normal) - depth <= gap)
+        if (dot(minus(grain->position, wall->position), wall->normal) - depth <= gap)
             return false;
     }
     return true;
 }
 
-/* Where the image of a place is that is nearest to a grain: no other can touch it. */
-static vec find_nearest(const dem *d, const dem_grain *grain, vec place) {
-    const vec size = dem_cell_size(d), way = minus(place, grain->place);
-    return (vec){place.x - (d->settings.periodic_x ? size.x * nearbyint(way.x / size.x) : 0),
-                 place.y - (d->settings.periodic_y ? size.y * nearbyint(way.y / size.y) : 0)};
+/* Where the image of a position is that is nearest to a grain: no other can touch it. */
+static vec find_nearest(const dem *d, const dem_grain *grain, vec position) {
+    const vec size = dem_cell_size(d), way = minus(position, grain->position);
+    return (vec){position.x - (d->settings.periodic_x ? size.x * nearbyint(way.x / size.x) : 0),
+                 position.y - (d->settings.periodic_y ? size.y * nearbyint(way.y / size.y) : 0)};
 }
 
 /* Every grain and wall is looked at. */
 static bool is_free(const dem *d, double gap, const dem_grain *grain) {
-    const narc_body body = make_body(grain->shape, grain->place, find_turn(grain->angle), grain->scale);
+    const narc_body body = make_body(grain->shape, grain->position, find_turn(grain->angle), grain->scale);
     const double far = grain->scale * d->shapes[grain->shape].reach + gap;
     for (const dem_body *b = d->bodies; b < d->bodies + d->grain_count; b++) {
-        const vec place = find_nearest(d, grain, b->place), way = minus(place, grain->place);
+        const vec position = find_nearest(d, grain, b->position), way = minus(position, grain->position);
         const double most = far + b->reach;
         if (dot(way, way) <= most * most &&
-            !is_clear_of(d, body, make_body(b->shape, place, b->turn, (double)b->scale), gap))
+            !is_clear_of(d, body, make_body(b->shape, position, b->turn, (double)b->scale), gap))
             return false;
     }
     for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++) {
-        const vec place = find_nearest(d, grain, w->place);
+        const vec position = find_nearest(d, grain, w->position);
         if (!(w->kind == DEM_PLATE
                   ? is_clear_of_plate(d, grain, w, gap)
-                  : is_clear_of(d, body, make_body(w->shape, place, find_turn(w->angle), w->scale), gap)))
+                  : is_clear_of(d, body, make_body(w->shape, position, find_turn(w->angle), w->scale), gap)))
             return false;
     }
     return true;
@@ -130,8 +130,8 @@ void dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
             if (tries++ == f->tries)
                 dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", (size_t)i,
                          (size_t)f->count, (size_t)f->tries);
-            grain.place.x = draw_between(random, low.x, high.x);
-            grain.place.y = draw_between(random, low.y, high.y);
+            grain.position.x = draw_between(random, low.x, high.x);
+            grain.position.y = draw_between(random, low.y, high.y);
             grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
         } while (!is_free(d, f->gap, &grain));
         dem_add_grain(d, grain);
@@ -153,7 +153,7 @@ void dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
         dem_grain grain = draw_grain(d, f, random);
         const double off_x = 0.5 * f->jitter * draw_between(random, -1, 1);
         const double off_y = 0.5 * f->jitter * draw_between(random, -1, 1);
-        grain.place =
+        grain.position =
             (vec){low.x + spacing.x * ((double)column + 0.5 + off_x), low.y + spacing.y * ((double)row + 0.5 + off_y)};
         dem_add_grain(d, grain);
     }
