@@ -19,9 +19,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
              is interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
-  bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
-             Benchmark's and those of bench/README.md
-  bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
+  bench      the kernels and what a scene is asked, beside Box2D, Chipmunk, libccd and GEOS; tables and plots go to out/.
+             Options are Google Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
   lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, and a biaxial compression on 1 and 2 ranks, which
@@ -243,33 +242,35 @@ run() {
     ls -l out/shapes.json out/shapes.png out/bodies.csv out/contacts.csv out/collisions.png
 }
 
-# Each row several times, in random order with all others, so that what else the machine does hits them all alike.
+# Each row several times, in random order with all others, so that what else the machine does hits them all alike. Without
+# a filter a run for each subject, since scenes of a million bodies in all libraries do not lie in memory together.
 bench() {
     require_packages $bench_packages
     build bench bench_narc
     mkdir -p out
-    rm -f out/bench.json out/bench.md out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
-    say "benchmarks"
-    build/bench/bench/micro/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
-        --benchmark_min_time=0.1 --benchmark_out=out/bench.json --benchmark_out_format=json --out=out "$@"
+    rm -f out/bench.md out/bench-*.json out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
+    case "$*" in
+    *--benchmark_filter=*) bench_rows asked "$@" ;;
+    *)
+        bench_rows rays --benchmark_filter='^ray' "$@"
+        bench_rows regions --benchmark_filter='^region' "$@"
+        bench_rows nearest --benchmark_filter='^(nearest|distance)' "$@"
+        bench_rows index --benchmark_filter='^(index|still|impact|ground)' "$@"
+        bench_rows pairs --benchmark_filter='-^(ray|region|nearest|distance|index|still|impact|ground)' "$@"
+        ;;
+    esac
     say "plots"
-    gnuplot -e "folder='out'" bench/micro/plots.gp
+    gnuplot -e "folder='out'" bench/plots.gp
     say "written"
-    ls -l out/bench* out/*.dat
+    ls -l out/bench*
 }
 
-bench_scene() {
-    require_packages $bench_packages
-    build bench bench_scenes bench_ground
-    mkdir -p out
-    rm -f out/scene-*.md
-    for name in ground rays casts points regions index; do
-        say "$name"
-        build/bench/bench/scene/bench_$name >out/scene-$name.md
-        cat out/scene-$name.md
-    done
-    say "written"
-    ls -l out/scene-*.md
+bench_rows() {
+    name=$1
+    shift
+    say "benchmarks: $name"
+    build/bench/bench/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
+        --benchmark_min_time=0.1 --benchmark_out="out/bench-$name.json" --benchmark_out_format=json --out=out "$@"
 }
 
 paper() {
@@ -434,7 +435,7 @@ check_style() {
     # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
     # here.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
-        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*_box2d3.c' ':!*/wasm_*.c' |
+        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*box2d3.c' ':!*/wasm_*.c' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
     git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
 }
@@ -522,7 +523,6 @@ bench)
     shift
     bench "$@"
     ;;
-bench-scene) bench_scene ;;
 paper)
     shift
     paper "$@"
