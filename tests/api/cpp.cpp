@@ -316,7 +316,8 @@ void test_contacts() {
     rows.resize(2 * n);
     CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, narc::query(), rows).value().size() == found);
     std::vector<narc_refined_contact> refined;
-    CHECK(narc::refine_contacts(scene.shapes, scene.bodies, scene.batch, {}, rows, refined));
+    const narc::span<const narc_contact> contacts(rows.data(), found);
+    CHECK(narc::refine_contacts(scene.shapes, scene.bodies, scene.batch, {}, contacts, refined));
     CHECK(refined.size() == found && std::fabs(refined[0].separation - static_cast<double>(rows[0].separation)) < 1e-6);
     CHECK(rows.size() == 2 * n);
     const auto points = narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, narc::query(), manifolds).value();
