@@ -52,6 +52,7 @@ narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bod
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
     if (status != NARC_OK)
         return status;
+    batch.row_size = sizeof *out_rows;
     return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
 }
 
@@ -63,9 +64,9 @@ narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bo
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
     if (status != NARC_OK)
         return status;
-    batch.manifolds = true;
+    batch.row_size = sizeof *out_rows;
     batch.flat_sine = find_flat_sine(batch.query->flat_angle);
-    return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
+    return narc_answer_rows(kernels->manifold, &batch, out_rows, capacity, out_count, error);
 }
 
 narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,

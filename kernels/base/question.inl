@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * question.inl - what is asked of pairs that gets a row for each answer.
+ *
+ * The pipeline knows pairs, queues and stages, and finds with what two bodies touch. A question says how that is written:
+ * it is a row_writer and a few constants, from which QUESTION() (sat/answers.inl) makes all others.
+ */
+#ifndef NARC_BASE_QUESTION_INL
+#define NARC_BASE_QUESTION_INL
+
+#include <stdint.h>
+
+#include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "kernels.h"
+#include "simd/simd.h"
+
+/* Answers the pairs `begin` ... of its queue, or passes them on to those of later stages. */
+typedef void stage(const struct call *call, struct queue queues[STAGES], int begin);
+
+/* Answers the pairs k ... of a queue of boxes or of capsules, `live` of them (box/box_pairs.inl). */
+struct box_queue;
+typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
+enum { OF_BOXES, OF_CAPSULES, BOX_QUEUES };
+
+/* What may hold a second point of contact: an edge of each body (sat/manifold_edges.inl). */
+struct sides;
+
+/* Writes the row of a pair in each lane to its place. `sides`: NULL where a body has no edge. */
+typedef void row_writer(const struct call *call, char *const *place, vi numbers, const struct answer *answer,
+                        const struct sides *sides);
+
+struct question {
+    size_t size;      /* bytes of a row */
+    size_t normal_at; /* where its normal lies */
+    uint32_t
+        further; /* what a row's second word gains for each further row of its pair: NARC_FURTHER_ROW to the count */
+    void (*none)(char *place, uint32_t pair, float separation); /* the row of a pair without one; INFINITY: no answer */
+    stage *answer;                                              /* writes the rows of pairs that are settled */
+    stage *polygons;                                            /* and of polygons */
+    box_stage *boxes[BOX_QUEUES];
+    void (*gaps)(const struct call *call, const struct queue *queue, int k, const struct gap *gap, char *const *place);
+};
+
+/* What finds their answers (sat/search.c): the stages but for the last one, the first of calls with hints, and what
+ * answers pairs with a concave arc that wait. */
+struct row_search {
+    stage *stages[STAGES], *hinted;
+    void (*concave)(const struct call *call);
+};
+
+extern const struct row_search NARC_NAMED(search);
+
+#endif
