@@ -35,7 +35,7 @@ INLINE void store_contacts(const struct call *call, const struct queue *queue, i
 
 /* Compiled once for all. */
 NOINLINE void run_method(const struct call *call, stage *find) {
-    const struct course course = {NULL, take_valid, QUEUE_FIELDS, &find, 0, 0};
+    const struct course course = {.settle = take_valid, .fields = QUEUE_FIELDS, .stages = &find, .end = STAGES};
     struct queue queue;
     run_pairs(call, &course, &queue);
 }

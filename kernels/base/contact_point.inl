@@ -61,26 +61,26 @@ INLINE vm is_parallel(vec2 junction, vec2 n) {
 INLINE struct feature find_feature_beside(const narc_record *records, struct ring ring, vi record,
                                           const struct arcs *arc, const struct pose *pose, vec2 n, bool is_b) {
     const vm starts = is_parallel(arc->start, n), ends = is_parallel(arc->end, n);
+    const vm either = vm_or(starts, ends), both = vm_and(starts, ends);
     struct feature f = find_feature(arc, arc, n, record, is_b);
-    if (vm_any(starts)) {
+    if (!vm_any(either))
+        return f;
+    if (vm_any(both)) { /* of an arc that turns by less than that */
         const struct arcs before = load_arcs(records, step_record(ring, record, vi_set(-1)), pose, is_b);
         const vf along = v2_cross(n, find_point(&before, n, is_b));
-        f.along_min = v_select(starts, v_min(f.along_min, along), f.along_min);
-        f.along_max = v_select(starts, v_max(f.along_max, along), f.along_max);
-        f.magnitude = v_select(starts, v_add(find_magnitude(arc), find_magnitude(&before)), f.magnitude);
+        f.along_min = v_select(both, v_min(f.along_min, along), f.along_min);
+        f.along_max = v_select(both, v_max(f.along_max, along), f.along_max);
     }
-    if (vm_any(ends)) {
-        const vi next = step_record(ring, record, vi_set(1));
-        const struct arcs after = load_arcs(records, next, pose, is_b);
-        const vf along = v2_cross(n, find_point(&after, n, is_b));
-        f.along_min = v_select(ends, v_min(f.along_min, along), f.along_min);
-        f.along_max = v_select(ends, v_max(f.along_max, along), f.along_max);
-        f.magnitude = v_select(ends, v_add(find_magnitude(arc), find_magnitude(&after)), f.magnitude);
-        f.record = vi_select(ends, next, record);
-        f.radius = v_select(ends, after.radius, f.radius);
-        f.start = v2_select(ends, after.start, f.start);
-        f.end = v2_select(ends, after.end, f.end);
-    }
+    const vi other = step_record(ring, record, vi_select(ends, vi_set(1), vi_set(-1)));
+    const struct arcs beside = load_arcs(records, other, pose, is_b);
+    const vf along = v2_cross(n, find_point(&beside, n, is_b));
+    f.along_min = v_select(either, v_min(f.along_min, along), f.along_min);
+    f.along_max = v_select(either, v_max(f.along_max, along), f.along_max);
+    f.magnitude = v_select(either, v_add(find_magnitude(arc), find_magnitude(&beside)), f.magnitude);
+    f.record = vi_select(ends, other, record);
+    f.radius = v_select(ends, beside.radius, f.radius);
+    f.start = v2_select(ends, beside.start, f.start);
+    f.end = v2_select(ends, beside.end, f.end);
     return f;
 }
 

@@ -41,6 +41,7 @@ struct course {
     stage *const *stages;
     int first;
     int edged; /* where pairs with edges may begin instead, or 0 */
+    int end;   /* behind the last stage */
 };
 
 /* Triage for methods that treat all pairs alike. */
@@ -77,11 +78,11 @@ INLINE void enter(const struct course *course, struct queue *queues, vm open, co
 
 /* The stage that is to take pairs from its queue, or -1. The last one that has FLUSH goes first, so that all before it
  * find room. Those that have less wait, but for the `end`, when the first one goes first. */
-INLINE int find_due(const struct queue *queues, bool end) {
-    for (int s = STAGES - 1; s >= 0; s--)
+INLINE int find_due(const struct course *course, const struct queue *queues, bool end) {
+    for (int s = course->end - 1; s >= 0; s--)
         if (queues[s].count >= FLUSH)
             return s;
-    for (int s = 0; s < STAGES && end; s++)
+    for (int s = 0; s < course->end && end; s++)
         if (queues[s].count > 0)
             return s;
     return -1;
@@ -97,16 +98,16 @@ INLINE void run_stage(const struct call *call, stage *run, struct queue *queues,
     queue->count = begin;
 }
 
-INLINE void run_stages(const struct call *call, stage *const *stages, struct queue *queues, bool end) {
+INLINE void run_stages(const struct call *call, const struct course *course, struct queue *queues, bool end) {
     if (call->count <= STEP) { /* no queue can be full: each stage runs once, when all pairs are in */
-        for (int s = 0; s < STAGES; s++)
+        for (int s = 0; s < course->end; s++)
             if (queues[s].count > 0)
-                run_stage(call, stages[s], queues, s);
+                run_stage(call, course->stages[s], queues, s);
         return;
     }
-    for (int s = find_due(queues, end); s >= 0;) {
-        run_stage(call, stages[s], queues, s);
-        const int due = find_due(queues, end);
+    for (int s = find_due(course, queues, end); s >= 0;) {
+        run_stage(call, course->stages[s], queues, s);
+        const int due = find_due(course, queues, end);
         s = queues[s].count >= STEP && due <= s ? s : due;
     }
 }
@@ -141,7 +142,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
     const enum pose_layout layout = call->count <= FEW_PAIRS ? POSE_COLUMNS : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
-    for (int s = 0; s < STAGES && queues; s++)
+    for (int s = 0; s < course->end; s++)
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
@@ -156,7 +157,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             vf item[FIELDS];
             const struct placement placement = place_pairs(call, &given, &indices, k, layout);
             vm asked = vm_front(n - k);
-            if (course->take && call->boxes) {
+            if (course->take && !LIKELY(!call->boxes)) {
                 asked = course->take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
                 if (!vm_any(asked))
                     continue;
@@ -171,12 +172,12 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||
                     queues[POLYGONS].count >= FLUSH)
-                    run_stages(call, course->stages, queues, false);
+                    run_stages(call, course, queues, false);
             }
         }
     }
     if (queues)
-        run_stages(call, course->stages, queues, true);
+        run_stages(call, course, queues, true);
 }
 
 /* Are there pieces of chains, and are they asked of as such? */

@@ -2,8 +2,8 @@
  *
  * question.inl - what is asked of pairs that gets a row for each answer.
  *
- * The pipeline knows pairs, queues and stages, and finds with what two bodies touch. A question says how that is written:
- * it is a row_writer and a few constants, from which QUESTION() (sat/answers.inl) makes all others.
+ * The pipeline knows pairs, queues and stages, and the search finds with what two bodies touch. A question says how that is
+ * written: a row_writer, from which NARC_QUESTION() (sat/answers.inl) makes the rest, one for each way of pairs.
  */
 #ifndef NARC_BASE_QUESTION_INL
 #define NARC_BASE_QUESTION_INL
@@ -33,18 +33,19 @@ typedef void row_writer(const struct call *call, char *const *place, vi numbers,
                         const struct sides *sides);
 
 struct question {
-    size_t size;      /* bytes of a row */
-    size_t normal_at; /* where its normal lies */
-    uint32_t
-        further; /* what a row's second word gains for each further row of its pair: NARC_FURTHER_ROW to the count */
-    void (*none)(char *place, uint32_t pair, float separation); /* the row of a pair without one; INFINITY: no answer */
-    stage *answer;                                              /* writes the rows of pairs that are settled */
-    stage *polygons;                                            /* and of polygons */
-    box_stage *boxes[BOX_QUEUES];
+    size_t size;        /* bytes of a row */
+    size_t normal_at;   /* where its normal lies */
+    uint32_t extra_row; /* what the word behind the pair gains for another row of it: NARC_FURTHER_ROW to the count */
+    /* The row of a pair without a contact; `separation` INFINITY: it has no answer. */
+    void (*none)(char *place, uint32_t pair, float separation);
+    stage *answer;                /* the rows of pairs that are settled */
+    stage *edges;                 /* those of pairs that may have second points; NULL: nobody asks */
+    stage *polygons;              /* those of polygons */
+    box_stage *boxes[BOX_QUEUES]; /* and of boxes and capsules */
     void (*gaps)(const struct call *call, const struct queue *queue, int k, const struct gap *gap, char *const *place);
 };
 
-/* What finds their answers (sat/search.c): the stages but for the last one, the first of calls with hints, and what
+/* What finds their answers (sat/search.c): the stages but for those of the question, the first of calls with hints, and what
  * answers pairs with a concave arc that wait. */
 struct row_search {
     stage *stages[STAGES], *hinted;

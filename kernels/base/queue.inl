@@ -26,7 +26,7 @@ enum { FLUSH = 32, STEP = 32 };
 enum { PROBE, PROBE_AGAIN, CLIMB, DECIDE, STAGES, POLYGONS = 0 };
 #else
 enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH };
-enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, STAGES };
+enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, ANSWER_EDGES, STAGES };
 #endif
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and

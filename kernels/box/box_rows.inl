@@ -120,7 +120,6 @@ INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_s
 INLINE struct sides find_box_sides(const struct call *call, const struct box_pair *pair, const struct box_contact *c,
                                    const struct box_touch *on_a, const struct box_touch *on_b, vec2 place, vf margin) {
     const vf flat_sine = v_set(call->batch->flat_sine);
-    const vm all = vm_front(V_WIDTH);
     return (struct sides){.a = find_box_edge(pair, &c->a, on_a, c->normal, flat_sine, 4, false),
                           .b = find_box_edge(pair, &c->b, on_b, c->normal, flat_sine, 6, true),
                           .number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
@@ -130,8 +129,7 @@ INLINE struct sides find_box_sides(const struct call *call, const struct box_pai
                           .position_b = get_box_vec2(pair, BOX_POSITION),
                           .place = place,
                           .margin = margin,
-                          .both = all,
-                          .named = all};
+                          .named = vm_front(V_WIDTH)};
 }
 
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector

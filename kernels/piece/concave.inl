@@ -190,7 +190,7 @@ INLINE void note_further_rows(const struct call *call, vi counts, char *const *p
         if (more == 0)
             continue;
         memcpy(&word, place[lane] + sizeof word, sizeof word);
-        word += more * call->question->further;
+        word += more * call->question->extra_row;
         memcpy(place[lane] + sizeof word, &word, sizeof word);
         *call->rows->out.further += more;
     }

@@ -84,7 +84,6 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
     char *to[V_WIDTH];
     find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
     if (edges) {
-        const vm all = vm_front(V_WIDTH);
         const struct sides sides = {.a = find_touching_edge(call, queue, k, &c->a, n, false),
                                     .b = find_touching_edge(call, queue, k, &c->b, n, true),
                                     .number_a = number_a,
@@ -94,8 +93,7 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
                                     .position_b = get_vec2(queue, POSITION, k),
                                     .place = place,
                                     .margin = margin,
-                                    .both = all,
-                                    .named = all};
+                                    .named = vm_front(V_WIDTH)};
         write(call, to, find_numbers(call, pairs), &answer, &sides);
     } else {
         write(call, to, find_numbers(call, pairs), &answer, NULL);

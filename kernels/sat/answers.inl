@@ -83,9 +83,9 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
     return left;
 }
 
-/* The last stage. `edges`: are second points asked for? */
+/* The last stages. `edges`: do both bodies have edges, and are second points asked for? */
 INLINE void answer_settled(const struct call *call, struct queue *queues, int begin, row_writer *write, bool edges) {
-    const struct queue *const queue = &queues[ANSWER];
+    const struct queue *const queue = &queues[edges ? ANSWER_EDGES : ANSWER];
     const narc_record *const records = call->batch->shapes->records;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const struct pose pose = get_pose(queue, k);
@@ -100,12 +100,9 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
                                     vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
         char *place[V_WIDTH];
         find_places(call, pairs, kept, place);
-        const vm smooth = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_SMOOTH),
-                                has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_SMOOTH));
-        const vm edged = vm_and_not(kept, smooth);
-        if (edges && vm_any(edged)) {
+        if (edges) {
             struct sides sides;
-            find_sides(call, queue, k, edged, on_a.record, on_b.record, n, find_contact_place(&on_a, &on_b), &sides);
+            find_sides(call, queue, k, on_a.record, on_b.record, n, find_contact_place(&on_a, &on_b), &sides);
             write(call, place, find_numbers(call, pairs), &answer, &sides);
         } else {
             write(call, place, find_numbers(call, pairs), &answer, NULL);
@@ -113,9 +110,10 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
     }
 }
 
-/* The rows of polygons, if they are certain. */
-INLINE void answer_edges(const struct call *call, struct queue *queues, int begin, row_writer *write, bool edges) {
+/* The contacts of polygons, if they are certain; the gaps at their junctions are known. */
+INLINE void answer_polygons(const struct call *call, struct queue *queues, int begin, row_writer *write, bool edges) {
     const struct queue *const queue = &queues[POLYGONS];
+    NARC_NAMED(search).stages[POLYGONS](call, queues, begin);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const struct polygon_contact c = find_polygon_contact(call->batch->shapes->records, queue, k);
@@ -137,13 +135,15 @@ INLINE size_t find_rows(const struct question *question, triage *settle, detour 
                                    search->stages[CLIMB],
                                    question->polygons,
                                    search->stages[DECIDE],
-                                   question->answer};
-    const struct course course = {take,
-                                  settle,
-                                  NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
-                                  stages,
-                                  NARC_SHORTCUTS ? PROBE : DECIDE,
-                                  NARC_SHORTCUTS && !hinted ? CLIMB : 0};
+                                   question->answer,
+                                   question->edges};
+    const struct course course = {.take = take,
+                                  .settle = settle,
+                                  .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
+                                  .stages = stages,
+                                  .first = NARC_SHORTCUTS ? PROBE : DECIDE,
+                                  .edged = NARC_SHORTCUTS && !hinted ? CLIMB : 0,
+                                  .end = question->edges ? STAGES : ANSWER_EDGES};
     struct queue queues[STAGES];
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
@@ -159,24 +159,23 @@ INLINE size_t find_rows(const struct question *question, triage *settle, detour 
     return end_rows(&call, question);
 }
 
-/* The kernel of a question, `name`, whose rows are of a type: `write` and `none` as in struct question. */
-#define NARC_QUESTION(name, type, normal, unit, none, write, edges)                                                    \
+/* The kernel of a question, from its row_writer. `normal`, `extra`: normal_at and extra_row; `second`: are second points
+ * asked for? */
+#define NARC_QUESTION(name, type, normal, extra, nothing, write, second)                                               \
     static void name##_of_settled(const struct call *call, struct queue *queues, int begin) {                          \
-        answer_settled(call, queues, begin, write, edges);                                                             \
+        answer_settled(call, queues, begin, write, false);                                                             \
     }                                                                                                                  \
     static void name##_of_edges(const struct call *call, struct queue *queues, int begin) {                            \
-        answer_edges(call, queues, begin, write, edges);                                                               \
+        answer_settled(call, queues, begin, write, second);                                                            \
     }                                                                                                                  \
-    /* One after the other, so that neither's stack is added to the other's. */                                        \
     static void name##_of_polygons(const struct call *call, struct queue *queues, int begin) {                         \
-        NARC_NAMED(search).stages[POLYGONS](call, queues, begin);                                                      \
-        name##_of_edges(call, queues, begin);                                                                          \
+        answer_polygons(call, queues, begin, write, second);                                                           \
     }                                                                                                                  \
     static void name##_of_boxes(const struct call *call, const struct box_queue *queue, int k, int live) {             \
-        answer_boxes(call, queue, k, live, false, write, edges);                                                       \
+        answer_boxes(call, queue, k, live, false, write, second);                                                      \
     }                                                                                                                  \
     static void name##_of_capsules(const struct call *call, const struct box_queue *queue, int k, int live) {          \
-        answer_boxes(call, queue, k, live, true, write, edges);                                                        \
+        answer_boxes(call, queue, k, live, true, write, second);                                                       \
     }                                                                                                                  \
     static void name##_of_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,       \
                                char *const *place) {                                                                   \
@@ -184,9 +183,10 @@ INLINE size_t find_rows(const struct question *question, triage *settle, detour 
     }                                                                                                                  \
     static const struct question name##_question = {sizeof(type),                                                      \
                                                     normal,                                                            \
-                                                    unit,                                                              \
-                                                    none,                                                              \
+                                                    extra,                                                             \
+                                                    nothing,                                                           \
                                                     name##_of_settled,                                                 \
+                                                    (second) ? name##_of_edges : NULL,                                 \
                                                     name##_of_polygons,                                                \
                                                     {name##_of_boxes, name##_of_capsules},                             \
                                                     name##_of_gaps};                                                   \

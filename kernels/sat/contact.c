@@ -10,9 +10,10 @@
 
 /* The count is the upper half of the word behind the pair, in memory the second. */
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-enum { FURTHER = NARC_FURTHER_ROW };
+enum { EXTRA_ROW = NARC_FURTHER_ROW };
 #else
-enum { FURTHER = NARC_FURTHER_ROW << 16 };
+enum { EXTRA_ROW = NARC_FURTHER_ROW << 16 };
 #endif
 
-NARC_QUESTION(contact, narc_contact, offsetof(narc_contact, normal_x), FURTHER, write_no_contact, write_contacts, false)
+NARC_QUESTION(contact, narc_contact, offsetof(narc_contact, normal_x), EXTRA_ROW, write_no_contact, write_contacts,
+              false)

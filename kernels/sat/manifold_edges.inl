@@ -45,8 +45,7 @@ struct sides {
     vi number_a, number_b;
     vec2 n, to_world, position_b, place; /* place: of the contact point, across and along */
     vf margin;
-    vm both;  /* in which lanes both have edges */
-    vm named; /* and where an edge that touches has its say in the id of an only point */
+    vm named; /* has an edge that touches its say in the id of an only point? */
 };
 
 INLINE struct edge_end find_edge_end(const struct arcs *arc, vec2 junction, vec2 n, bool is_b) {
@@ -323,7 +322,7 @@ INLINE struct manifold_points find_manifold_points(const struct call *call, cons
     const struct edge *const a = &s->a, *const b = &s->b;
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
     const vm stretch = is_stretch(&low, &high, answer->separation, s->n, s->position_b);
-    const vm faces = vm_and(s->both, vm_and(vm_and(a->offered, b->offered), stretch));
+    const vm faces = vm_and(vm_and(a->offered, b->offered), stretch);
     const struct end_point exact = get_deepest(a, b, s->place.y, s->place.x, answer->separation);
     struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, s->margin));
     struct manifold_points m = {.radius_a = p.deepest.radius_a, .radius_b = p.deepest.radius_b};
@@ -341,8 +340,8 @@ INLINE struct manifold_points find_manifold_points(const struct call *call, cons
 }
 
 /* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */
-INLINE void find_sides(const struct call *call, const struct queue *queue, int k, vm both, vi record_a, vi record_b,
-                       vec2 n, vec2 place, struct sides *s) {
+INLINE void find_sides(const struct call *call, const struct queue *queue, int k, vi record_a, vi record_b, vec2 n,
+                       vec2 place, struct sides *s) {
     s->a = find_edge(call, queue, k, record_a, n, false);
     s->b = find_edge(call, queue, k, record_b, n, true);
     s->number_a = find_number_of(queue, k, record_a, false);
@@ -352,8 +351,7 @@ INLINE void find_sides(const struct call *call, const struct queue *queue, int k
     s->position_b = get_vec2(queue, POSITION, k);
     s->place = place;
     s->margin = get_margins(call, queue, k);
-    s->both = both;
-    s->named = vm_and(both, vm_or(touches(&s->a), touches(&s->b)));
+    s->named = vm_or(touches(&s->a), touches(&s->b));
 }
 
 #endif

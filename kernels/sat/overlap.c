@@ -136,9 +136,13 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
 /* All pairs; of those with a piece, which ones are near. */
 NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[STAGES] = {probe_overlaps, probe_overlaps_again, climb_overlaps, decide_overlaps};
-    const struct course course = {
-        detour_overlaps,           triage_overlaps, OVERLAP_FIELDS, stages, NARC_SHORTCUTS ? PROBE : DECIDE,
-        NARC_SHORTCUTS ? CLIMB : 0};
+    const struct course course = {.take = detour_overlaps,
+                                  .settle = triage_overlaps,
+                                  .fields = OVERLAP_FIELDS,
+                                  .stages = stages,
+                                  .first = NARC_SHORTCUTS ? PROBE : DECIDE,
+                                  .edged = NARC_SHORTCUTS ? CLIMB : 0,
+                                  .end = STAGES};
     struct queue queues[STAGES];
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     struct box_queue boxes[BOX_QUEUES];

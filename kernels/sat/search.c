@@ -43,12 +43,19 @@ INLINE struct verdict judge(const struct call *call, struct queue *queue, int k,
 INLINE void settle(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
                    vf separation, vec2 n, vi record_a, vi record_b) {
     vf item[FIELDS];
-    (void)call;
     get_item(queue, k, item, ROW_FIELDS);
     set_vec2(item, NORMAL, n);
     item[SEPARATION] = separation;
     item[RECORD_A] = v_of_bits(record_a);
     item[RECORD_B] = v_of_bits(record_b);
+    if (call->question->edges) { /* where both bodies have edges there may be a second point */
+        const vm smooth = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_SMOOTH),
+                                has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_SMOOTH));
+        const vm edged = vm_and_not(which, smooth);
+        which = vm_and(which, smooth);
+        if (vm_any(edged))
+            push(&queues[ANSWER_EDGES], edged, item, ROW_FIELDS);
+    }
     push(&queues[ANSWER], which, item, ROW_FIELDS);
 }
 
