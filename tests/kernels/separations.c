@@ -15,6 +15,7 @@
 #include "layouts.h"
 #include "methods.h"
 #include "narc.h"
+#include "narc_chains.h"
 #include "scene.h"
 
 /* What dense contacts tell, as floats. */
