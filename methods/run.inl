@@ -52,7 +52,7 @@ static size_t run_contact_method(stage *find, const narc_batch *batch, size_t fi
     struct rows rows;
     const struct call call = begin_rows(&contacts, batch, first, count, skipped, out, &rows);
     run_method(&call, find);
-    return end_rows(&call, &contacts);
+    return end_rows(&call, contacts.size);
 }
 
 /* Of a method whose triage answers all pairs. */

@@ -38,6 +38,7 @@ struct question {
     uint32_t extra_row; /* what the word behind the pair gains for another row of it: NARC_FURTHER_ROW to the count */
     /* The row of a pair without a contact; `separation` INFINITY: it has no answer. */
     void (*none)(char *place, uint32_t pair, float separation);
+    row_writer *discs;            /* the rows of circles; NULL: write_contacts(), inline */
     stage *answer;                /* the rows of pairs that are settled */
     stage *edges;                 /* those of pairs that may have second points; NULL: nobody asks */
     stage *polygons;              /* those of polygons */
@@ -53,5 +54,9 @@ struct row_search {
 };
 
 extern const struct row_search NARC_NAMED(search);
+
+/* Answers any question that has no second points, and whose rows are contacts or dense (sat/contact.c). */
+size_t NARC_NAMED(rows)(const struct question *question, const narc_batch *batch, size_t first, size_t count,
+                        size_t *skipped, const narc_rows *out);
 
 #endif

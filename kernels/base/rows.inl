@@ -117,12 +117,12 @@ INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {
 }
 
 /* Fills the rows of pairs that have none: dense ones have all places filled. Returns how many contacts there are. */
-INLINE size_t fill_gaps(const struct call *call, const struct question *question) {
+INLINE size_t fill_gaps(const struct call *call) {
     int count = 0;
     for (int32_t k = 0; k < (int32_t)call->count; k++) {
         count += call->rows->known[k];
         if (!call->rows->known[k])
-            question->none(find_place(call, k), (uint32_t)find_number(call, k), 0);
+            call->question->none(find_place(call, k), (uint32_t)find_number(call, k), 0);
     }
     return (size_t)(count - call->rows->without);
 }
@@ -155,9 +155,9 @@ INLINE size_t close_gaps(const struct call *call, size_t size) {
     return count;
 }
 
-/* Ends a call. The question is a constant, so that a row is copied by a few instructions. */
-INLINE size_t end_rows(const struct call *call, const struct question *question) {
-    return call->rows->dense ? fill_gaps(call, question) : close_gaps(call, question->size);
+/* Ends a call. The size is a constant, so that a row is copied by a few instructions. */
+INLINE size_t end_rows(const struct call *call, size_t size) {
+    return call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
 }
 
 #endif

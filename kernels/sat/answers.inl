@@ -126,8 +126,9 @@ INLINE void answer_polygons(const struct call *call, struct queue *queues, int b
 }
 
 /* `concave`: a queue for pairs with concave arcs, or NULL if there are no pieces. */
-INLINE size_t find_rows(const struct question *question, triage *settle, detour *take, const narc_batch *batch,
-                        size_t first, size_t count, size_t *skipped, const narc_rows *out, struct queue *concave) {
+INLINE size_t find_rows(const struct question *question, size_t size, int end, triage *settle, detour *take,
+                        const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
+                        struct queue *concave) {
     const struct row_search *const search = &NARC_NAMED(search);
     const bool hinted = batch->query->hints.base != NULL;
     stage *const stages[STAGES] = {hinted ? search->hinted : search->stages[PROBE],
@@ -143,7 +144,7 @@ INLINE size_t find_rows(const struct question *question, triage *settle, detour 
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
                                   .edged = NARC_SHORTCUTS && !hinted ? CLIMB : 0,
-                                  .end = question->edges ? STAGES : ANSWER_EDGES};
+                                  .end = end};
     struct queue queues[STAGES];
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
@@ -156,63 +157,69 @@ INLINE size_t find_rows(const struct question *question, triage *settle, detour 
         end_boxes(&call, question->boxes);
     while (NARC_PIECES && concave && concave->count > 0)
         search->concave(&call);
-    return end_rows(&call, question);
+    return end_rows(&call, size);
 }
 
-/* The kernel of a question, from its row_writer. `normal`, `extra`: normal_at and extra_row; `second`: are second points
+/* A question, name_question, from its row_writer. `normal`, `extra`: normal_at and extra_row; `second`: are second points
  * asked for? */
-#define NARC_QUESTION(name, type, normal, extra, nothing, write, second)                                               \
+#define NARC_QUESTION(name, type, normal, extra, nothing, writer, second, discs)                                       \
     static void name##_of_settled(const struct call *call, struct queue *queues, int begin) {                          \
-        answer_settled(call, queues, begin, write, false);                                                             \
+        answer_settled(call, queues, begin, writer, false);                                                            \
     }                                                                                                                  \
     static void name##_of_edges(const struct call *call, struct queue *queues, int begin) {                            \
-        answer_settled(call, queues, begin, write, second);                                                            \
+        answer_settled(call, queues, begin, writer, second);                                                           \
     }                                                                                                                  \
     static void name##_of_polygons(const struct call *call, struct queue *queues, int begin) {                         \
-        answer_polygons(call, queues, begin, write, second);                                                           \
+        answer_polygons(call, queues, begin, writer, second);                                                          \
     }                                                                                                                  \
     static void name##_of_boxes(const struct call *call, const struct box_queue *queue, int k, int live) {             \
-        answer_boxes(call, queue, k, live, false, write, second);                                                      \
+        answer_boxes(call, queue, k, live, false, writer, second);                                                     \
     }                                                                                                                  \
     static void name##_of_capsules(const struct call *call, const struct box_queue *queue, int k, int live) {          \
-        answer_boxes(call, queue, k, live, true, write, second);                                                       \
+        answer_boxes(call, queue, k, live, true, writer, second);                                                      \
     }                                                                                                                  \
     static void name##_of_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,       \
                                char *const *place) {                                                                   \
-        write_gaps(call, queue, k, gap, place, write);                                                                 \
+        write_gaps(call, queue, k, gap, place, writer);                                                                \
     }                                                                                                                  \
     static const struct question name##_question = {sizeof(type),                                                      \
                                                     normal,                                                            \
                                                     extra,                                                             \
                                                     nothing,                                                           \
+                                                    discs,                                                             \
                                                     name##_of_settled,                                                 \
                                                     (second) ? name##_of_edges : NULL,                                 \
                                                     name##_of_polygons,                                                \
                                                     {name##_of_boxes, name##_of_capsules},                             \
-                                                    name##_of_gaps};                                                   \
+                                                    name##_of_gaps};
+
+/* answer_name(): takes the pairs of a call through all that is before the search, and that. `type`: of rows in a list;
+ * `end`: behind the last stage. */
+#define NARC_ROWS(name, type, writer, end)                                                                             \
     INLINE vm triage_##name(const struct call *call, size_t pair, const struct filter *circles,                        \
                             const vf item[FIELDS]) {                                                                   \
-        return triage_rows(call, pair, circles, item, write);                                                          \
+        return triage_rows(call, pair, circles, item, writer);                                                         \
     }                                                                                                                  \
     INLINE vm detour_##name(const struct call *call, const struct pair_indices *indices, int k,                        \
                             const struct placement *placement, vm open, int32_t number) {                              \
-        return take_detour(call, indices, k, placement, open, number, name##_question.boxes);                          \
+        return take_detour(call, indices, k, placement, open, number, call->question->boxes);                          \
     }                                                                                                                  \
-    NOINLINE size_t find_##name##_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,           \
-                                       const narc_rows *out, struct queue *concave) {                                  \
-        return find_rows(&name##_question, triage_##name, detour_##name, batch, first, count, skipped, out, concave);  \
+    NOINLINE size_t find_##name(const struct question *question, const narc_batch *batch, size_t first, size_t count,  \
+                                size_t *skipped, const narc_rows *out, struct queue *concave) {                        \
+        return find_rows(question, sizeof(type), end, triage_##name, detour_##name, batch, first, count, skipped, out, \
+                         concave);                                                                                     \
     }                                                                                                                  \
     /* Only where there are pieces is their queue on the stack. */                                                     \
-    NOINLINE size_t find_##name##_piece_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,     \
-                                             const narc_rows *out) {                                                   \
+    NOINLINE size_t find_##name##_of_pieces(const struct question *question, const narc_batch *batch, size_t first,    \
+                                            size_t count, size_t *skipped, const narc_rows *out) {                     \
         struct queue concave;                                                                                          \
         concave.count = 0;                                                                                             \
-        return find_##name##_rows(batch, first, count, skipped, out, &concave);                                        \
+        return find_##name(question, batch, first, count, skipped, out, &concave);                                     \
     }                                                                                                                  \
-    size_t NARC_NAMED(name)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,                      \
-                            const narc_rows *out) {                                                                    \
-        return has_pieces(batch) ? find_##name##_piece_rows(batch, first, count, skipped, out)                         \
-                                 : find_##name##_rows(batch, first, count, skipped, out, NULL);                        \
+    static size_t answer_##name(const struct question *question, const narc_batch *batch, size_t first, size_t count,  \
+                                size_t *skipped, const narc_rows *out) {                                               \
+        return has_pieces(batch) ? find_##name##_of_pieces(question, batch, first, count, skipped, out)                \
+                                 : find_##name(question, batch, first, count, skipped, out, NULL);                     \
     }
 
 #endif

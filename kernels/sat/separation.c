@@ -12,8 +12,8 @@
 #include "sat/answers.inl"
 #include "simd/simd.h"
 
-INLINE void write_separations(const struct call *call, char *const *place, vi numbers, const struct answer *answer,
-                              const struct sides *sides) {
+static inline void write_separations(const struct call *call, char *const *place, vi numbers,
+                                     const struct answer *answer, const struct sides *sides) {
     float separation[V_WIDTH];
     (void)call, (void)numbers, (void)sides;
     v_store(separation, answer->separation);
@@ -27,4 +27,9 @@ static void write_no_separation(char *place, uint32_t pair, float separation) {
     memcpy(place, &none, sizeof none);
 }
 
-NARC_QUESTION(separation, float, 0, 0, write_no_separation, write_separations, false)
+NARC_QUESTION(separation, float, 0, 0, write_no_separation, write_separations, false, write_separations)
+
+size_t NARC_NAMED(separation)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                              const narc_rows *out) {
+    return NARC_NAMED(rows)(&separation_question, batch, first, count, skipped, out);
+}
