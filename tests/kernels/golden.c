@@ -31,7 +31,7 @@ static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0x7ec640b6e75a6511u, 0x88b6eccb0495ec6du};
 #ifndef NARC_SMALL
-static const uint64_t golden_separations = 0;
+static const uint64_t golden_separations = 0xe84fda589ddcfdb3u;
 /* With margins, flat angles and hints: of all shapes, then of those with edges. */
 static const uint64_t golden_options[] = {0x7eb0ec61bfb327c5u, 0xf3466e065087098eu, 0x2f1a7d6b0b10e611u,
                                           0x29e07556c7e1bab8u, 0x51340ea22a195ba6u, 0x89ff86af5a47f142u,
