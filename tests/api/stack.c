@@ -50,6 +50,7 @@ static narc_contact contacts[PAIRS];
 static narc_refined_contact refined[PAIRS];
 static const narc_refinement refinement;
 static narc_manifold manifolds[PAIRS];
+static float separations[PAIRS];
 static narc_impact impacts[PAIRS];
 static narc_motions motions;
 static narc_cast_options cast_options;
@@ -157,6 +158,7 @@ static narc_status ask_index(narc_error *error) {
     CALL(overlaps, narc_find_overlaps(store, &bodies, &pairs, &query, bits, error))                                    \
     CALL(overlaps_selected, narc_find_overlaps(store, &bodies, &pairs, &selected, bits, error))                        \
     CALL(overlaps_range, narc_find_overlaps(store, &bodies, &pairs, &range, bits, error))                              \
+    CALL(separations, narc_find_separations(store, &bodies, &pairs, &query, separations, error))                       \
     CALL(contacts, narc_find_contacts(store, &bodies, &pairs, &query, contacts, SHORT, &count, error))                 \
     CALL(contacts_dense, narc_find_contacts(store, &bodies, &pairs, &dense, contacts, PAIRS, &count, error))           \
     CALL(contacts_selected, narc_find_contacts(store, &bodies, &pairs, &selected, contacts, SHORT, &count, error))     \
@@ -167,6 +169,7 @@ static narc_status ask_index(narc_error *error) {
     CALL(manifolds_selected, narc_find_manifolds(store, &bodies, &pairs, &selected, manifolds, SHORT, &count, error))  \
     CALL(manifolds_range, narc_find_manifolds(store, &bodies, &pairs, &range, manifolds, 9, &count, error))            \
     CALL(one_overlap, narc_find_overlaps(store, &own, &one, NULL, bits, error))                                        \
+    CALL(one_separation, narc_find_separations(store, &own, &one, NULL, separations, error))                           \
     CALL(one_contact, narc_find_contacts(store, &own, &one, NULL, contacts, 1, &count, error))                         \
     CALL(one_manifold, narc_find_manifolds(store, &own, &one, NULL, manifolds, 1, &count, error))                      \
     CALL(cast_pairs, narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast_options, impacts, PAIRS, error))    \

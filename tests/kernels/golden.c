@@ -31,6 +31,7 @@ static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0x7ec640b6e75a6511u, 0x88b6eccb0495ec6du};
 #ifndef NARC_SMALL
+static const uint64_t golden_separations = 0xe84fda589ddcfdb3u;
 /* With margins, flat angles and hints: of all shapes, then of those with edges. */
 static const uint64_t golden_options[] = {0x7eb0ec61bfb327c5u, 0xf3466e065087098eu, 0x2f1a7d6b0b10e611u,
                                           0x29e07556c7e1bab8u, 0x51340ea22a195ba6u, 0x89ff86af5a47f142u,
@@ -291,6 +292,24 @@ static void check_hashes(const char *name, const uint64_t *hashes, const uint64_
         right = right && hashes[k] == golden[k];
     }
     assert_true(right);
+}
+
+TEST(test_separations) {
+    static float separations[PAIRS];
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_pairs pairs = scene_pairs(&scene);
+        uint64_t hash = TEST_HASH_START;
+        for (int all = 0; all < 2; all++) {
+            const narc_query query = {.margin = all ? INFINITY : 0.125f};
+            assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, separations, NULL), NARC_OK);
+            hash = test_hash_items(hash, separations, PAIRS, sizeof *separations);
+        }
+        destroy_scene(&scene);
+        check_hash(precision ? "separations, double positions" : "separations, single positions", hash,
+                   golden_separations);
+    }
 }
 
 /* Overlaps, contacts, and manifolds twice, all with the hints of the call before. */
