@@ -5,7 +5,6 @@
 #include "method_support.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "check.h"

@@ -4,6 +4,7 @@
  * them, and the tasks of its workers in such threads, too.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "narc_broad_phase.h"
 #include "narc_scene.h"

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expect.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "scene.h"

@@ -4,11 +4,9 @@
  *
  * The recorded numbers may change only together with a wanted change of the kernels; the program prints what it finds.
  */
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "golden_scene.h"
 #include "narc_broad_phase.h"

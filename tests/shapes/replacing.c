@@ -10,7 +10,6 @@
 #include "families.h"
 #include "ledger.h"
 #include "narc.h"
-#include "narc_broad_phase.h"
 #include "store.h"
 #include "support.h"
 #include "tests.h"

@@ -4,7 +4,6 @@
  */
 #include "corpus.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "check.h"
