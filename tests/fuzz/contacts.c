@@ -9,7 +9,6 @@
 
 #include "check.h"
 #include "fuzz.h"
-#include "methods.h"
 #include "narc.h"
 
 enum { BODIES = 6, PAIRS = 24 };

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expect.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "scene.h"
@@ -46,7 +45,6 @@ enum { MOST = 1500, SHAPES = 6, FAN = 4 };
 
 struct trial {
     narc_shapes *store;
-    narc_methods *methods;
     double radius[SHAPES]; /* of the bounding circles */
     size_t count;
     double reach; /* at least the largest bounding radius; nobody else is as near as four of it */
@@ -69,12 +67,10 @@ static struct trial *create_trial(size_t count) {
         narc_compute_bounding_circle(shapes[k].arcs, shapes[k].count, &circle);
         t->radius[k] = circle.radius;
     }
-    assert_int_equal(narc_create_methods(t->store, NULL, &t->methods, NULL), NARC_OK);
     return t;
 }
 
 static void destroy_trial(struct trial *t) {
-    narc_destroy_methods(t->methods);
     narc_destroy_shapes(t->store);
     free(t);
 }
@@ -123,14 +119,6 @@ static void ask_pairs(struct trial *t) {
         t->fine[CAST_OF_B][k] = impacts[k].count == NARC_CAST_HIT;
     for (int k = 0; k < 5; k++)
         assert_int_equal(skipped[k], broken);
-    for (narc_method method = NARC_METHOD_SAT_FIRST; method <= NARC_METHOD_OBB; method++) {
-        const narc_method_options by = {.method = method};
-        query.out_skipped = &skipped[0];
-        if (method == NARC_METHOD_POLYGON_SAT) /* of polygons alone */
-            continue;
-        assert_int_equal(narc_find_overlaps_by(t->methods, &both, &pairs, &by, &query, bits, NULL), NARC_OK);
-        assert_int_equal(skipped[0], broken);
-    }
 }
 
 static void ask_poses(struct trial *t) {
@@ -387,7 +375,6 @@ TEST(shapes_that_were_removed) {
     }
     for (uint32_t shape = 0; shape < SHAPES; shape += 2)
         assert_int_equal(narc_remove_shape(t->store, shape, NULL), NARC_OK);
-    assert_int_equal(narc_refresh_methods(t->methods, NULL), NARC_OK);
     ask_all(t);
     assert_int_equal(expect_agreement(t, false), t->count / 2);
     destroy_trial(t);
