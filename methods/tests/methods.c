@@ -169,7 +169,7 @@ static struct first_verdict judge_first(const struct exact_pair *pair, const nar
     return verdict;
 }
 
-struct first_tally {
+struct first_counts {
     size_t pairs, doubted, none, late, wrong;
     size_t inside,
         wrong_signs; /* pairs of shapes with all centres inside; all others whose answer has the wrong sign */
@@ -181,7 +181,7 @@ static bool centers_inside(const struct scene *scene, size_t k) {
 }
 
 static void check_first_pair(const struct corpus *corpus, const struct contacts *all, size_t k, unsigned outcome,
-                             struct first_tally *tally) {
+                             struct first_counts *counts) {
     const struct exact_pair *pair = &corpus->pairs[k];
     const double separation = (double)all->rows[k].separation;
     const struct first_verdict verdict = judge_first(pair, &all->rows[k], outcome);
@@ -200,22 +200,22 @@ static void check_first_pair(const struct corpus *corpus, const struct contacts 
     /* With all centres inside, what lies between two overlapping arcs' centres is in both shapes. */
     const bool outside_band = fabs(pair->gap) > pair->bound;
     if (!wrong && sure && outside_band && centers_inside(&corpus->scene, k)) {
-        tally->inside++;
+        counts->inside++;
         if ((separation < 0) != (pair->gap < 0))
             wrong = "the wrong sign though all centres lie inside";
     } else if (outside_band) {
-        tally->wrong_signs += (separation < 0) != (pair->gap < 0);
+        counts->wrong_signs += (separation < 0) != (pair->gap < 0);
     }
-    tally->pairs++;
-    tally->doubted += verdict.doubted;
-    tally->none += outcome == NARC_OUTCOME_NONE;
-    tally->late += verdict.found && verdict.before > 0;
+    counts->pairs++;
+    counts->doubted += verdict.doubted;
+    counts->none += outcome == NARC_OUTCOME_NONE;
+    counts->late += verdict.found && verdict.before > 0;
     if (wrong)
-        show_wrong_pair(corpus, k, "sat-first", wrong, &all->rows[k], outcome, &tally->wrong);
+        show_wrong_pair(corpus, k, "sat-first", wrong, &all->rows[k], outcome, &counts->wrong);
 }
 
 TEST(test_first_pair) {
-    struct first_tally tally = {0};
+    struct first_counts counts = {0};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
@@ -230,7 +230,7 @@ TEST(test_first_pair) {
         assert_memory_equal(outcomes, again, count);
         for (size_t k = 0; k < count; k++) {
             assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
-            check_first_pair(corpus, &all, k, outcomes[k], &tally);
+            check_first_pair(corpus, &all, k, outcomes[k], &counts);
         }
         for (int m = 0; m < MARGINS; m++) {
             struct contacts found = query_contacts(&corpus->scene, &other, &(narc_query){.margin = margins[m]});
@@ -248,11 +248,11 @@ TEST(test_first_pair) {
     }
     printf("  sat-first: %zu pairs; in doubt %zu, without a pair of arcs %zu, with one that is not the first of all "
            "%zu; sign wrong %zu, of %zu with all centres inside 0\n",
-           tally.pairs, tally.doubted, tally.none, tally.late, tally.wrong_signs, tally.inside);
-    assert_int_equal(tally.wrong, 0);
+           counts.pairs, counts.doubted, counts.none, counts.late, counts.wrong_signs, counts.inside);
+    assert_int_equal(counts.wrong, 0);
     /* Hard places are in doubt on purpose, but only they are. */
-    assert_true(tally.doubted < tally.pairs / 2);
-    assert_true(tally.late > tally.pairs / 10);
+    assert_true(counts.doubted < counts.pairs / 2);
+    assert_true(counts.late > counts.pairs / 10);
 }
 
 /* ------------------------------------------------------------------------------------------------ polygon-sat */
@@ -330,13 +330,13 @@ TEST(test_polygons) {
  * normal, 27 e and 12 e, and the dot products and sums round by 20 e more. */
 static const double filter_band = 256.0 / 16777216.0;
 
-struct filter_tally {
+struct filter_counts {
     size_t apart, colliding, wrong, false_alarms;
 };
 
 /* `least` and `most`: how far the filter's shapes are apart, where there is a choice of them. */
 static void check_filter(const struct corpus *corpus, size_t k, bool told, double least, double most,
-                         struct filter_tally *tally) {
+                         struct filter_counts *counts) {
     const struct exact_pair *pair = &corpus->pairs[k];
     const double band = filter_band * pair->reach;
     const char *wrong = NULL;
@@ -346,17 +346,17 @@ static void check_filter(const struct corpus *corpus, size_t k, bool told, doubl
         wrong = "yes, though the filter's shapes are apart";
     else if (most < -band && !told)
         wrong = "no, though the filter's shapes overlap";
-    tally->apart += least > band;
-    tally->colliding += most < -band;
-    tally->false_alarms += told && pair->gap > 0;
+    counts->apart += least > band;
+    counts->colliding += most < -band;
+    counts->false_alarms += told && pair->gap > 0;
     if (wrong) {
-        show_wrong_pair(corpus, k, "filter", wrong, NULL, 0, &tally->wrong);
+        show_wrong_pair(corpus, k, "filter", wrong, NULL, 0, &counts->wrong);
         print_error("  filter: told %d, gap %.9g .. %.9g, band %.3g\n", told, least, most, band);
     }
 }
 
 TEST(test_filters) {
-    struct filter_tally tally[3] = {{0}};
+    struct filter_counts counts[3] = {{0}};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const struct scene *scene = &corpus->scene;
@@ -392,7 +392,7 @@ TEST(test_filters) {
                 }
             }
             for (int f = 0; f < 3; f++)
-                check_filter(corpus, k, bit_is_set(bits[f], k), least[f], most[f], &tally[f]);
+                check_filter(corpus, k, bit_is_set(bits[f], k), least[f], most[f], &counts[f]);
         }
         for (int f = 0; f < 3; f++)
             free(bits[f]);
@@ -401,10 +401,10 @@ TEST(test_filters) {
     }
     for (int f = 0; f < 3; f++) {
         printf("  %s: %zu apart, %zu overlapping; says yes of %zu separated pairs\n",
-               narc_method_name((narc_method)(NARC_METHOD_CIRCLE + f)), tally[f].apart, tally[f].colliding,
-               tally[f].false_alarms);
-        assert_int_equal(tally[f].wrong, 0);
-        assert_true(tally[f].apart > 0 && tally[f].colliding > 0);
+               narc_method_name((narc_method)(NARC_METHOD_CIRCLE + f)), counts[f].apart, counts[f].colliding,
+               counts[f].false_alarms);
+        assert_int_equal(counts[f].wrong, 0);
+        assert_true(counts[f].apart > 0 && counts[f].colliding > 0);
     }
 }
 
