@@ -378,6 +378,21 @@ void test_overlaps() {
                               narc::query().selection(narc::span<const uint32_t>()), narc::span<uint64_t>()));
 }
 
+void test_separations() {
+    const Scene scene = make_scene(100);
+    const auto query = narc::query().margin(INFINITY);
+    std::vector<float> separations;
+    std::vector<narc_contact> contacts;
+    float few[1];
+    CHECK(narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, separations));
+    const auto found = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, contacts).value();
+    CHECK(separations.size() == found.size());
+    for (size_t k = 0; k < found.size(); k++)
+        CHECK(separations[k] <= found[k].separation && separations[k] >= found[k].separation);
+    const auto short_by_one = narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, few);
+    CHECK(status_of(short_by_one) == NARC_ERROR_CAPACITY && short_by_one.error().value == found.size());
+}
+
 void test_small_batches() {
     const Scene scene = make_scene(2);
     // Nothing at all.
@@ -648,6 +663,7 @@ int main() {
     test_query();
     test_contacts();
     test_overlaps();
+    test_separations();
     test_small_batches();
     test_workers();
     test_broad_phase();
