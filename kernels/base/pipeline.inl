@@ -139,7 +139,9 @@ enum { FEW_PAIRS = 4 };
 INLINE void run_pairs(const struct call *call, const struct course *course, struct queue *queues) {
     const struct sources given = copy_sources(call->batch);
     const bool not_first = course->edged == 0 || call->count <= FEW_PAIRS; /* do polygons skip the first stage? */
-    const enum pose_layout layout = call->count <= FEW_PAIRS ? POSE_COLUMNS : find_layout(&given);
+    const enum pose_layout layout = call->batch->of_casts      ? POSE_LANES
+                                    : call->count <= FEW_PAIRS ? POSE_COLUMNS
+                                                               : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
     for (int s = 0; s < course->end; s++)
@@ -182,7 +184,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
 
 /* Are there pieces of chains, and are they asked of as such? */
 static inline bool has_pieces(const narc_batch *batch) {
-    return NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0;
+    return NARC_PIECES && !batch->of_casts && batch->shapes->piece_count > 0;
 }
 
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,

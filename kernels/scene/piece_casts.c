@@ -26,6 +26,7 @@
 #include "kernels.h"
 #include "piece.h"
 #include "scene/body_frame.inl"
+#include "scene/cast_fields.inl"
 #include "scene/concave.inl"
 
 /* Contacts after which a cast that turns is unfinished. */
@@ -396,7 +397,7 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
             return NARC_CAST_HIT;
         }
         behind = near && (behind || !o.reached);
-        if (behind && !(casts->turning[slot] > 0)) /* it leaves the piece once */
+        if (behind && !(casts->moved[slot] > 0)) /* it leaves the piece once */
             return NARC_CAST_MISS;
         before = casts->time[slot];
         const bool comes = o.separation > target && o.separation < INFINITY; /* then it goes by what is left alone */
@@ -700,14 +701,10 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
 
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
-/* Of a cast that has begun, or that is where a run's closed shape is at the target: what becomes of it. Time and
- * contact are then the answer's. */
 int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
     const bool of_a = is_hollow(shapes, casts, slot, 0), of_b = is_hollow(shapes, casts, slot, 1);
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]};
-    const double angles = fabs((double)casts->side[0].angle[slot]) * casts->side[0].lever[slot] +
-                          fabs((double)casts->side[1].angle[slot]) * casts->side[1].lever[slot];
-    const double speed = sqrt(find_dot(motion, motion)) + angles;
+    const double speed = sqrt(find_dot(motion, motion)) + casts->moved[slot];
     double size = INFINITY;
     for (int side = 0; side < 2; side++)
         size = find_least(size, (double)casts->side[side].scale[slot] *
@@ -716,7 +713,7 @@ int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot)
         return NARC_CAST_MISS;
     if (!of_a && !of_b)
         return advance_in_time(shapes, casts, slot, look_at_run, speed, size);
-    if (casts->turning[slot] > 0)
+    if (casts->moved[slot] > 0)
         return advance_in_time(shapes, casts, slot, look_at_concave, speed, size);
     return cast_straight(shapes, casts, slot, of_a ? 0 : 1);
 }
