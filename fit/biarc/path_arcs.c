@@ -12,17 +12,26 @@
 #include "outline/crossings.h"
 #include "outline/path.h"
 
+/* How near a contour is fitted, and whether by lines alone; whether it has a chain, and that met another one. */
+struct effort {
+    double tolerance;
+    bool lines, drawn, meets;
+};
+
 struct builder {
     narc_arc_chains chains;
     size_t arc_capacity, end_capacity;
-    double tolerance;
+    double tolerance; /* of the contour that is fitted */
     bool open;
-    narc_contours drawn; /* flattened */
-    narc_aabb *boxes;    /* of its contours */
+    struct effort *efforts; /* of contours */
+    narc_contours drawn;    /* flattened */
+    narc_aabb *boxes;       /* of its contours */
     narc_crossings crossings;
     narc_shapes *store; /* that is asked what it takes */
     narc_error *error;
 };
+
+static size_t begin_of(const narc_contours *drawn, size_t contour) { return contour ? drawn->ends[contour - 1] : 0; }
 
 static narc_status fail_memory(const struct builder *builder) {
     return narc_fail(builder->error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %zu arcs",
@@ -139,6 +148,26 @@ static narc_status add_contour(struct builder *builder, const unsigned char *deg
     return status;
 }
 
+/* A contour's own lines, or the chords of its curves. */
+static narc_status add_chords(struct builder *builder, size_t contour, double flatness) {
+    const narc_contours *drawn = &builder->drawn;
+    narc_arc_chains *chains = &builder->chains;
+    const size_t begin = begin_of(drawn, contour), end = drawn->ends[contour];
+    narc_curve_arc *arcs =
+        narc_grow(chains->arcs, &builder->arc_capacity, chains->arc_count + end - begin, sizeof *arcs);
+    if (!arcs)
+        return fail_memory(builder);
+    chains->arcs = arcs;
+    for (size_t i = begin; i < end; i++) {
+        const bool is_last = i + 1 == end;
+        const narc_point p = drawn->points[i], q = drawn->points[is_last ? begin : i + 1];
+        if (!is_same(p, q) && !(is_last && builder->open))
+            arcs[chains->arc_count++] = (narc_curve_arc){.start = p, .end = q, .center = p, .radius = INFINITY};
+    }
+    chains->distance = fmax(chains->distance, flatness);
+    return NARC_OK;
+}
+
 /* ---------------------------------------------------------------------------- directions */
 
 /* A place in the middle of a piece. */
@@ -174,8 +203,6 @@ static void reverse_chain(narc_arc_chains *chains, size_t begin) {
     }
 }
 
-static size_t begin_of(const narc_contours *drawn, size_t contour) { return contour ? drawn->ends[contour - 1] : 0; }
-
 /* Is a contour inside an odd number of others? */
 static bool is_hole(const struct builder *builder, size_t contour) {
     const narc_contours *drawn = &builder->drawn;
@@ -203,7 +230,8 @@ static const double FLAT = 100, FLATTER = 0.25;
 /* Of the tolerance, what arcs get if flat ones become lines, and what must be left for these. */
 static const double SHARE_OF_ARCS = 0.75, LEAST_SHARE = 1.0 / 8;
 
-/* So often a contour is fitted anew: nearer, where its arcs meet and it does not, or with more lines. */
+/* So often a contour is fitted anew: nearer, where its arcs meet and it does not, or with more lines; at last with lines
+ * alone. */
 enum { MOST_TRIES = 10 };
 
 /* How many chords serve an arc within `room`; 0: it may stay. */
@@ -310,8 +338,10 @@ static narc_status check_contour(const struct builder *builder, const narc_path 
 static narc_status fit_contour(struct builder *builder, const narc_path *path, size_t contour,
                                const unsigned char *degrees, size_t count, const narc_point *points) {
     narc_arc_chains *chains = &builder->chains;
+    struct effort *effort = &builder->efforts[contour];
     const size_t begin = chains->arc_count;
     const double whole = builder->tolerance, before = chains->distance;
+    const double flatness = fmax(0, builder->drawn.flatness - path->slack);
     const bool hole = !builder->open && is_hole(builder, contour);
     double flat = FLAT;
     narc_status status = check_contour(builder, path, contour);
@@ -321,10 +351,13 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     if (status)
         return status;
     builder->error = &reason;
+    builder->tolerance = effort->tolerance;
     for (int tries = 0; tries < MOST_TRIES; tries++) {
+        const bool lines = flatness <= whole && (effort->lines || tries + 1 == MOST_TRIES);
         chains->arc_count = begin;
         chains->distance = 0;
-        status = add_contour(builder, degrees, count, points, path->slack);
+        status =
+            lines ? add_chords(builder, contour, flatness) : add_contour(builder, degrees, count, points, path->slack);
         if (status || chains->arc_count == begin)
             break;
         if (!builder->open && (hole ? measure_chain(chains, begin) > 0 : measure_chain(chains, begin) < 0))
@@ -334,7 +367,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
         for (size_t i = begin; i < chains->arc_count; i++)
             any = any || count_chords(&chains->arcs[i], flat, whole, &(double){0});
         if (any && room < LEAST_SHARE * whole) {
-            builder->tolerance = SHARE_OF_ARCS * whole;
+            builder->tolerance = fmin(builder->tolerance, SHARE_OF_ARCS * whole);
             continue;
         }
         status = any ? cut_flat_arcs(builder, begin, flat, room) : NARC_OK;
@@ -357,6 +390,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
             return fail_memory(builder);
         chains->ends = ends;
         ends[chains->count++] = chains->arc_count;
+        effort->drawn = true;
     }
     if (crossing)
         return fail_crossing(builder, path, crossing);
@@ -385,6 +419,135 @@ static narc_status add_moves(struct builder *builder, const narc_path *path) {
     return status;
 }
 
+/* ---------------------------------------------------------------------------- chains that cross each other */
+
+static bool holds(const narc_curve_arc *on, narc_point p) {
+    if (on->turn == 0)
+        return dot(minus(p, on->start), minus(on->end, p)) >= 0;
+    const narc_point u = minus(on->start, on->center), v = minus(p, on->center);
+    const double angle = narc_atan2(copysign(1, on->turn) * cross(u, v), dot(u, v));
+    return (angle < 0 ? angle + 2 * PI : angle) <= fabs(on->turn);
+}
+
+/* Does a line or arc meet another one? */
+static bool do_meet(const narc_curve_arc *a, const narc_curve_arc *b) {
+    if (a->turn == 0 && b->turn != 0)
+        return do_meet(b, a);
+    const narc_point d = b->turn == 0 ? minus(b->end, b->start) : minus(b->center, a->center);
+    const double size = length(d), square = dot(d, d);
+    if (a->turn == 0) {
+        const narc_point e = minus(a->end, a->start), w = minus(b->start, a->start);
+        const double across = cross(e, d), t = cross(w, d) / across, u = cross(w, e) / across;
+        return across != 0 && t >= 0 && t <= 1 && u >= 0 && u <= 1;
+    }
+    /* The points of both circles, or of circle and line, are so far on from a point of the line between or across them. */
+    const narc_point w = minus(b->start, a->center);
+    const double far =
+        b->turn == 0 ? cross(d, w) / size : (square + (a->radius - b->radius) * (a->radius + b->radius)) / (2 * size);
+    const double half = (a->radius - far) * (a->radius + far);
+    const narc_point way = {d.x / size, d.y / size}, out = b->turn == 0 ? turned(way) : way;
+    const narc_point foot = along(a->center, far, out);
+    if (!(half >= 0))
+        return false;
+    for (int side = -1; side <= 1; side += 2) {
+        const narc_point p = along(foot, side * sqrt(half), turned(out));
+        if (holds(a, p) && holds(b, p))
+            return true;
+    }
+    return false;
+}
+
+/* A piece of a chain, and a box around it. */
+struct swept {
+    const narc_curve_arc *arc;
+    size_t chain;
+    narc_aabb box;
+};
+
+static int compare_swept(const void *left, const void *right) {
+    const struct swept *a = left, *b = right;
+    return a->box.min_x != b->box.min_x ? (a->box.min_x > b->box.min_x) - (a->box.min_x < b->box.min_x)
+                                        : (a->arc > b->arc) - (a->arc < b->arc);
+}
+
+static struct swept bound_arc(const narc_curve_arc *arc, size_t chain) {
+    const narc_point p = arc->start, q = arc->end, c = arc->center;
+    const double out = arc->turn == 0 ? 0 : length(minus(q, p)) * fabs(tangent(arc->turn / 4)) / 2, r = arc->radius;
+    const narc_aabb box = {fmin(p.x, q.x) - out, fmin(p.y, q.y) - out, fmax(p.x, q.x) + out, fmax(p.y, q.y) + out};
+    return (struct swept){arc, chain, fabs(arc->turn) > PI ? (narc_aabb){c.x - r, c.y - r, c.x + r, c.y + r} : box};
+}
+
+static size_t find_contour_of_chain(const struct builder *builder, size_t chain) {
+    size_t contour = 0;
+    for (; chain || !builder->efforts[contour].drawn; contour++)
+        chain -= builder->efforts[contour].drawn;
+    return contour;
+}
+
+/* Do the contours touch as they are drawn? */
+static bool do_touch(const struct builder *builder, size_t a, size_t b) {
+    const narc_contours *drawn = &builder->drawn;
+    for (size_t k = 0; k < builder->crossings.count; k++) {
+        const narc_crossing *at = &builder->crossings.items[k];
+        if (narc_find_contour(drawn->ends, drawn->count, at->line) == a &&
+            narc_find_contour(drawn->ends, drawn->count, at->other) == b)
+            return true;
+    }
+    return false;
+}
+
+/* Notes contours whose chains meet although they themselves do not. */
+static narc_status compare_chains(struct builder *builder, bool *out_any) {
+    const narc_arc_chains *chains = &builder->chains;
+    struct swept *swept = malloc(chains->arc_count * sizeof *swept);
+    *out_any = false;
+    if (!swept)
+        return fail_memory(builder);
+    for (size_t k = 0, i = 0; k < chains->count; k++)
+        for (; i < chains->ends[k]; i++)
+            swept[i] = bound_arc(&chains->arcs[i], k);
+    qsort(swept, chains->arc_count, sizeof *swept, compare_swept);
+    for (size_t i = 0; i < chains->arc_count; i++)
+        for (size_t j = i + 1; j < chains->arc_count && swept[j].box.min_x <= swept[i].box.max_x; j++) {
+            const struct swept *p = &swept[i], *q = &swept[j];
+            if (p->chain == q->chain || q->box.min_y > p->box.max_y || q->box.max_y < p->box.min_y ||
+                !do_meet(p->arc, q->arc))
+                continue;
+            const size_t a = find_contour_of_chain(builder, p->chain), b = find_contour_of_chain(builder, q->chain);
+            if (!do_touch(builder, a, b) && !do_touch(builder, b, a))
+                builder->efforts[a].meets = builder->efforts[b].meets = *out_any = true;
+        }
+    free(swept);
+    return NARC_OK;
+}
+
+/* Fits all contours, and those again, nearer, whose chains cross. */
+static narc_status fit_contours(struct builder *builder, const narc_path *path) {
+    const double whole = builder->tolerance;
+    bool any = true;
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k < builder->drawn.count; k++)
+        builder->efforts[k] = (struct effort){.tolerance = whole};
+    for (int tries = 1; any && !status; tries++) {
+        builder->chains.arc_count = builder->chains.count = 0;
+        builder->chains.distance = 0;
+        status = add_moves(builder, path);
+        if (status || builder->chains.count < 2)
+            break;
+        status = compare_chains(builder, &any);
+        for (size_t k = 0; k < builder->drawn.count && any && !status; k++) {
+            struct effort *effort = &builder->efforts[k];
+            if (effort->meets && tries > MOST_TRIES)
+                return narc_fail(builder->error, NARC_ERROR_NOT_SIMPLE, k, whole,
+                                 "contour %zu: it is too near another one for the tolerance %g: they cross", k, whole);
+            effort->tolerance *= effort->meets ? 0.5 : 1;
+            effort->lines = effort->lines || (effort->meets && tries == MOST_TRIES);
+            effort->meets = effort->drawn = false;
+        }
+    }
+    return status;
+}
+
 /* Contours that cross by so little, in parts of the largest coordinate, or by half of the tolerance, only touch. */
 static const double CROSSING = 1e-6;
 
@@ -394,6 +557,7 @@ static narc_status prepare(struct builder *builder, const narc_path *path) {
     const narc_contours *drawn = &builder->drawn;
     double largest = 0;
     builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
+    builder->efforts = malloc((drawn->count + 1) * sizeof *builder->efforts);
     for (size_t k = 0, i = 0; builder->boxes && k < drawn->count; k++) {
         narc_aabb *box = &builder->boxes[k];
         for (*box = (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY}; i < drawn->ends[k]; i++) {
@@ -403,7 +567,7 @@ static narc_status prepare(struct builder *builder, const narc_path *path) {
             largest = fmax(largest, fmax(fabs(p.x), fabs(p.y)));
         }
     }
-    if (!status && !builder->boxes)
+    if (!status && !(builder->boxes && builder->efforts))
         status = fail_memory(builder);
     if (!status)
         status = narc_find_crossings(&builder->drawn, !builder->open, fmin(builder->tolerance / 2, CROSSING * largest),
@@ -420,12 +584,13 @@ narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, 
     struct builder builder = {.tolerance = tolerance, .open = open, .error = error};
     narc_status status = prepare(&builder, path);
     if (!status)
-        status = add_moves(&builder, path);
+        status = fit_contours(&builder, path);
     if (!status && builder.chains.count == 0)
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
     narc_release_contours(&builder.drawn);
     free(builder.crossings.items);
     free(builder.boxes);
+    free(builder.efforts);
     narc_destroy_shapes(builder.store);
     if (status)
         narc_release_chains(&builder.chains);

@@ -206,10 +206,21 @@ static bool add_contour(work *w, size_t contour) {
 
 /* ---------------------------------------------------------------------------- the best cut */
 
+/* The ways to a node and on from it, past others in its place: bridges may have no length. */
+static void find_ways(const work *w, const ring *of, size_t k, narc_point *out_in, narc_point *out_on) {
+    const size_t n = of->count;
+    const narc_point p = place(w, of->nodes[k]);
+    *out_in = *out_on = (narc_point){0, 0};
+    for (size_t i = 1; i < n && out_in->x == 0 && out_in->y == 0; i++)
+        *out_in = minus(p, place(w, of->nodes[(k + n - i) % n]));
+    for (size_t i = 1; i < n && out_on->x == 0 && out_on->y == 0; i++)
+        *out_on = minus(place(w, of->nodes[(k + i) % n]), p);
+}
+
 /* Does a direction go from the ring's node to its inside? */
 static bool goes_inside(const work *w, const ring *of, size_t k, narc_point direction) {
-    const narc_point p = place(w, of->nodes[k]), before = place(w, of->nodes[(k ? k : of->count) - 1]);
-    const narc_point in = minus(p, before), out = minus(place(w, of->nodes[(k + 1) % of->count]), p);
+    narc_point in, out;
+    find_ways(w, of, k, &in, &out);
     const bool left_of_in = cross(in, direction) > 0, left_of_out = cross(out, direction) > 0;
     return cross(in, out) >= 0 ? left_of_in && left_of_out : left_of_in || left_of_out;
 }
@@ -278,8 +289,9 @@ static void sort_nodes(const work *w, const ring *of) {
 static void find_depths(const work *w, const ring *of) {
     const size_t count = wrap_nodes(w, of);
     for (size_t k = 0; k < of->count; k++) {
-        const narc_point p = place(w, of->nodes[k]), in = minus(p, place(w, of->nodes[(k ? k : of->count) - 1]));
-        const narc_point out = minus(place(w, of->nodes[(k + 1) % of->count]), p);
+        const narc_point p = place(w, of->nodes[k]);
+        narc_point in, out;
+        find_ways(w, of, k, &in, &out);
         double depth = INFINITY;
         if (cross(in, out) >= -STRAIGHT * length(in) * length(out) && !(cross(in, out) == 0 && dot(in, out) < 0))
             depth = 0;
@@ -330,13 +342,45 @@ static double try_start(const work *w, const ring *of, size_t start, size_t stri
     return least;
 }
 
+/* Twice the area of the side from node i to node j. */
+static double measure_ring(const work *w, const ring *of, size_t i, size_t j) {
+    const narc_point base = place(w, of->nodes[i]);
+    double twice = 0;
+    for (size_t k = i + 1; k < j; k++)
+        twice += cross(minus(place(w, of->nodes[k]), base), minus(place(w, of->nodes[k + 1]), base));
+    return twice;
+}
+
+/* A ring that comes to a place twice, with its inside on the left of both ways round, is two that touch there. The nodes
+ * are in order. */
+static bool find_pinch(const work *w, const ring *of, size_t *out_i, size_t *out_j) {
+    for (size_t k = 0; k < of->count; k++) {
+        const narc_point p = place(w, of->nodes[w->order[k]]);
+        for (size_t next = k + 1; next < of->count; next++) {
+            const size_t a = w->order[k], b = w->order[next], i = a < b ? a : b, j = a < b ? b : a;
+            const narc_point q = place(w, of->nodes[w->order[next]]);
+            if (compare_points(&p, &q) != 0)
+                break;
+            const double side = measure_ring(w, of, i, j);
+            if (side > 0 && measure_ring(w, of, 0, of->count - 1) - side > 0) {
+                *out_i = i;
+                *out_j = j;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /* Where to cut a ring of four nodes or more: from its deepest bays to some ends, or to any, or else from any node. If no cut
  * is open, anywhere: both halves are smaller. */
 static void find_cut(const work *w, const ring *of, size_t *out_i, size_t *out_j) {
     size_t starts[STARTS], end = 0;
+    sort_nodes(w, of);
+    if (find_pinch(w, of, out_i, out_j))
+        return;
     find_depths(w, of);
     const size_t count = choose_starts(w, of, starts);
-    sort_nodes(w, of);
     *out_i = 0;
     *out_j = of->count / 2;
     double least = INFINITY;

@@ -270,11 +270,20 @@ static narc_status cut_contours(const narc_contours *contours, bool crosses, con
     if (request->tolerance > 0 && !(tolerance >= LEAST_TOLERANCE * extent))
         return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, least,
                          "the tolerance %g is too small for parts, at least %g is possible", request->tolerance, least);
-    const double slack = LARGEST_SLACK * extent;
-    narc_status status =
-        narc_make_region(contours, request->tolerance > 0 ? fmin(slack, SLACK * tolerance) : slack, &region, error);
-    if (status)
+    const double most = LARGEST_SLACK * extent, slack = request->tolerance > 0 ? fmin(most, SLACK * tolerance) : most;
+    narc_contours loops = {0};
+    narc_status status = narc_make_region(contours, slack, &region, error);
+    if (!status && crosses)
+        status = narc_split_holes(&region, &loops, error);
+    if (!status && loops.count) {
+        narc_release_region(&region);
+        status = narc_make_region(&loops, slack, &region, error);
+    }
+    narc_release_contours(&loops);
+    if (status) {
+        narc_release_region(&region);
         return status;
+    }
     status = find_pieces(&region, request, request->tolerance > 0 ? tolerance : 0, &pieces, error);
     /* The hulls are those of the outline's own points, which may be further out than the simpler ones by the slack. */
     if (!status && request->tolerance > 0)

@@ -222,6 +222,69 @@ TEST(test_narrow_slots) {
     fit_ring("slot", points, count, 0.05, count);
 }
 
+/* A slot that is thousands of times thinner than the tolerance: lines alone keep it whole. */
+TEST(test_thinnest_slots) {
+    enum { SIDE = 60 };
+    for (double width = 2e-3; width > 1e-4; width /= 3) {
+        narc_point points[2 * SIDE];
+        for (size_t k = 0; k < SIDE; k++) {
+            const double x = 10 * (double)k / (SIDE - 1), y = 0.4 * sin(x);
+            points[k] = (narc_point){x, y};
+            points[2 * SIDE - 1 - k] = (narc_point){x, y + width};
+        }
+        fit_ring("thinnest slot", points, 2 * SIDE, 0.5, 2 * SIDE);
+    }
+}
+
+/* Contours that are nearer to each other than the tolerance: their chains do not cross. Seen in many lines. */
+TEST(test_near_contours) {
+    enum { SIDES = 200, STEPS = 64 };
+    struct test_random random = test_random_named("near contours");
+    for (size_t trial = 0, trials = test_trials(6); trial < trials; trial++) {
+        const double tolerance = 0.05, gap = tolerance * random_log_between(&random, 1e-3, 0.5);
+        double phase[6];
+        for (int w = 0; w < 6; w++)
+            phase[w] = 2 * PI * random_unit(&random);
+        narc_path *path = NULL;
+        assert_int_equal(narc_create_path(&path), NARC_OK);
+        for (int inner = 0; inner < 2; inner++)
+            for (size_t k = 0; k < SIDES; k++) {
+                const double a = 2 * PI * ((double)k + 0.37 * inner) / SIDES;
+                double r = inner ? 1 - gap - 1e-4 : 1; /* chords are nearer by less than 1e-4 */
+                for (int w = 0; w < 6; w++)
+                    r += 0.15 / (w + 1) * cos((w + 1) * a + phase[w]);
+                const narc_point p = {4 * r * cos(a), 4 * r * sin(a)};
+                assert_int_equal(k ? narc_line_to(path, p, NULL) : narc_move_to(path, p, NULL), NARC_OK);
+            }
+        narc_arc_chains chains;
+        narc_error error;
+        expect_ok(narc_fit_chains(path, tolerance, false, &chains, &error), &error);
+        assert_int_equal(chains.count, 2);
+        assert_true(chains.distance <= tolerance);
+        /* All of the inner one, a sample each 64th of a piece, is inside the outer one. */
+        narc_point *outer = malloc(STEPS * chains.ends[0] * sizeof *outer);
+        assert_non_null(outer);
+        for (size_t i = 0; i < STEPS * chains.ends[0]; i++)
+            outer[i] = arc_point(&chains.arcs[i / STEPS], (double)(i % STEPS) / STEPS);
+        for (size_t i = STEPS * chains.ends[0]; i < STEPS * chains.arc_count; i++) {
+            const narc_point p = arc_point(&chains.arcs[i / STEPS], (double)(i % STEPS) / STEPS);
+            bool inside = false;
+            double least = INFINITY;
+            for (size_t k = 0; k < STEPS * chains.ends[0]; k++) {
+                const narc_point a = outer[k], b = outer[(k + 1) % (STEPS * chains.ends[0])];
+                if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+                    inside = !inside;
+                least = fmin(least, distance_to_line(a, b, p));
+            }
+            if (!inside && least > 1e-4) /* the lines are that near to the arcs */
+                fail_msg("gap %g: the chain of the hole leaves that around it at %g, %g", gap, p.x, p.y);
+        }
+        free(outer);
+        narc_release_chains(&chains);
+        narc_destroy_path(path);
+    }
+}
+
 /* Arcs of more than half a turn become two. */
 TEST(test_large_turns) {
     for (int way = 0; way < 2; way++) {
