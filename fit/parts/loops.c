@@ -27,8 +27,6 @@ static size_t find_group(const narc_contours *contours, const size_t *groups, si
     return groups ? groups[contour] : contour;
 }
 
-static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
-
 static size_t add_step(step *steps, size_t count, narc_point at, size_t group, bool crosses) {
     steps[count] = (step){at, group, count + 1, crosses, false};
     return count + 1;

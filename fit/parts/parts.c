@@ -259,11 +259,7 @@ static narc_status cut_contours(const narc_contours *contours, bool crosses, con
                                 narc_parts *out_parts, narc_error *error) {
     narc_region region = {0};
     narc_pieces pieces = {0};
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < contours->point_count; k++) {
-        const narc_point p = contours->points[k];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
-    }
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
     const double extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
     const double lap = NARC_LAP_REACH * request->lap, tolerance = request->tolerance - contours->flatness - lap;
     const double least = contours->flatness + lap + LEAST_TOLERANCE * extent;

@@ -11,19 +11,6 @@
 
 enum { SAMPLES = 64 };
 
-/* Inside by odd crossings. */
-static bool is_inside(const narc_contours *of, narc_point p) {
-    bool inside = false;
-    for (size_t k = 0, begin = 0; k < of->count; begin = of->ends[k++]) {
-        for (size_t i = begin; i < of->ends[k]; i++) {
-            const narc_point a = of->points[i], b = of->points[i + 1 < of->ends[k] ? i + 1 : begin];
-            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-                inside = !inside;
-        }
-    }
-    return inside;
-}
-
 static double find_distance(const narc_contours *of, narc_point p) {
     double least = INFINITY;
     for (size_t k = 0, begin = 0; k < of->count; begin = of->ends[k++])
@@ -408,7 +395,7 @@ TEST(test_random_crossings) {
             if (distance > made.parts.distance + 1e-9 && is_covered(&made, p, 0))
                 fail_msg("trial %zu: %g, %g is covered, but %g away", trial, p.x, p.y, distance);
         }
-        const double cell = width * height / (SAMPLES * SAMPLES), room = 0.1 * cell * SAMPLES;
+        const double cell = width * height / (SAMPLES * SAMPLES), room = 0.5 * cell * SAMPLES; /* cells on borders */
         assert_true(made.parts.area >= cell * (double)alone - room && made.parts.area <= cell * (double)any + room);
         free_cover(&made);
         free_outline(&of);
