@@ -16,8 +16,8 @@ function(narc_install target component file)
 endfunction()
 
 narc_install(narc narc_runtime narcShared
-  soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h soa/narc_scene.h soa/narc_chains.h
-  dispatch/narc.h dispatch/narc_broad_phase.h dispatch/narc.hpp)
+  include/narc_export.h include/narc_columns.h include/narc_workers.h include/narc_shapes.h include/narc_pairs.h include/narc_scene.h include/narc_chains.h
+  include/narc.h include/narc_broad_phase.h include/narc.hpp)
 narc_install(narc_static narc_development narcStatic)
 # The others where they are built. The static library of shapes files needs cJSON of its users; what the fitting library
 # links itself, its users need not find.
@@ -25,18 +25,18 @@ set(packages narc narc-static)
 if(TARGET narc_files)
   set_target_properties(narc_files PROPERTIES EXPORT_NAME files)
   set_target_properties(narc_files_static PROPERTIES EXPORT_NAME files_static)
-  narc_install(narc_files narc_tools narcFiles files/narc_files.h)
+  narc_install(narc_files narc_tools narcFiles include/narc_files.h)
   narc_install(narc_files_static narc_development narcFilesStatic)
   list(APPEND packages narc-files)
 endif()
 if(TARGET narc_methods)
-  narc_install(narc_methods narc_runtime narcMethods methods/narc_methods.h)
+  narc_install(narc_methods narc_runtime narcMethods include/narc_methods.h)
   narc_install(narc_methods_static narc_development narcMethodsStatic)
   list(APPEND packages narc-methods narc-methods-static)
 endif()
 if(TARGET narc_fit)
   set_target_properties(narc_fit PROPERTIES EXPORT_NAME fit)
-  narc_install(narc_fit narc_tools narcFit fit/narc_fit.h)
+  narc_install(narc_fit narc_tools narcFit include/narc_fit.h)
   list(APPEND packages narc-fit)
 endif()
 if(TARGET narc_tool)

@@ -145,7 +145,8 @@ struct narc_cast_side {
 /* Casts under way, a slot each. The kernels may write behind the last one, up to NARC_CAST_ROOM. Times are floats,
  * rounded down: a place at a time is exact, and the caller's own. */
 typedef struct narc_casts {
-    float tolerance;                                           /* the caller's */
+    float tolerance;                                           /* the caller's, */
+    bool front_only;                                           /* and this */
     struct narc_cast_side side[2];                             /* A, B */
     double x[NARC_CAST_ROOM], y[NARC_CAST_ROOM];               /* B's position at the start, from A's */
     double motion_x[NARC_CAST_ROOM], motion_y[NARC_CAST_ROOM]; /* B's against A's */

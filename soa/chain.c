@@ -221,6 +221,8 @@ static narc_status read_side(const narc_arc *arcs, size_t count, const narc_chai
     if (status == NARC_OK)
         status = narc_check_crossings(&s->curves, error);
     if (status == NARC_OK)
+        narc_find_end_sides(&s->chain, &s->curves);
+    if (status == NARC_OK)
         status = narc_divide_chain(&s->chain, &s->curves, &division, error);
     s->count = division.count;
     s->records = division.records;

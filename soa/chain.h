@@ -75,7 +75,8 @@ typedef struct narc_curves {
     narc_curve_node *nodes; /* node k has the nodes 2 k + 1 and 2 k + 2 below */
     size_t count;
     bool closed;
-    double turn; /* of all of it */
+    double turn;             /* of all of it */
+    narc_curve end_sides[2]; /* of an open chain's solid */
 } narc_curves;
 
 /* The curves from `first` to before `end`, those below a node. */
@@ -110,6 +111,9 @@ typedef struct narc_chain_place {
     const narc_chain_arc *arc;
     double turned;
 } narc_chain_place;
+
+/* Finds where an open chain's solid ends: straight back from its ends, up to what is in the way of the chain. */
+void narc_find_end_sides(const narc_chain *chain, narc_curves *curves);
 
 /* How thick the solid is behind the front of a piece, convex arcs and the edges that join them from `begin` to `end`, or
  * one concave arc: along its normals, up to `most`. Coordinates are relative to `origin`. */

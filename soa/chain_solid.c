@@ -134,6 +134,8 @@ static void try_all(rays *r) {
     r->box = (narc_aabb){fmin(box[0].min_x, box[1].min_x), fmin(box[0].min_y, box[1].min_y),
                          fmax(box[0].max_x, box[1].max_x), fmax(box[0].max_y, box[1].max_y)};
     try_curves(r, (narc_span){0, 0, r->curves->count});
+    for (int k = 0; k < 2 && !r->curves->closed; k++)
+        try_curve(r, &r->curves->end_sides[k]);
 }
 
 static void try_line(rays *r, narc_point from, narc_point to) {
@@ -175,6 +177,29 @@ double narc_find_thickness(const narc_curves *curves, const narc_arc *arcs, size
     if (count == 0 || !signbit(arcs[0].radius))
         try_line(&r, last, r.end);
     return r.least;
+}
+
+/* Straight back means: from a corner at the end, as far as it turns by less than a right angle, from what is before it.
+ * A little beyond the end, so that rays along a side do not meet it. */
+void narc_find_end_sides(const narc_chain *chain, narc_curves *curves) {
+    narc_curves whole = *curves;
+    whole.closed = true;
+    for (int end = 0; end < 2 && !chain->closed && curves->count > 0; end++) {
+        const narc_chain_arc *arc = &chain->arcs[end ? chain->count - 1 : 0];
+        const double corner = arc->radius == 0 ? fmin(fmax(0, arc->turn), NARC_PI / 2) : 0;
+        const narc_aabb *box = &curves->nodes[0].box;
+        const narc_point from = end ? narc_find_chain_end(arc) : narc_find_chain_start(arc);
+        narc_point n;
+        narc_find_normal(end ? arc->start + arc->turn - corner : arc->start + corner, &n.x, &n.y);
+        rays r = {.curves = &whole, .from = from, .along = {-n.y, n.x}, .side = {n, n}, .begin = from, .end = from};
+        r.is_line = true;
+        r.least = 4 * (box->max_x - box->min_x + box->max_y - box->min_y);
+        r.room = 4 * narc_find_curve_room(&(narc_curve){.from = from, .to = add(from, -r.least, n)});
+        try_all(&r);
+        narc_curve *side = &curves->end_sides[end];
+        side->from = add(from, end ? r.room : -r.room, r.along);
+        side->to = add(side->from, -r.least, n);
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------ clearance */
@@ -292,6 +317,8 @@ double narc_find_clearance(const narc_curves *curves, narc_point point, narc_cha
         least = fmin(least, ended[k] ? find_part_distance(&t->curves[ends[k].curve], k ? 0 : ends[k].part,
                                                           k ? ends[k].part : 1, point)
                                      : find_distance(point, k ? t->curves[0].from : t->curves[count - 1].to));
+    for (int k = 0; k < 2 && !t->closed; k++)
+        least = fmin(least, find_curve_distance(&t->end_sides[k], point));
     const size_t first = ended[0] ? (size_t)ends[0].curve + 1 : t->count, last = ended[1] ? (size_t)ends[1].curve : 0;
     if (t->closed && first <= last)
         return find_nearest(t, all, first, last, point, least);

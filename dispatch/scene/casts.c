@@ -62,6 +62,7 @@ static void open_slots(const narc_cast_job *job, struct slots *slots) {
     slots->batch.manifolds = false;
     slots->batch.whole = true;
     slots->casts.tolerance = job->tolerance;
+    slots->casts.front_only = job->front_only;
 }
 
 static void move_slot(struct slots *slots, size_t from, size_t to) {
@@ -309,7 +310,7 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
         status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->tolerance,
                            "options.tolerance is %g, less than 0", (double)options->tolerance);
     if (status == NARC_OK)
-        status = narc_check_reserved(options->reserved, 2, "options", error);
+        status = narc_check_reserved(options->reserved, 1, "options", error);
     if (status == NARC_OK)
         status = narc_check_reserved(both[0]->reserved, 2, "motions", error);
     if (status == NARC_OK)
@@ -317,7 +318,8 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
     *out_job = (narc_cast_job){.motions = {*both[0], *both[1]},
                                .target = options->target,
                                .tolerance = options->tolerance,
-                               .targets = options->targets};
+                               .targets = options->targets,
+                               .front_only = options->front_only != 0};
     return status;
 }
 

@@ -20,7 +20,7 @@ typedef struct narc_cast_job {
     narc_motions motions[2]; /* of A's bodies, and of B's */
     float target, tolerance;
     narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A */
-    bool nearest;
+    bool nearest, front_only;
     narc_impact *rows;
     atomic_size_t skipped;
 } narc_cast_job;

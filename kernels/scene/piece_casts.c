@@ -21,6 +21,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "chain.h"
 #include "elementary.h"
 #include "kernels.h"
 #include "piece.h"
@@ -41,6 +42,7 @@ enum { MOST_CONTACTS = 1024, HALVINGS = 8 };
 struct scene {
     struct body_frame ground, body;
     struct concave_arc arc; /* from the ground's position */
+    bool front_only;        /* the caller's */
 };
 
 /* Where they are nearest: on the ground, from its position; the normal points to the body. */
@@ -60,9 +62,10 @@ static narc_toucher make_toucher(const struct body_frame *frame, const struct bo
     return (narc_toucher){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
 }
 
-static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation) {
+static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation,
+                             bool front_only) {
     const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
-    return narc_is_reached(&of_a, &of_b, separation, false);
+    return narc_is_reached(&of_a, &of_b, separation, front_only);
 }
 
 static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
@@ -92,6 +95,7 @@ static struct scene place_scene(const narc_shapes *shapes, const narc_casts *cas
     place_side(shapes, casts, slot, side, time, &scene.ground);
     place_side(shapes, casts, slot, 1 - side, time, &scene.body);
     scene.arc = place_concave(&scene.ground);
+    scene.front_only = casts->front_only;
     return scene;
 }
 
@@ -108,12 +112,29 @@ static double get_radius(const struct scene *scene, int arc) {
     return scene->body.scale * (double)scene->body.arcs[arc].arc.radius;
 }
 
-/* Is this arc's place that is furthest along u one that may touch? */
+/* What the contact kernel rounds a direction by, of the sizes that it comes from: of either body a coordinate of a centre
+ * is a sum of two products, and its position is added; each of these, and the difference, is rounded to 2^-24 of its
+ * size. So a coordinate of u is off by at most 6 of these, the vector by 9, and as the normals with which it is compared
+ * were rotated like that as well, what it is across them by 2^-24 * (9 + 5) or less. */
+#define DIRECTION_ROOM 0x1p-20
+
+/* How large the coordinates are from which u is computed. */
+static double measure_way(const struct scene *scene, int arc) {
+    const narc_stored_arc *const a = &scene->ground.arcs[0].arc, *const b = &scene->body.arcs[arc].arc;
+    const place between = {scene->body.position.x - scene->ground.position.x,
+                           scene->body.position.y - scene->ground.position.y};
+    return scene->ground.scale * (fabs((double)a->center_x) + fabs((double)a->center_y)) +
+           scene->body.scale * (fabs((double)b->center_x) + fabs((double)b->center_y)) + fabs(between.x) +
+           fabs(between.y);
+}
+
+/* Is this arc's place that is furthest along u one that may touch? Where two arcs of the body meet rounding decides which
+ * of them it belongs to; beyond an arc's end by so little the separation is the same but for the square of that. */
 static bool may_touch(const struct scene *scene, int arc, place u) {
     const narc_shape_header *const header = scene->body.header;
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
-    const double room = 0x1p-19 * sqrt(find_dot(own, own)); /* where arcs meet contacts round in float */
+    const double room = DIRECTION_ROOM * measure_way(scene, arc);
     const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= -room &&
                       find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= -room;
     return held && narc_touches(header, find_feature_number(header, arc, false)) &&
@@ -154,7 +175,7 @@ static void compare_arc(const struct scene *scene, int arc, struct nearest *best
         return;
     const double size = sqrt(find_dot(u, u));
     const place n = {-u.x / size, -u.y / size};
-    if (!reach_each_other(&scene->ground, &scene->body, n, separation)) {
+    if (!reach_each_other(&scene->ground, &scene->body, n, separation, scene->front_only)) {
         best->unreached = true;
         return;
     }
@@ -471,11 +492,12 @@ static int find_furthest(const struct outline *o, place n, double *out_height) {
     return best;
 }
 
-/* Gaps of closed shapes: the greatest, its normal from A to B, the arcs; and the greatest along normals of each front.
- * */
+/* Gaps of closed shapes: the greatest, its normal from A to B, the sum of the arcs' radii, the arcs; and the greatest along
+ * normals of each front. */
 struct gaps {
     double most, of_front[2];
     place normal, normal_of[2];
+    double radii, radii_of[2];
     int arc[2];
     bool front[2];
 };
@@ -489,15 +511,19 @@ static bool may_touch_at(const struct body_frame *frame, int arc, bool at_start)
 static void compare_gap(const struct body_frame bodies[2], double gap, place n, int a, int b, int at_start,
                         struct gaps *out) {
     const bool front[2] = {may_touch_at(&bodies[0], a, at_start == 0), may_touch_at(&bodies[1], b, at_start == 1)};
+    const double radii =
+        bodies[0].scale * (double)bodies[0].arcs[a].arc.radius + bodies[1].scale * (double)bodies[1].arcs[b].arc.radius;
     for (int side = 0; side < 2; side++)
         if (front[side] && gap > out->of_front[side]) {
             out->of_front[side] = gap;
             out->normal_of[side] = n;
+            out->radii_of[side] = radii;
         }
     if (gap < out->most || (gap == out->most && !(front[0] && front[1])))
         return;
     out->most = gap;
     out->normal = n;
+    out->radii = radii;
     for (int side = 0; side < 2; side++) {
         out->arc[side] = side ? b : a;
         out->front[side] = front[side];
@@ -624,14 +650,19 @@ static double find_front_distance(const struct body_frame *run, const struct out
     return most;
 }
 
-/* A front's gap that is less than the greatest by no more than this, of the sizes, is as great, if its normal is the same
- * but for rounding too: normals are stored in float, and where an edge's of the body is the run's but for an ulp the
- * gap along the body's own is greater by that. */
+/* A front's gap that is less than the greatest by no more than rounding is as great, if its normal is the same, too. Both
+ * bodies have their normals in float, with coordinates that are off by 2^-25, so that where an edge of the body lies along
+ * the front neither is exactly that of the other. The gap along a normal is the way between two centres along it, less the
+ * radii: it is off by at most sqrt(2) * 2^-25 of that way, which is no longer than the bodies reach and both radii.
+ *   Normals are the same that are no further apart than parts of a cut arc have in common: a body whose edge lies along
+ * the tangent there may have its normal beyond the end of either part. What the closure of a run turns by at an end of
+ * the front (chain_pieces.c) is 24 times as much. */
 #define LEVEL 0x1p-24
-#define SAME  0x1p-14 /* sine between the normals: more than the 2e-5 by which pieces reach beyond a cut */
+#define SAME  (2 * NARC_CHAIN_SEAM + 0x1p-22)
 
-static bool is_of_front(const struct gaps *g, int side, double size) {
-    return g->of_front[side] >= g->most - LEVEL * size && fabs(find_cross(g->normal_of[side], g->normal)) <= SAME &&
+static bool is_of_front(const struct gaps *g, int side, double reach) {
+    const double ways = 2 * reach + g->radii + g->radii_of[side];
+    return g->of_front[side] >= g->most - LEVEL * ways && fabs(find_cross(g->normal_of[side], g->normal)) <= SAME &&
            find_dot(g->normal_of[side], g->normal) > 0;
 }
 
@@ -661,7 +692,7 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
     if (!told)
         return out;
     out.separation = g.most;
-    out.reached = reach_each_other(&bodies[0], &bodies[1], g.normal, g.most);
+    out.reached = reach_each_other(&bodies[0], &bodies[1], g.normal, g.most, casts->front_only);
     write_run_contact(bodies, &outlines[0], &outlines[1], &g, &casts->contact[slot]);
     return out;
 }

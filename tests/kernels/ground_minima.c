@@ -378,19 +378,45 @@ static bool holds(const struct reference_body *body, narc_point point) {
                                (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
 }
 
-/* Is the ground's outline there out of a body's reach: outside the body, which is deeper, by `deepest`, than its inscribed
- * circle is wide, or than the ground is thick there; or does the body have an open end within, where the ground has no
- * other side? */
+/* Is a place right where a concave arc begins or ends, so near that what is `depth` deep below it belongs to neither side for
+ * certain, and is that more than a fifth of the arc's radius? */
+static bool is_deep_beside_arc(const struct chain *chain, narc_point foot, double depth, double bound) {
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k];
+        for (int end = 0; end < 2 && arc->radius < 0 && depth > -arc->radius / 5; end++) {
+            const double angle = end ? arc->end : arc->start;
+            const narc_point at = {arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
+            if (distance_between(at, foot) <= 0x1p-10 * depth + 4 * bound)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Is the ground's outline there out of a body's reach, as docs/terrain.md has it: outside the body, which is deeper, by
+ * `deepest`, than its inscribed circle is wide, or than the ground is thick there; outside its bounding circle; right beside a
+ * concave arc that is small beside the depth; or no further from an open end than deep, or does the body have one within:
+ * there the ground has no other side? */
 static bool is_beyond(const struct setting *setting, const struct reference_body *body,
-                      const struct ground_minimum *minimum, double deepest) {
+                      const struct ground_minimum *minimum, double deepest, double bound) {
     const narc_arc *first = &setting->chain.arcs[0], *last = &setting->chain.arcs[setting->chain.count - 1];
     const narc_point from = {first->center_x + first->radius * cos(first->start),
                              first->center_y + first->radius * sin(first->start)};
     const narc_point to = {last->center_x + last->radius * cos(last->end),
                            last->center_y + last->radius * sin(last->end)};
-    narc_circle inner;
-    if (minimum->foot.distance >= 0)
+    const double depth = -minimum->foot.distance;
+    narc_circle inner, around;
+    if (depth <= 0)
         return false;
+    if (narc_compute_bounding_circle(body->arcs, body->count, &around)) {
+        const narc_point middle = {body->x + body->scale * (body->cosine * around.x - body->sine * around.y),
+                                   body->y + body->scale * (body->sine * around.x + body->cosine * around.y)};
+        if (distance_between(middle, minimum->foot.at) > body->scale * around.radius)
+            return true;
+    }
+    if (find_end_distance(&setting->chain, minimum->foot.at) <= depth ||
+        is_deep_beside_arc(&setting->chain, minimum->foot.at, depth, bound))
+        return true;
     narc_compute_inscribed_circle(body->arcs, body->count, &inner);
     const double promised = 0.98 * fmin(2 * inner.radius * body->scale, minimum->foot.thickness);
     return (deepest > promised && !holds(body, minimum->foot.at)) ||
@@ -553,7 +579,7 @@ static const char *compare(const struct setting *setting, const struct reference
             matched++;
         else if (distance > setting->margin + bound)
             continue;
-        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m], deepest))
+        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m], deepest, bound))
             beyond++;
         else if (distance < -minima[m].foot.grain / 2)
             sunk++; /* seams are for what is less deep than pieces are long */
@@ -611,12 +637,13 @@ static void print_failure(const struct setting *setting, const struct reference_
 /* Nothing tells of a body in the air that it touches the ground; and of one that does, casts begin with that. (At an open
  * end rounding decides.) */
 static const char *check_forms(const struct setting *setting, const struct reference_body *body, const size_t *told,
-                               double deepest, struct tally *tally) {
+                               const struct told *deepest, struct tally *tally) {
     const struct ground_clearance clearance = ground_find_clearance(setting->ground, body);
     const double room = 1e-5 * (1 + hypot(body->x, body->y) + reference_extent(body));
     bool is_told = false;
     tally->met += !(clearance.distance > 0);
-    if (!(clearance.distance > 0) && deepest < -room && setting->chain.closed && told[CASTS] == 0) {
+    if (!(clearance.distance > 0) && deepest && deepest->separation < -room && setting->chain.closed &&
+        told[CASTS] == 0 && !is_deep_beside_arc(&setting->chain, deepest->foot, -deepest->separation, deepest->bound)) {
         tally->unmet++;
         return "no cast begins with it";
     }
@@ -649,9 +676,10 @@ static void check_setting(const struct setting *setting, struct tally *tally) {
             told[of_body++] =
                 read_row(setting, &body, &question.pairs[setting->entry_count + rows[row].pair], &rows[row]);
         tally->bodies++;
-        double deepest = 0;
+        const struct told *deepest = NULL;
         for (size_t i = 0; i < of_body; i++)
-            deepest = fmin(deepest, told[i].separation);
+            if (!deepest || told[i].separation < deepest->separation)
+                deepest = &told[i];
         const char *wrong = check_forms(setting, &body, otherwise[k], deepest, tally);
         if (!wrong && compare(setting, &body, told, of_body, 1, tally))
             wrong = compare(setting, &body, told, of_body, finer, tally);

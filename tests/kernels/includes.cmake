@@ -10,7 +10,7 @@ endif()
 set(failed)
 foreach(file IN LISTS files)
   execute_process(COMMAND "${COMPILER}" ${flags} -std=c17 -fsyntax-only -Werror=implicit-function-declaration
-      "-I${SOURCE}" "-I${SOURCE}/kernels" "-I${SOURCE}/soa" "-I${SOURCE}/dispatch"
+      "-I${SOURCE}" "-I${SOURCE}/include" "-I${SOURCE}/kernels" "-I${SOURCE}/soa" "-I${SOURCE}/dispatch"
       -DNARC_ISA_NAME=scalar "-DNARC_SIMD=\"simd/scalar.h\"" -x c "${file}"
     ERROR_VARIABLE errors RESULT_VARIABLE status)
   if(NOT status EQUAL 0)

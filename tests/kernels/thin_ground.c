@@ -20,6 +20,8 @@
 
 enum { ENTRIES = 400, ROWS = 1600 };
 
+#define ROUNDING 1e-5f
+
 /* Entries as bodies, and one body. */
 struct setting {
     narc_shapes *store;
@@ -75,8 +77,17 @@ static narc_body turn_body(uint32_t shape, double x, double y, double angle) {
     return (narc_body){x, y, (float)cos(angle), (float)sin(angle), 1, shape};
 }
 
-/* Asks in every form: overlaps are contacts below 0, and a cast that does not move hits nothing else below 0
- * but by rounding. */
+/* Is there this separation, but for rounding? 0: it need not be. */
+static bool has_separation(const float *separations, size_t count, float separation) {
+    bool found = separation > -ROUNDING;
+    for (size_t k = 0; k < count; k++)
+        found = found || fabsf(separations[k] - separation) <= ROUNDING;
+    return found;
+}
+
+/* Asks in every form: overlaps are contacts below 0, and a cast that does not move hits with the deepest contact of its
+ * entry. Contacts round in float and casts in double: where a tip lies on the seam of two entries, or at the very end of one,
+ * the one may tell of one entry what the other one tells of its neighbour. */
 static struct told *ask(const struct setting *s, const narc_body *body, narc_query query) {
     static struct told told;
     static uint32_t a[ENTRIES], b[ENTRIES];
@@ -91,17 +102,19 @@ static struct told *ask(const struct setting *s, const narc_body *body, narc_que
     narc_error error;
     expect_ok(narc_find_contacts(s->store, &own, &pairs, &query, contacts, ROWS, &found, &error), &error);
     expect_ok(narc_find_overlaps(s->store, &own, &pairs, &query, bits, &error), &error);
-    expect_ok(narc_cast_pairs(s->store, &own, NULL, &pairs, NULL, NULL, impacts, ENTRIES, &error), &error);
-    float deepest = 0; /* at a tip rounding decides which entry tells */
+    const narc_cast_options options = {.front_only = query.front_only};
+    expect_ok(narc_cast_pairs(s->store, &own, NULL, &pairs, NULL, &options, impacts, ENTRIES, &error), &error);
+    float touches[ENTRIES] = {0}, casts[ENTRIES] = {0};
     for (size_t i = 0; i < found; i++)
-        deepest = fminf(deepest, contacts[i].separation);
+        touches[contacts[i].pair] = fminf(touches[contacts[i].pair], contacts[i].separation);
     for (uint32_t k = 0; k < s->count; k++) {
-        bool below = false;
-        for (size_t i = 0; i < found; i++)
-            below = below || (contacts[i].pair == k && contacts[i].separation < 0);
-        assert_int_equal(bits[k / 64] >> k % 64 & 1, below);
-        assert_true(query.front_only || below || impacts[k].count == 0 || impacts[k].separation > deepest - 1e-5f);
+        assert_int_equal(bits[k / 64] >> k % 64 & 1, touches[k] < 0);
+        casts[k] = impacts[k].count == NARC_CAST_HIT ? fminf(0, impacts[k].separation) : 0;
     }
+    for (uint32_t k = 0; k < s->count; k++)
+        if (fabsf(touches[k] - casts[k]) > ROUNDING &&
+            !(has_separation(casts, s->count, touches[k]) && has_separation(touches, s->count, casts[k])))
+            fail_msg("entry %u: a contact of %g, but a cast of %g", k, (double)touches[k], (double)casts[k]);
     expect_ok(narc_find_manifolds(s->store, &own, &pairs, &query, told.rows, ROWS, &found, &error), &error);
     told.count = narc_merge_manifolds(&pairs, NARC_ARRAY(s->runs), told.rows, found);
     told.below = 0;
@@ -249,23 +262,31 @@ TEST(test_level_line_into_a_bowl) {
     }
 }
 
+#define VAULT_TURN 1.4
+static const double vault_radius = 8, vault_thickness = 0.4;
+
+/* Arcs of one circle above, and of another one below. */
+static struct turtle walk_vault(size_t parts) {
+    struct turtle t = create_turtle(0, 0, PI / 2 - VAULT_TURN / 2);
+    for (int side = 0; side < 2; side++) {
+        const double radius = side ? vault_radius - vault_thickness : vault_radius,
+                     turn = side ? -VAULT_TURN : VAULT_TURN;
+        for (size_t k = 0; k < parts; k++)
+            walk_arc(&t, radius, turn / (double)parts);
+        walk_arc(&t, 0, PI / 2);
+        walk_line(&t, vault_thickness);
+        walk_arc(&t, 0, PI / 2);
+    }
+    return t;
+}
+
 /* Boxes of entries meet those of all bodies that they answer: a tip that comes in through the next one, too. */
 TEST(test_boxes_reach_back) {
     struct test_random random = test_random_named("boxes reach back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct setting *s = begin_setting();
         const size_t parts = 4 + random_below(&random, 20);
-        const double radius = 8, thick = 0.4, turn = 1.4 / (double)parts;
-        struct turtle t = create_turtle(0, 0, PI / 2 - 0.7); /* a vault */
-        for (size_t k = 0; k < parts; k++)
-            walk_arc(&t, radius, turn);
-        for (int end = 0; end < 2; end++) {
-            walk_arc(&t, 0, PI / 2);
-            walk_line(&t, thick);
-            walk_arc(&t, 0, PI / 2);
-            for (size_t k = 0; k < parts && end == 0; k++)
-                walk_arc(&t, radius - thick, -turn);
-        }
+        struct turtle t = walk_vault(parts);
         add_ground(s, &t, ring);
         narc_box boxes[ENTRIES], own;
         const narc_bodies ground = narc_view_bodies(s->bodies, s->count);
@@ -274,9 +295,9 @@ TEST(test_boxes_reach_back) {
         const uint32_t triangle = add_shape(s, regular_of(3, 0.075));
         const narc_arc *first = &t.arcs[0];
         for (int k = 0; k < 400; k++) {
-            const double angle = PI / 2 - 0.7 + turn * (double)(1 + random_below(&random, parts - 1)) +
+            const double angle = t.arcs[1 + random_below(&random, parts - 1)].start +
                                  random_log_between(&random, 1e-6, 1e-2) * (k % 2 ? 1 : -1);
-            const double reach = radius - thick + random_log_between(&random, 1e-3, 0.012),
+            const double reach = vault_radius - vault_thickness + random_log_between(&random, 1e-3, 0.012),
                          tilt = angle + random_between(&random, -0.5, 0.5);
             const narc_body body = turn_body(triangle, first->center_x + reach * cos(angle) - 0.075 * cos(tilt),
                                              first->center_y + reach * sin(angle) - 0.075 * sin(tilt), tilt);
@@ -299,19 +320,8 @@ TEST(test_boxes_reach_back) {
 /* The corner of a triangle is 6 mm deep in a ceiling of arcs of one circle, right beside a seam: pairs of boxes without a
  * margin have the entry that tells of it. */
 TEST(test_box_beside_a_seam) {
-    enum { PARTS = 16 };
-    const double radius = 8, thick = 0.4, turn = 1.4 / PARTS;
     struct setting *s = begin_setting();
-    struct turtle t = create_turtle(0, 0, PI / 2 - 0.7);
-    for (int k = 0; k < PARTS; k++)
-        walk_arc(&t, radius, turn);
-    for (int end = 0; end < 2; end++) {
-        walk_arc(&t, 0, PI / 2);
-        walk_line(&t, thick);
-        walk_arc(&t, 0, PI / 2);
-        for (int k = 0; k < PARTS && end == 0; k++)
-            walk_arc(&t, radius - thick, -turn);
-    }
+    struct turtle t = walk_vault(16);
     add_ground(s, &t, ring);
     const size_t count = s->count + 1;
     assert_true(count < ENTRIES);
@@ -341,6 +351,37 @@ TEST(test_box_beside_a_seam) {
     narc_destroy_broad_phase(broad);
     free(t.arcs);
     end_setting(s);
+}
+
+/* Two arcs of a lens, one of them much larger than the lens, meet where it is deepest in a line of several entries: the
+ * normal there is the line's up to rounding, and casts begin with what contacts say. */
+TEST(test_lenses_in_a_slope) {
+    struct test_random random = test_random_named("lenses in a slope");
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        struct setting *s = begin_setting();
+        const double slope = random_between(&random, -0.5, 0.5);
+        struct turtle t = create_turtle(0, 0, PI / 2 + slope);
+        walk_arc(&t, 0, 0);
+        walk_line(&t, 20);
+        walk_arc(&t, 0, 0);
+        add_ground(s, &t, (narc_chain_options){.weld = 3});
+        free(t.arcs);
+        const struct shape lens = make_shape(&random, FAMILY_LENS);
+        const uint32_t shape = add_shape(s, lens);
+        for (int k = 0; k < 40; k++) {
+            const narc_arc *arc = &lens.arcs[random_below(&random, lens.count)];
+            const double angle = slope - PI / 2 - arc->end, depth = random_log_between(&random, 1e-4, 1e-2);
+            const double c = cos(angle), d = sin(angle), along = random_between(&random, 8, 12);
+            const double x = arc->center_x + arc->radius * cos(arc->end),
+                         y = arc->center_y + arc->radius * sin(arc->end);
+            const narc_body body = turn_body(shape, -along * cos(slope) + depth * sin(slope) - (c * x - d * y),
+                                             -along * sin(slope) - depth * cos(slope) - (d * x + c * y), angle);
+            const struct told *told = ask(s, &body, (narc_query){0});
+            assert_true(told->count > 0);
+            expect_near((double)find_deepest(&told->rows[0]), -depth, 1e-5, "separation");
+        }
+        end_setting(s);
+    }
 }
 
 /* A bent sheet of two chains, its upper side and its lower one, which know nothing of each other: a plank over the ridge. */
@@ -432,6 +473,53 @@ TEST(test_both_sides) {
     }
 }
 
+/* Open ground ends straight below its end: a triangle that stands beside it, on the extension of a slope's inner side, is
+ * in the air. */
+TEST(test_beside_open_ends) {
+    struct test_random random = test_random_named("beside open ends");
+    for (size_t trial = 0; trial < test_trials(100); trial++) {
+        struct setting *s = begin_setting();
+        const double slope = random_between(&random, 0.3, 0.5), level = random_between(&random, 0.1, 0.4);
+        const bool has_corner = trial % 2;
+        struct turtle t = create_turtle(0, 0, has_corner ? 0 : PI / 2);
+        walk_arc(&t, 0, has_corner ? PI / 2 : 0); /* at the right end */
+        walk_line(&t, level);
+        walk_arc(&t, 0, slope + 0.05);
+        walk_line(&t, 0.1);
+        walk_arc(&t, 0.5, -0.05);
+        const double x = t.x, y = t.y;
+        walk_line(&t, 2);
+        walk_arc(&t, 0, 0);
+        add_ground(s, &t, (narc_chain_options){0});
+        free(t.arcs);
+        const double beside = random_log_between(&random, 1e-3, 0.1), along = random_between(&random, 0.01, 0.05);
+        const double foot_x = x - along * cos(slope), foot_y = y - along * sin(slope);
+        const double depth = (beside - foot_x) / sin(slope), size = depth * random_between(&random, 1.02, 1.5);
+        const double lean = PI / 3 - random_between(&random, 0, PI / 6 - slope);
+        narc_body body = turn_body(add_shape(s, regular_of(3, size)), beside + size * cos(lean),
+                                   foot_y - depth * cos(slope) + size * sin(lean), lean - PI);
+        const struct told *told = ask(s, &body, (narc_query){0});
+        if (told->count > 0)
+            fail_msg("trial %zu: a triangle %g beside the end is told of %g", trial, beside,
+                     (double)find_deepest(&told->rows[0]));
+        end_setting(s);
+    }
+}
+
+/* What a cast of one body against the first entry comes to, all else as its motion says. */
+static int cast_first(const struct setting *s, const narc_body *body, float y, float angle, uint32_t front_only) {
+    const uint32_t first = 0;
+    const narc_bodies own = narc_view_bodies(body, 1), ground = narc_view_bodies(s->bodies, s->count);
+    const narc_pairs pairs = {
+        .count = 1, .a = {&first, sizeof first}, .b = {&first, sizeof first}, .other_bodies = &ground};
+    const narc_motions motions = {.y = {&y, 0}, .angle = {&angle, 0}};
+    const narc_cast_options options = {.front_only = front_only};
+    narc_impact impact;
+    narc_error error;
+    expect_ok(narc_cast_pairs(s->store, &own, &motions, &pairs, NULL, &options, &impact, 1, &error), &error);
+    return impact.count == NARC_CAST_HIT ? 1 + (impact.fraction > 0) : impact.count;
+}
+
 /* A platform that is ground for what comes from above. */
 TEST(test_front_only) {
     struct setting *s = begin_setting();
@@ -449,6 +537,12 @@ TEST(test_front_only) {
             const bool touches = y < 0.5 && y > (k == 2 ? -0.25 : -0.5);
             assert_int_equal(ask(s, &body, (narc_query){0})->count, touches);
             assert_int_equal(ask(s, &body, (narc_query){.front_only = 1})->count, touches && y > 0);
+            for (int turns = 0; turns < 2; turns++) { /* a hit is 1 at the start, and 2 later */
+                const float angle = turns ? 0.05f : 0;
+                assert_int_equal(cast_first(s, &body, -2, angle, 1), y < 0 ? 0 : touches ? 1 : 2);
+                assert_int_equal(cast_first(s, &body, 2, angle, 1), y < 0 ? 0 : touches);
+                assert_int_equal(cast_first(s, &body, 2, angle, 0), touches);
+            }
         }
     end_setting(s);
 }

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 # What compilers other than the one in use would say. Run as cmake -D SOURCE=<the project's folder> -P compilers.cmake:
-# words that are not C17 stand in soa/compiler.h and the public soa/narc_export.h alone. With
+# words that are not C17 stand in soa/compiler.h and the public include/narc_export.h alone. With
 #   CLANG, HEADERS   and the libraries go through clang's front end as for Microsoft's compiler, without a warning, with
 #                    mingw-w64's headers (which take the compiler for GCC; compiler.h alone asks for it)
 cmake_minimum_required(VERSION 3.22)
 set(words "__(attribute|builtin|typeof|asm|declspec|restrict|inline|has_feature|int128)|_Pragma|_MSC_|__GNU|__clang")
-foreach(layer soa kernels dispatch methods files fit tools examples)
+foreach(layer include soa kernels dispatch methods files fit tools examples)
   file(GLOB_RECURSE files RELATIVE "${SOURCE}" "${SOURCE}/${layer}/*.[ch]" "${SOURCE}/${layer}/*.inl")
-  list(REMOVE_ITEM files soa/compiler.h soa/narc_export.h)
+  list(REMOVE_ITEM files soa/compiler.h include/narc_export.h)
   foreach(file IN LISTS files)
     file(STRINGS "${SOURCE}/${file}" lines REGEX "(^|[^A-Za-z_0-9])(${words})|[^A-Za-z_](asm|typeof) *\\(")
     foreach(line IN LISTS lines)
@@ -26,7 +26,7 @@ endif()
 
 function(compile file)
   execute_process(COMMAND "${CLANG}" --target=x86_64-pc-windows-msvc -fgnuc-version=4.2.1 -fsyntax-only -std=c17
-    -nostdlibinc -isystem "${HEADERS}" -D_CRT_SECURE_NO_WARNINGS -I soa -I kernels -I dispatch -I methods -I .
+    -nostdlibinc -isystem "${HEADERS}" -D_CRT_SECURE_NO_WARNINGS -I include -I soa -I kernels -I dispatch -I methods -I .
     -DNARC_BUILDING=1 -DNARC_BUILT_avx512=1 -DNARC_BUILT_avx2=1 -DNARC_BUILT_sse41=1 -DNARC_BUILT_scalar=1
     -DNARC_BUILT_neon=0 -DNARC_BUILT_wasm128=0 -Wall -Wextra -Wundef -Werror ${ARGN} ${file}
     WORKING_DIRECTORY "${SOURCE}" RESULT_VARIABLE status)

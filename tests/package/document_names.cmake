@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.22)
 set(others atom_vec.h neigh_request.h fix_neigh_history.h --component)
 
 set(all "")
-foreach(folder soa kernels dispatch methods files fit tools examples apps bindings bench tests cmake docs .ci)
+foreach(folder include soa kernels dispatch methods files fit tools examples apps bindings bench tests cmake docs .ci)
   file(GLOB_RECURSE found LIST_DIRECTORIES true RELATIVE "${SOURCE}" "${SOURCE}/${folder}/*")
   list(APPEND all ${folder} ${found})
 endforeach()

@@ -487,6 +487,7 @@ struct ray_options : detail::options<ray_options, narc_ray_options> {
 struct cast_options : detail::options<cast_options, narc_cast_options> {
     cast_options &target(float value) noexcept { return set(&narc_cast_options::target, value); }
     cast_options &targets(narc_float_column value) noexcept { return set(&narc_cast_options::targets, value); }
+    cast_options &front_only() noexcept { return set(&narc_cast_options::front_only, 1u); }
     cast_options &tolerance(float value) noexcept { return set(&narc_cast_options::tolerance, value); }
     cast_options &skipped(size_t &out) noexcept { return set(&narc_cast_options::out_skipped, &out); }
 };

@@ -229,14 +229,18 @@ typedef struct narc_motions {
  *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
  *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
  *                 finite, and such pairs on the way of the others. NULL: nobody asks
- *   targets       a target for each pair instead, of narc_cast_shapes() for each mover; `target` then means nothing */
+ *   targets       a target for each pair instead, of narc_cast_shapes() for each mover; `target` then means nothing
+ *   front_only    not 0: pieces of chains are hit from the front alone, as in narc_query: a body with the centre of its
+ *                 bounding circle behind a piece where they touch at the start passes it, and so does one that comes
+ *                 from behind */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
     const narc_workers *workers;
     size_t *out_skipped;
     narc_float_column targets;
-    void *reserved[2]; /* NULL */
+    uint32_t front_only;
+    void *reserved[1]; /* NULL */
 } narc_cast_options;
 
 /* What became of a cast. */

@@ -4,7 +4,7 @@
 # dem_memory.sh DEM PRELOAD - whichever allocation of the discrete element program fails.
 set -u
 dem=$1 preload=$2
-. "$(dirname "$0")/../support/scarcity.sh"
+. "$(dirname "$0")/../../tests/support/scarcity.sh"
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
