@@ -358,38 +358,42 @@ static bool holds(const narc_curve_arc *on, narc_point p) {
     return (angle < 0 ? angle + 2 * PI : angle) <= fabs(on->turn);
 }
 
+/* Two that have an end in common, but for this part of their lengths, do not meet there. */
+static const double AT_ENDS = 1e-6;
+
+static double find_end(const narc_curve_arc *of, narc_point p) {
+    return fmin(length(minus(p, of->start)), length(minus(p, of->end)));
+}
+
+static bool is_common(const narc_curve_arc *a, const narc_curve_arc *b, narc_point p) {
+    const double near = AT_ENDS * (length(minus(a->end, a->start)) + length(minus(b->end, b->start)));
+    return holds(a, p) && holds(b, p) && fmax(find_end(a, p), find_end(b, p)) > near;
+}
+
 /* Does a line or arc meet another one? */
 static bool do_meet(const narc_curve_arc *a, const narc_curve_arc *b) {
     if (a->turn == 0 && b->turn != 0)
         return do_meet(b, a);
     const narc_point d = b->turn == 0 ? minus(b->end, b->start) : minus(b->center, a->center);
-    const double size = length(d), square = dot(d, d);
+    const double size = length(d);
     if (a->turn == 0) {
-        const narc_point e = minus(a->end, a->start), w = minus(b->start, a->start);
-        const double across = cross(e, d), t = cross(w, d) / across, u = cross(w, e) / across;
-        return across != 0 && t >= 0 && t <= 1 && u >= 0 && u <= 1;
+        const narc_point e = minus(a->end, a->start);
+        const double across = cross(e, d), t = cross(minus(b->start, a->start), d) / across;
+        return across != 0 && is_common(a, b, along(a->start, t, e));
     }
-    /* The points of both circles, or of circle and line, are so far on from a point of the line between or across them. */
-    const narc_point w = minus(b->start, a->center);
-    const double far =
-        b->turn == 0 ? cross(d, w) / size : (square + (a->radius - b->radius) * (a->radius + b->radius)) / (2 * size);
-    const double half = (a->radius - far) * (a->radius + far);
+    /* The points of both circles, or of circle and line, are on both sides of one that is so far from the centre. */
     const narc_point way = {d.x / size, d.y / size}, out = b->turn == 0 ? turned(way) : way;
-    const narc_point foot = along(a->center, far, out);
-    if (!(half >= 0))
-        return false;
-    for (int side = -1; side <= 1; side += 2) {
-        const narc_point p = along(foot, side * sqrt(half), turned(out));
-        if (holds(a, p) && holds(b, p))
-            return true;
-    }
-    return false;
+    const double far = b->turn == 0 ? dot(minus(b->start, a->center), out)
+                                    : (size * size + (a->radius - b->radius) * (a->radius + b->radius)) / (2 * size);
+    const double half = sqrt((a->radius - far) * (a->radius + far));
+    const narc_point foot = along(a->center, far, out), across = turned(out);
+    return half >= 0 && (is_common(a, b, along(foot, half, across)) || is_common(a, b, along(foot, -half, across)));
 }
 
 /* A piece of a chain, and a box around it. */
 struct swept {
     const narc_curve_arc *arc;
-    size_t chain;
+    size_t contour;
     narc_aabb box;
 };
 
@@ -399,29 +403,28 @@ static int compare_swept(const void *left, const void *right) {
                                         : (a->arc > b->arc) - (a->arc < b->arc);
 }
 
-static struct swept bound_arc(const narc_curve_arc *arc, size_t chain) {
+static struct swept bound_arc(const narc_curve_arc *arc, size_t contour) {
     const narc_point p = arc->start, q = arc->end, c = arc->center;
     const double out = arc->turn == 0 ? 0 : length(minus(q, p)) * fabs(tangent(arc->turn / 4)) / 2, r = arc->radius;
     const narc_aabb box = {fmin(p.x, q.x) - out, fmin(p.y, q.y) - out, fmax(p.x, q.x) + out, fmax(p.y, q.y) + out};
-    return (struct swept){arc, chain, fabs(arc->turn) > PI ? (narc_aabb){c.x - r, c.y - r, c.x + r, c.y + r} : box};
+    return (struct swept){arc, contour, fabs(arc->turn) > PI ? (narc_aabb){c.x - r, c.y - r, c.x + r, c.y + r} : box};
 }
 
-static size_t find_contour_of_chain(const struct builder *builder, size_t chain) {
-    size_t contour = 0;
-    for (; chain || !builder->efforts[contour].drawn; contour++)
-        chain -= builder->efforts[contour].drawn;
-    return contour;
-}
-
-/* Do the contours touch as they are drawn? */
-static bool do_touch(const struct builder *builder, size_t a, size_t b) {
+/* Does a contour, as it is drawn, touch another one? */
+static bool does_touch(const struct builder *builder, size_t contour, size_t other) {
     const narc_contours *drawn = &builder->drawn;
-    for (size_t k = 0; k < builder->crossings.count; k++) {
-        const narc_crossing *at = &builder->crossings.items[k];
-        if (narc_find_contour(drawn->ends, drawn->count, at->line) == a &&
-            narc_find_contour(drawn->ends, drawn->count, at->other) == b)
-            return true;
+    const narc_crossing *items = builder->crossings.items;
+    size_t k = 0;
+    for (size_t high = builder->crossings.count; k < high;) { /* crossings are sorted by lines */
+        const size_t middle = (k + high) / 2;
+        if (items[middle].line < begin_of(drawn->ends, contour))
+            k = middle + 1;
+        else
+            high = middle;
     }
+    for (; k < builder->crossings.count && items[k].line < drawn->ends[contour]; k++)
+        if (narc_find_contour(drawn->ends, drawn->count, items[k].other) == other)
+            return true;
     return false;
 }
 
@@ -432,18 +435,19 @@ static narc_status compare_chains(struct builder *builder, bool *out_any) {
     *out_any = false;
     if (!swept)
         return fail_memory(builder);
-    for (size_t k = 0, i = 0; k < builder->count; k++)
+    for (size_t k = 0, i = 0, contour = 0; k < builder->count; k++, contour++) {
+        while (!builder->efforts[contour].drawn)
+            contour++;
         for (; i < builder->ends[k]; i++)
-            swept[i] = bound_arc(&list->arcs[i], k);
+            swept[i] = bound_arc(&list->arcs[i], contour);
+    }
     qsort(swept, list->count, sizeof *swept, compare_swept);
     for (size_t i = 0; i < list->count; i++)
         for (size_t j = i + 1; j < list->count && swept[j].box.min_x <= swept[i].box.max_x; j++) {
             const struct swept *p = &swept[i], *q = &swept[j];
-            if (p->chain == q->chain || q->box.min_y > p->box.max_y || q->box.max_y < p->box.min_y ||
-                !do_meet(p->arc, q->arc))
-                continue;
-            const size_t a = find_contour_of_chain(builder, p->chain), b = find_contour_of_chain(builder, q->chain);
-            if (!do_touch(builder, a, b) && !do_touch(builder, b, a))
+            const size_t a = p->contour, b = q->contour;
+            if (a != b && q->box.min_y <= p->box.max_y && q->box.max_y >= p->box.min_y && do_meet(p->arc, q->arc) &&
+                !does_touch(builder, a, b) && !does_touch(builder, b, a))
                 builder->efforts[a].meets = builder->efforts[b].meets = *out_any = true;
         }
     free(swept);

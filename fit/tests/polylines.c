@@ -310,6 +310,7 @@ TEST(test_slight_turns) {
 TEST(test_crossings) {
     static const narc_point bow[] = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}, box[] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                             other[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, beside[] = {{4, 0}, {8, 0}, {8, 4}, {4, 4}},
+                            across[] = {{4, 4}, {8, 4}, {8, 8}, {4, 8}},
                             spike[] = {{0, 0}, {4, 0}, {4, 9}, {4, 4}, {0, 4}};
     const struct {
         const narc_point *first, *second;
@@ -318,8 +319,9 @@ TEST(test_crossings) {
     } cases[] = {{bow, NULL, 4, "contour 0: line 0 crosses line 2 of contour 0 at (2, 2)"},
                  {spike, NULL, 5, "contour 0: line 1 meets line 2 of contour 0 at (4, 4)"},
                  {box, other, 4, "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)"},
-                 {box, beside, 4, NULL}};
-    for (size_t k = 0; k < 4; k++) {
+                 {box, beside, 4, NULL},
+                 {box, across, 4, NULL}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         narc_path *path = NULL;
         narc_arc_chains chains;
         narc_error error;
