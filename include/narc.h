@@ -127,6 +127,50 @@ NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_b
                                          const narc_query *query, narc_manifold *out_rows, size_t capacity,
                                          size_t *out_count, narc_error *error);
 
+/* ------------------------------------------------------------------------------------------------ rows again */
+
+/* A contact in double precision: separation, normal and point as in narc_contact. */
+typedef struct narc_refined_contact {
+    double separation;
+    double normal_x, normal_y;
+    double point_x, point_y;
+} narc_refined_contact;
+
+/* What a batch leaves out and rows are refined with. All of it may be left out: rotations, shifts and shapes are then as
+ * the batch has them.
+ *   arcs                       of each shape of the store (an array of narc_count_shapes() pointers) those that it was
+ *                              made of, as many and in their order; NULL, or NULL of a shape: as the store has them, which
+ *                              keeps the digits of a float
+ *   cosine, sine               of bodies: columns as those of positions, which may be double
+ *   other_cosine, other_sine   of pairs->other_bodies
+ *   shift_x, shift_y           of pairs
+ *   workers                    threads to use; NULL: the calling one */
+typedef struct narc_refinement {
+    const narc_arc *const *arcs;
+    narc_position_column cosine, sine;
+    narc_position_column other_cosine, other_sine;
+    narc_position_column shift_x, shift_y;
+    const narc_workers *workers;
+    void *reserved[2]; /* NULL */
+} narc_refinement;
+
+/* Rows of narc_find_contacts() again, in double precision: for force laws, to which the roundings of single precision
+ * are a noise. Row k of the answer is of row k, of the same bodies and pairs.
+ *   refinement   NULL: {0}
+ *   rows         `count` of them, in any order. A row without a contact (count 0) keeps its separation, and all else is 0
+ *   out_rows     `count` rows, overlapping none of the inputs
+ * What the features of a row touch is taken as it is: separation, normal and point are theirs, within some roundings of
+ * double precision of both extents and the distance. Single precision chose the features: where others are as deep but for
+ * NARC_ERROR_BOUND these may have been, so that the separation is within twice that bound of the exact one, and mostly
+ * within 1e-14. Where the centres of two arcs, or two corners, lie in one place up to rounding, the normal stays the row's.
+ * What is not finite is a row with separation +INFINITY and all else 0.
+ * Errors, all found before anything is written: as narc_find_contacts() for bodies and pairs, NARC_ERROR_INDEX (`error`
+ * names the row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. Not in
+ * narc_small.wasm. */
+NARC_API narc_status narc_refine_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                          const narc_refinement *refinement, const narc_contact *rows, size_t count,
+                                          narc_refined_contact *out_rows, narc_error *error);
+
 /* ------------------------------------------------------------------------------------------------ poses */
 
 /* Cosines and sines of `count` angles, in radians, within 1 ulp of exact, in the calling thread. Outputs may be

@@ -96,15 +96,15 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         const size_t number = find_number(call, pair[l]);
         const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
                                                     find_header(batch, batch->b, batch->pairs->b, number)};
-        narc_toucher touching[2];
+        narc_contact_side touching[2];
         for (int side = 0; side < 2; side++)
-            touching[side] = (narc_toucher){header[side],
-                                            narc_arcs_of(batch->shapes, header[side]),
-                                            (double)scale[side][l],
-                                            (double)field[side][0][l],
-                                            (double)field[side][1][l],
-                                            (double)field[side][2][l],
-                                            (double)field[side][3][l]};
+            touching[side] = (narc_contact_side){header[side],
+                                                 narc_arcs_of(batch->shapes, header[side]),
+                                                 (double)scale[side][l],
+                                                 (double)field[side][0][l],
+                                                 (double)field[side][1][l],
+                                                 (double)field[side][2][l],
+                                                 (double)field[side][3][l]};
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));

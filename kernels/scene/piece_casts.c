@@ -55,16 +55,17 @@ struct nearest {
 };
 
 /* One of two bodies with a contact along a normal of the world, as soa/piece.h wants it. */
-static narc_toucher make_toucher(const struct body_frame *frame, const struct body_frame *other, place normal) {
+static narc_contact_side make_contact_side(const struct body_frame *frame, const struct body_frame *other,
+                                           place normal) {
     const place n = turn_to_shape(frame, normal);
     const place way =
         turn_to_shape(frame, (place){other->position.x - frame->position.x, other->position.y - frame->position.y});
-    return (narc_toucher){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
+    return (narc_contact_side){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
 }
 
 static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation,
                              bool front_only) {
-    const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
+    const narc_contact_side of_a = make_contact_side(a, b, normal), of_b = make_contact_side(b, a, normal);
     return narc_is_reached(&of_a, &of_b, separation, front_only);
 }
 

@@ -315,6 +315,9 @@ void test_contacts() {
     CHECK(std::memcmp(rows.data(), expected.data(), found * sizeof rows[0]) == 0);
     rows.resize(2 * n);
     CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, narc::query(), rows).value().size() == found);
+    std::vector<narc_refined_contact> refined;
+    CHECK(narc::refine_contacts(scene.shapes, scene.bodies, scene.batch, {}, rows, refined));
+    CHECK(refined.size() == found && std::fabs(refined[0].separation - static_cast<double>(rows[0].separation)) < 1e-6);
     CHECK(rows.size() == 2 * n);
     const auto points = narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, narc::query(), manifolds).value();
     CHECK(points.size() == found && same(points[found - 1], expected_manifolds[found - 1]));

@@ -47,6 +47,8 @@ static uint32_t hints[PAIRS], selection[PAIRS], indices[2][PAIRS * 2], match[PAI
 static uint8_t outcomes[PAIRS];
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
+static narc_refined_contact refined[PAIRS];
+static const narc_refinement refinement;
 static narc_manifold manifolds[PAIRS];
 static narc_impact impacts[PAIRS];
 static narc_motions motions;
@@ -159,6 +161,7 @@ static narc_status ask_index(narc_error *error) {
     CALL(contacts_dense, narc_find_contacts(store, &bodies, &pairs, &dense, contacts, PAIRS, &count, error))           \
     CALL(contacts_selected, narc_find_contacts(store, &bodies, &pairs, &selected, contacts, SHORT, &count, error))     \
     CALL(contacts_range, narc_find_contacts(store, &bodies, &pairs, &range, contacts, 9, &count, error))               \
+    CALL(refine, narc_refine_contacts(store, &bodies, &pairs, &refinement, contacts, SHORT, refined, error))           \
     CALL(manifolds, narc_find_manifolds(store, &bodies, &pairs, &query, manifolds, SHORT, &count, error))              \
     CALL(manifolds_dense, narc_find_manifolds(store, &bodies, &pairs, &dense, manifolds, PAIRS, &count, error))        \
     CALL(manifolds_selected, narc_find_manifolds(store, &bodies, &pairs, &selected, manifolds, SHORT, &count, error))  \

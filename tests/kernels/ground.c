@@ -21,8 +21,7 @@
 #include "reference.h"
 #include "scene.h"
 #include "support.h"
-
-#define PI 3.14159265358979323846
+#include "turtle.h"
 
 enum { ENTRIES = 400, SAMPLES = 300, MOST_ROWS = 64 };
 
@@ -33,8 +32,7 @@ struct ground {
     size_t entry_count;
     narc_arc arcs[128];
     size_t arc_count;
-    /* while it is made */
-    double x, y, angle;
+    struct turtle walk; /* while it is made */
 };
 
 static const float margin = 0.05f;
@@ -43,32 +41,17 @@ static const float margin = 0.05f;
 
 static void begin_chain(struct ground *g, double x, double y, double angle) {
     memset(g, 0, sizeof *g);
-    g->arcs[g->arc_count++] = (narc_arc){x, y, 0, angle, angle};
-    g->x = x;
-    g->y = y;
-    g->angle = angle;
+    g->walk = create_turtle(x, y, angle);
+    walk_arc(&g->walk, 0, 0);
 }
-
-/* Walks on: solid on the left. */
-static void add_line(struct ground *g, double length) {
-    g->x -= sin(g->angle) * length;
-    g->y += cos(g->angle) * length;
-}
-
-/* Turns counter-clockwise, or clockwise where turn < 0: radius is that of the row, negative or -0 there. */
-static void add_turn(struct ground *g, double radius, double turn) {
-    const double x = g->x - radius * cos(g->angle), y = g->y - radius * sin(g->angle);
-    g->arcs[g->arc_count++] = (narc_arc){x, y, radius, g->angle, g->angle + turn};
-    g->angle += turn;
-    g->x = x + radius * cos(g->angle);
-    g->y = y + radius * sin(g->angle);
-}
-
-static void end_chain(struct ground *g) { g->arcs[g->arc_count++] = (narc_arc){g->x, g->y, 0, g->angle, g->angle}; }
 
 /* A scene with the chain's entries. False if it crosses itself. */
 static bool place_chain(struct ground *g, const narc_chain_options *options, size_t bodies, size_t pairs) {
     narc_error error;
+    assert_in_range(g->walk.count, 1, sizeof g->arcs / sizeof *g->arcs);
+    g->arc_count = g->walk.count;
+    memcpy(g->arcs, g->walk.arcs, g->arc_count * sizeof *g->arcs);
+    free(g->walk.arcs);
     g->scene = create_scene(NARC_FLOAT32, ENTRIES + bodies, ENTRIES + bodies, pairs);
     const narc_status status =
         narc_add_chain(g->scene.store, g->arcs, g->arc_count, options, g->entries, ENTRIES, &g->entry_count, &error);
@@ -94,16 +77,16 @@ static bool make_country(struct test_random *random, struct ground *g, size_t bo
     bool was_sharp = true;
     begin_chain(g, 10, 0, PI / 2);
     for (int k = 0; k < 24; k++) {
-        const double lean = g->angle - PI / 2;
+        const double lean = g->walk.normal - PI / 2;
         const double turn = random_between(random, 0.1, 0.9), radius = random_log_between(random, 0.2, 6);
         const bool dips = random_below(random, 2) ? lean > -0.3 : lean > 0.6, is_sharp = !random_below(random, 4);
         if (is_sharp || was_sharp || random_below(random, 3) == 0)
-            add_line(g, random_between(random, 0.2, 2));
-        add_turn(g, dips ? (is_sharp ? -0.0 : -radius) : is_sharp ? 0 : radius, dips ? -turn : turn);
+            walk_line(&g->walk, random_between(random, 0.2, 2));
+        walk_arc(&g->walk, is_sharp ? 0 : radius, dips ? -turn : turn);
         was_sharp = is_sharp;
     }
-    add_line(g, 1);
-    end_chain(g);
+    walk_line(&g->walk, 1);
+    walk_arc(&g->walk, 0, 0);
     return place_chain(g, &(narc_chain_options){.first_run = 7}, bodies, pairs);
 }
 
@@ -621,19 +604,19 @@ static void make_strip(struct test_random *random, struct ground *g, bool is_arc
     const double radius = random_between(random, 1, 4), turn = random_between(random, 1, 3);
     begin_chain(g, random_between(random, -1, 1), random_between(random, -1, 1), random_between(random, -PI, PI));
     if (is_arch)
-        add_turn(g, radius + thickness, turn);
+        walk_arc(&g->walk, radius + thickness, turn);
     else
-        add_line(g, length);
-    add_turn(g, 0, PI / 2);
-    add_line(g, thickness);
-    add_turn(g, 0, PI / 2);
+        walk_line(&g->walk, length);
+    walk_arc(&g->walk, 0, PI / 2);
+    walk_line(&g->walk, thickness);
+    walk_arc(&g->walk, 0, PI / 2);
     if (is_arch)
-        add_turn(g, -radius, -turn);
+        walk_arc(&g->walk, radius, -turn);
     else
-        add_line(g, length);
-    add_turn(g, 0, PI / 2);
-    add_line(g, thickness);
-    add_turn(g, 0, PI / 2);
+        walk_line(&g->walk, length);
+    walk_arc(&g->walk, 0, PI / 2);
+    walk_line(&g->walk, thickness);
+    walk_arc(&g->walk, 0, PI / 2);
     assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, bodies, pairs));
 }
 
@@ -880,8 +863,8 @@ TEST(test_bowl) {
     struct ground *g = malloc(sizeof *g);
     const double half = 0.8, deep = 2 * cos(half);
     begin_chain(g, 2 * sin(half), -deep, PI / 2 + half);
-    add_turn(g, -2, -2 * half);
-    end_chain(g);
+    walk_arc(&g->walk, 2, -2 * half);
+    walk_arc(&g->walk, 0, 0);
     assert_true(place_chain(g, NULL, 8, 64));
     assert_int_equal(g->entry_count, 1);
 
@@ -908,10 +891,10 @@ TEST(test_bowl) {
 TEST(test_plateau) {
     struct ground *g = malloc(sizeof *g);
     begin_chain(g, sin(0.5), cos(0.5) - 1, PI / 2 - 0.5);
-    add_turn(g, 1, 0.5);
-    add_line(g, 1);
-    add_turn(g, 1, 0.5);
-    end_chain(g);
+    walk_arc(&g->walk, 1, 0.5);
+    walk_line(&g->walk, 1);
+    walk_arc(&g->walk, 1, 0.5);
+    walk_arc(&g->walk, 0, 0);
     assert_true(place_chain(g, NULL, 8, 64));
     struct contacts rows = ask_one(g, box_of(0.5, 0.5, 0), -0.5, 0.26);
     assert_true(rows.rows[0].radius_b == INFINITY);
@@ -929,10 +912,10 @@ TEST(test_plateau) {
 TEST(test_valley) {
     struct ground *g = malloc(sizeof *g);
     begin_chain(g, 2, 2, 3 * PI / 4);
-    add_line(g, sqrt(8));
-    add_turn(g, -0.0, -PI / 2);
-    add_line(g, sqrt(8));
-    end_chain(g);
+    walk_line(&g->walk, sqrt(8));
+    walk_arc(&g->walk, 0, -PI / 2);
+    walk_line(&g->walk, sqrt(8));
+    walk_arc(&g->walk, 0, 0);
     assert_true(place_chain(g, NULL, 8, 64));
     assert_int_equal(g->entry_count, 3);
     const double height = 0.5 * sqrt(2) + 0.25, above = 0.01 * sqrt(2);
@@ -977,8 +960,8 @@ TEST(test_cut_lines) {
         for (int cut = 0; cut < 2; cut++) {
             ground[cut] = malloc(sizeof *ground[cut]);
             begin_chain(ground[cut], LENGTH / 2.0 * sin(angle), -LENGTH / 2.0 * cos(angle), angle);
-            add_line(ground[cut], LENGTH);
-            end_chain(ground[cut]);
+            walk_line(&ground[cut]->walk, LENGTH);
+            walk_arc(&ground[cut]->walk, 0, 0);
             assert_true(place_chain(ground[cut], &(narc_chain_options){.weld = cut ? weld : LENGTH}, TRIALS, 1));
         }
         assert_int_equal(ground[0]->entry_count, 1);
@@ -1032,17 +1015,17 @@ TEST(test_rolling_over_junctions) {
         struct ground *g = malloc(sizeof *g);
         uint32_t runs[ENTRIES];
         begin_chain(g, 20, 0, PI / 2);
-        add_turn(g, random_between(&random, 1, 4), 0.2);
+        walk_arc(&g->walk, random_between(&random, 1, 4), 0.2);
         for (int k = 0; k < 20; k++) {
             const double turn = random_between(&random, 0.05, 0.4), large = random_between(&random, 1, 4);
-            const bool left = g->angle < PI / 2 && random_below(&random, 4);
-            add_turn(g, left ? large : -large, left ? turn : -turn);
+            const bool left = g->walk.normal < PI / 2 && random_below(&random, 4);
+            walk_arc(&g->walk, large, left ? turn : -turn);
             if (random_below(&random, 2))
-                add_line(g, random_between(&random, 0.1, 2));
-            if (g->angle < PI / 2 - 0.5)
-                add_turn(g, large, 0.5);
+                walk_line(&g->walk, random_between(&random, 0.1, 2));
+            if (g->walk.normal < PI / 2 - 0.5)
+                walk_arc(&g->walk, large, 0.5);
         }
-        end_chain(g);
+        walk_arc(&g->walk, 0, 0);
         assert_true(place_chain(g, NULL, 1, 8));
         const uint32_t shape = scene_add_shape(&g->scene, &ball);
         for (uint32_t e = 0; e < g->entry_count; e++)
@@ -1119,10 +1102,10 @@ TEST(test_corners_on_cut_corners) {
     for (size_t round = 0; round < test_trials(40); round++) {
         struct ground *g = calloc(1, sizeof *g);
         const double sides = round % 2 ? 3 : 4, side = random_between(&random, 0.5, 5);
-        g->angle = random_between(&random, -PI, PI);
+        g->walk = create_turtle(0, 0, random_between(&random, -PI, PI));
         for (int k = 0; k < sides; k++) {
-            add_turn(g, 0, 2 * PI / sides);
-            add_line(g, side);
+            walk_arc(&g->walk, 0, 2 * PI / sides);
+            walk_line(&g->walk, side);
         }
         assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, 2, 8));
         const uint32_t box = add_box(g);
@@ -1142,10 +1125,10 @@ TEST(test_edges_along_junctions) {
         struct ground *g = malloc(sizeof *g);
         const double large = random_between(&random, 0.5, 3), small = large / random_log_between(&random, 3, 300);
         begin_chain(g, random_between(&random, -2, 2), 0, random_between(&random, -PI, PI));
-        add_turn(g, large, 0.4);
-        add_turn(g, -small, -0.3);
-        add_turn(g, large, 0.4);
-        end_chain(g);
+        walk_arc(&g->walk, large, 0.4);
+        walk_arc(&g->walk, small, -0.3);
+        walk_arc(&g->walk, large, 0.4);
+        walk_arc(&g->walk, 0, 0);
         assert_true(place_chain(g, NULL, 2, 8));
         const uint32_t box = add_box(g);
         for (size_t trial = 0; trial < 20; trial++) /* the edge above the convex arc */
@@ -1164,13 +1147,13 @@ TEST(test_corners_below_junctions) {
         struct ground *g = malloc(sizeof *g);
         static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1, NARC_NO_RUN, 2};
         begin_chain(g, 5, 0, PI / 2 + 0.3);
-        add_line(g, random_between(&random, 0.5, 2)); /* line, concave arc, convex arc, line, valley, line */
-        add_turn(g, -random_between(&random, 0.5, 3), -0.4);
-        add_turn(g, random_between(&random, 0.5, 2), 0.5);
-        add_line(g, random_between(&random, 0.5, 2));
-        add_turn(g, -0.0, -random_between(&random, 0.1, 0.6));
-        add_line(g, random_between(&random, 0.5, 2));
-        end_chain(g);
+        walk_line(&g->walk, random_between(&random, 0.5, 2)); /* line, concave arc, convex arc, line, valley, line */
+        walk_arc(&g->walk, random_between(&random, 0.5, 3), -0.4);
+        walk_arc(&g->walk, random_between(&random, 0.5, 2), 0.5);
+        walk_line(&g->walk, random_between(&random, 0.5, 2));
+        walk_arc(&g->walk, 0, -random_between(&random, 0.1, 0.6));
+        walk_line(&g->walk, random_between(&random, 0.5, 2));
+        walk_arc(&g->walk, 0, 0);
         assert_true(place_chain(g, NULL, 2, 8));
         assert_int_equal(g->entry_count, 5);
         const uint32_t box = add_box(g);

@@ -47,7 +47,6 @@ if(PROJECT_IS_TOP_LEVEL AND NARC_BUILD_TOOLS AND UNIX AND NOT APPLE AND NOT CMAK
 endif()
 if(NARC_BUILD_TOOLS AND NOT CMAKE_CROSSCOMPILING)
   add_step(documented_shapes)
-  add_step(app_dem)
 endif()
 # Most compile the library anew, which another processor's compiler does not make more of a test.
 if(NOT CMAKE_CROSSCOMPILING)
