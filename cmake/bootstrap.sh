@@ -167,8 +167,8 @@ check_processors() {
 
 # The recorded answers alone.
 check_golden() {
-    build "$1" test_golden test_stored_bits
-    ctest --preset "$1" -R '^(golden_.*|stored_bits)$' || fail "tests failed in build/$1"
+    build "$1" test_golden test_method_golden test_stored_bits
+    ctest --preset "$1" -R '^((method_)?golden_.*|stored_bits)$' || fail "tests failed in build/$1"
 }
 
 # WebAssembly, by check or check_golden.

@@ -235,7 +235,7 @@ static size_t get_further(const narc_batch *batch, const char *row) {
     narc_contact contact;
     narc_manifold manifold;
     memcpy(&contact, row, sizeof contact);
-    if (!batch->manifolds)
+    if (batch->row_size == sizeof contact)
         return contact.count / NARC_FURTHER_ROW;
     memcpy(&manifold, row, sizeof manifold);
     return manifold.count / NARC_FURTHER_ROW;
@@ -298,7 +298,7 @@ NOINLINE void list_further(narc_row_kernel *kernel, const narc_batch *batch, siz
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
                              size_t *out_count, narc_error *error) {
     const narc_query *query = batch->query;
-    const size_t row_size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
+    const size_t row_size = batch->row_size;
     struct counts counts = {0, 0};
     const narc_rows rows = {.base = out_rows,
                             .stride = query->row_stride ? query->row_stride : (ptrdiff_t)row_size,

@@ -377,7 +377,8 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     out_batch->shapes = shapes; /* one by one: `filled` is large, and mostly not needed */
     out_batch->pairs = pairs;
     out_batch->query = q;
-    out_batch->manifolds = out_batch->whole = false;
+    out_batch->row_size = 0;
+    out_batch->whole = false;
     out_batch->first = q->first;
     out_batch->count = q->count;
     out_batch->asked = q->selection.base || q->selection.stride ? q->selection_count : pairs->count;

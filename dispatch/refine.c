@@ -10,6 +10,7 @@
 #include "column.h"
 #include "dispatch.h"
 #include "error.h"
+#include "vec2.h"
 
 #include <math.h>
 
@@ -20,14 +21,7 @@ enum { RANGE = 512 };
  * rounding: then the row's counts. It is the cosine of some 25 degrees. */
 static const double LEAST_AGREEMENT = 0.9;
 
-typedef struct vec2 {
-    double x, y;
-} vec2;
-
-static vec2 plus(vec2 a, vec2 b) { return (vec2){a.x + b.x, a.y + b.y}; }
-static vec2 minus(vec2 a, vec2 b) { return (vec2){a.x - b.x, a.y - b.y}; }
-static vec2 times(double s, vec2 a) { return (vec2){s * a.x, s * a.y}; }
-static double dot(vec2 a, vec2 b) { return a.x * b.x + a.y * b.y; }
+static narc_point scale_by(double s, narc_point a) { return (narc_point){s * a.x, s * a.y}; }
 
 typedef struct refine_job {
     narc_batch batch;
@@ -44,18 +38,18 @@ typedef struct placed {
     const narc_record *stored;
     const narc_arc *arcs; /* the caller's, or NULL */
     size_t count;
-    vec2 position, turn;
+    narc_point position, turn;
     double scale;
 } placed;
 
 typedef struct circle {
-    vec2 center;
+    narc_point center;
     double radius; /* of a concave arc below 0, or -0 */
 } circle;
 
 typedef struct edge {
     circle before, behind;
-    vec2 normal; /* outwards */
+    narc_point normal; /* outwards */
 } edge;
 
 static size_t count_arcs(const narc_shape_header *header) {
@@ -79,20 +73,20 @@ static placed place_body(const refine_job *job, size_t pair, int side) {
                 .scale = (double)narc_float_or(set->scale, item, 1)};
     p.stored = narc_arcs_of(batch->shapes, p.header);
     p.count = count_arcs(p.header);
-    p.turn = times(p.scale / sqrt(c * c + s * s), (vec2){c, s});
+    p.turn = scale_by(p.scale / sqrt(c * c + s * s), (narc_point){c, s});
     return p;
 }
 
 /* B's position, from that of A, with the pair's shift. */
-static vec2 find_way(const refine_job *job, size_t pair, const placed *a, const placed *b) {
+static narc_point find_way(const refine_job *job, size_t pair, const placed *a, const placed *b) {
     const narc_refinement *with = job->with;
     const narc_pairs *pairs = job->batch.pairs;
-    const vec2 way = minus(b->position, a->position);
+    const narc_point way = narc_subtract(b->position, a->position);
     const double x =
         with->shift_x.base ? narc_position_at(with->shift_x, pair) : (double)narc_float_or(pairs->shift_x, pair, 0);
     const double y =
         with->shift_y.base ? narc_position_at(with->shift_y, pair) : (double)narc_float_or(pairs->shift_y, pair, 0);
-    return plus(way, (vec2){x, y});
+    return (narc_point){way.x + x, way.y + y};
 }
 
 static circle place_arc(const placed *p, size_t arc) {
@@ -108,71 +102,75 @@ static circle place_arc(const placed *p, size_t arc) {
         y = (double)stored->center_y;
         radius = (double)stored->radius;
     }
-    const vec2 from_origin = {p->turn.x * x - p->turn.y * y, p->turn.y * x + p->turn.x * y};
-    return (circle){plus(p->position, from_origin), p->scale * radius};
+    const narc_point from_origin = {p->turn.x * x - p->turn.y * y, p->turn.y * x + p->turn.x * y};
+    return (circle){narc_add_scaled(p->position, 1, from_origin), p->scale * radius};
 }
 
 static edge place_edge(const placed *p, size_t number) {
     edge e = {.before = place_arc(p, number > 0 ? number - 1 : p->count - 1), .behind = place_arc(p, number)};
-    const vec2 u = minus(e.behind.center, e.before.center);
-    const double square = dot(u, u), rise = e.before.radius - e.behind.radius;
+    const narc_point u = narc_subtract(e.behind.center, e.before.center);
+    const double square = narc_dot(u, u), rise = e.before.radius - e.behind.radius;
     const double length = sqrt(fmax(square - rise * rise, 0));
-    e.normal = times(1 / square, plus(times(rise, u), times(length, (vec2){u.y, -u.x})));
+    e.normal = scale_by(1 / square, narc_add_scaled(scale_by(rise, u), length, (narc_point){u.y, -u.x}));
     return e;
 }
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-static narc_refined_contact make_row(double separation, vec2 normal, vec2 point) {
+static narc_refined_contact make_row(double separation, narc_point normal, narc_point point) {
     return (narc_refined_contact){separation, normal.x, normal.y, point.x, point.y};
 }
 
 /* Where a centre lies within a concave arc, away from it is towards the arc. */
-static narc_refined_contact meet_arcs(circle a, circle b, vec2 told) {
-    const vec2 u = minus(b.center, a.center);
-    const double distance = sqrt(dot(u, u)), sign = signbit(a.radius) || signbit(b.radius) ? -1 : 1;
-    vec2 n = times(sign / distance, u);
+static narc_refined_contact meet_arcs(circle a, circle b, narc_point told) {
+    const narc_point u = narc_subtract(b.center, a.center);
+    const double distance = sqrt(narc_dot(u, u)), sign = signbit(a.radius) || signbit(b.radius) ? -1 : 1;
+    narc_point n = scale_by(sign / distance, u);
     double along = sign * distance;
-    if (!(dot(n, told) > LEAST_AGREEMENT)) {
+    if (!(narc_dot(n, told) > LEAST_AGREEMENT)) {
         n = told;
-        along = dot(n, u);
+        along = narc_dot(n, u);
     }
     const double separation = along - (a.radius + b.radius);
-    return make_row(separation, n, plus(a.center, times(a.radius + 0.5 * separation, n)));
+    return make_row(separation, n, narc_add_scaled(a.center, a.radius + 0.5 * separation, n));
 }
 
 /* An arc over an edge, of B over A's; `sign` -1: of A over B's. */
 static narc_refined_contact meet_edge(edge e, circle c, double sign) {
-    const double separation = dot(e.normal, minus(c.center, e.behind.center)) - e.behind.radius - c.radius;
-    return make_row(separation, times(sign, e.normal), minus(c.center, times(c.radius + 0.5 * separation, e.normal)));
+    const double separation = narc_dot(e.normal, narc_subtract(c.center, e.behind.center)) - e.behind.radius - c.radius;
+    return make_row(separation, scale_by(sign, e.normal),
+                    narc_add_scaled(c.center, -(c.radius + 0.5 * separation), e.normal));
 }
 
 /* How far an edge of B is over one of A along a normal. */
-static double find_height(const edge *a, const edge *b, vec2 n) {
-    const double top = fmax(dot(n, a->before.center) + a->before.radius, dot(n, a->behind.center) + a->behind.radius);
-    return fmin(dot(n, b->before.center) - b->before.radius, dot(n, b->behind.center) - b->behind.radius) - top;
+static double find_height(const edge *a, const edge *b, narc_point n) {
+    const double top =
+        fmax(narc_dot(n, a->before.center) + a->before.radius, narc_dot(n, a->behind.center) + a->behind.radius);
+    return fmin(narc_dot(n, b->before.center) - b->before.radius, narc_dot(n, b->behind.center) - b->behind.radius) -
+           top;
 }
 
 /* Of an edge's ends along a tangent the lower one [0] and the higher one. */
-static void find_ends(const edge *e, vec2 tangent, double *out_ends) {
-    const double before = dot(tangent, plus(e->before.center, times(e->before.radius, e->normal)));
-    const double behind = dot(tangent, plus(e->behind.center, times(e->behind.radius, e->normal)));
+static void find_ends(const edge *e, narc_point tangent, double *out_ends) {
+    const double before = narc_dot(tangent, narc_add_scaled(e->before.center, e->before.radius, e->normal));
+    const double behind = narc_dot(tangent, narc_add_scaled(e->behind.center, e->behind.radius, e->normal));
     out_ends[0] = fmin(before, behind);
     out_ends[1] = fmax(before, behind);
 }
 
 /* The separation is the larger one along both normals, the point the middle of the common stretch. */
 static narc_refined_contact meet_edges(edge a, edge b) {
-    const vec2 opposite = times(-1, b.normal);
+    const narc_point opposite = scale_by(-1, b.normal);
     const double along_a = find_height(&a, &b, a.normal), along_b = find_height(&a, &b, opposite);
-    const vec2 n = along_a >= along_b ? a.normal : opposite, tangent = {-n.y, n.x};
+    const narc_point n = along_a >= along_b ? a.normal : opposite, tangent = {-n.y, n.x};
     const double separation = fmax(along_a, along_b);
-    const double top = fmax(dot(n, a.before.center) + a.before.radius, dot(n, a.behind.center) + a.behind.radius);
+    const double top =
+        fmax(narc_dot(n, a.before.center) + a.before.radius, narc_dot(n, a.behind.center) + a.behind.radius);
     double of_a[2], of_b[2];
     find_ends(&a, tangent, of_a);
     find_ends(&b, tangent, of_b);
     const double middle = 0.5 * (fmax(of_a[0], of_b[0]) + fmin(of_a[1], of_b[1]));
-    return make_row(separation, n, plus(times(top + 0.5 * separation, n), times(middle, tangent)));
+    return make_row(separation, n, narc_add_scaled(scale_by(top + 0.5 * separation, n), middle, tangent));
 }
 
 static narc_refined_contact refine_row(const refine_job *job, const narc_contact *row) {
@@ -180,15 +178,15 @@ static narc_refined_contact refine_row(const refine_job *job, const narc_contact
     const size_t i = row->feature & (NARC_FEATURE_EDGE - 1), j = row->feature >> 8 & (NARC_FEATURE_EDGE - 1);
     const bool edge_a = row->feature & NARC_FEATURE_EDGE, edge_b = row->feature >> 8 & NARC_FEATURE_EDGE;
     b.position = find_way(job, row->pair, &a, &b);
-    a.position = (vec2){0, 0};
+    a.position = (narc_point){0, 0};
     if (edge_a && edge_b)
         return meet_edges(place_edge(&a, i), place_edge(&b, j));
     if (edge_a)
         return meet_edge(place_edge(&a, i), place_arc(&b, j), 1);
     if (edge_b)
         return meet_edge(place_edge(&b, j), place_arc(&a, i), -1);
-    const vec2 told = {(double)row->normal_x, (double)row->normal_y};
-    return meet_arcs(place_arc(&a, i), place_arc(&b, j), times(1 / sqrt(dot(told, told)), told));
+    const narc_point told = {(double)row->normal_x, (double)row->normal_y};
+    return meet_arcs(place_arc(&a, i), place_arc(&b, j), scale_by(1 / sqrt(narc_dot(told, told)), told));
 }
 
 static void refine_range(void *argument, size_t part, size_t first, size_t end) {
@@ -196,11 +194,11 @@ static void refine_range(void *argument, size_t part, size_t first, size_t end) 
     (void)part;
     for (size_t k = first; k < end; k++) {
         const narc_contact *row = &job->rows[k];
-        narc_refined_contact out = make_row((double)row->separation, (vec2){0, 0}, (vec2){0, 0});
+        narc_refined_contact out = make_row((double)row->separation, (narc_point){0, 0}, (narc_point){0, 0});
         if (row->count > 0)
             out = refine_row(job, row);
         if (!isfinite(out.separation + out.normal_x + out.normal_y + out.point_x + out.point_y))
-            out = make_row(INFINITY, (vec2){0, 0}, (vec2){0, 0});
+            out = make_row(INFINITY, (narc_point){0, 0}, (narc_point){0, 0});
         job->out[k] = out;
     }
 }

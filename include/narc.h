@@ -6,11 +6,12 @@
  *
  *   narc_shapes.h says what shapes are, narc_pairs.h what bodies, pairs, queries and rows are. A batch call takes all
  *   three, and answers for every pair, exactly: the shapes collide when no direction separates them, and the separation
- *   is the largest gap over all directions. There is no approximation and no iteration tolerance. Three forms of answer:
+ *   is the largest gap over all directions. There is no approximation and no iteration tolerance. Four forms of answer:
  *
- *       narc_find_overlaps()   one bit per pair
- *       narc_find_contacts()   a row for each pair that collides: separation, normal, point, features and curvatures
- *       narc_find_manifolds()  the same for solvers: one or two points a pair, with ids that carry impulses over
+ *       narc_find_overlaps()     one bit per pair
+ *       narc_find_separations()  one float per pair, for force laws, tolerances and distance fields
+ *       narc_find_contacts()     a row for each pair that collides: separation, normal, point, features and curvatures
+ *       narc_find_manifolds()    the same for solvers: one or two points a pair, with ids that carry impulses over
  *
  *   They share one narc_query, of which all may be left out. A batch may have one pair: below some pairs a call leaves
  *   out what only large batches need.
@@ -98,6 +99,17 @@ NARC_API const char *narc_version(void);
  * pairs: NARC_OK. Allocates nothing. */
 NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         const narc_query *query, uint64_t *out_bits, narc_error *error);
+
+/* How far apart are they? out_separations[k] is the separation of pair k, to the last bit that of its contact, of several
+ * the deepest's; +INFINITY where narc_find_contacts() has none: a pair further apart than the margin, or without an answer.
+ *   query            NULL: defaults, so only pairs that collide; margin = INFINITY: all. row_stride: from a float to the
+ *                    next; `dense` and what is of manifolds do nothing
+ *   out_separations  room up to the last pair that is asked of (of a selection, up to the batch's last), overlapping none
+ *                    of the inputs; floats of pairs that are not asked of are untouched
+ * Errors as narc_find_overlaps(). Allocates nothing. Not in narc_small.wasm. */
+NARC_API narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies,
+                                           const narc_pairs *pairs, const narc_query *query, float *out_separations,
+                                           narc_error *error);
 
 /* The contacts of all pairs whose separation is less than the margin, in the order of the pairs.
  *   query      NULL: defaults

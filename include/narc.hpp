@@ -411,6 +411,17 @@ auto refine_contacts(const narc_shapes *shapes, const narc_bodies &bodies, const
         });
 }
 
+// separations[k] is that of pair k: a span, an array or a vector of floats, with room up to the last pair that is asked of.
+template <class Floats>
+result<void> find_separations(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                              const narc_query &query, Floats &&separations) {
+    detail::make_room(separations, pairs.count);
+    const span<float> room(separations);
+    if (room.size() < pairs.count)
+        return result<void>(detail::too_short(pairs.count));
+    return detail::ask<void>(narc_find_separations, shapes, &bodies, &pairs, &query, room.data());
+}
+
 // Bit k % 64 of bits[k / 64] is that of pair k.
 template <class Bits>
 result<void> find_overlaps(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,

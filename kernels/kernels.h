@@ -29,7 +29,7 @@ typedef struct narc_batch {
     const narc_query *query;
     size_t first, count;
     size_t asked;    /* how many pairs are selected */
-    bool manifolds;  /* are rows manifolds? Else contacts */
+    size_t row_size; /* of answers that are rows */
     bool whole;      /* are runs of chains whole shapes, of which what lies behind touches, too? */
     float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
     narc_bodies filled[2];

@@ -59,7 +59,6 @@ static void open_slots(const narc_cast_job *job, struct slots *slots) {
     slots->batch.query = &slots->query;
     slots->batch.first = 0;
     slots->batch.count = slots->batch.asked = NARC_CAST_SLOTS;
-    slots->batch.manifolds = false;
     slots->batch.whole = true;
     slots->casts.tolerance = job->tolerance;
     slots->casts.front_only = job->front_only;

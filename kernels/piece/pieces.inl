@@ -119,4 +119,15 @@ INLINE vm keep_reached(const struct call *call, const struct queue *queue, int k
     return vm_any(deep) ? vm_and_not(keep, find_unreached(call, queue, k, deep, separation, n)) : keep;
 }
 
+/* Of the pairs k ... of a queue in the lanes `keep`, those that touch with what may touch: all but with the back of a
+ * run, or from behind a piece. */
+INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                      vi feature_a, vi feature_b) {
+    if (!NARC_PIECES || LIKELY(!call->pieces))
+        return keep;
+    const vm front =
+        vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b));
+    return keep_reached(call, queue, k, vm_and(keep, front), separation, n);
+}
+
 #endif

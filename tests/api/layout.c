@@ -110,10 +110,6 @@ static void check_pointers(void) {
                AT(reserved, 104));
     LAYOUT(narc_ray_options, 128,
            AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(reserved, 96));
-    LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
-    LAYOUT(narc_cast_options, 56,
-           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
-               AT(front_only, 40) && AT(reserved, 48));
     LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
     LAYOUT(narc_nearest_options, 120,
            AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));

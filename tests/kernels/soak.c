@@ -14,8 +14,8 @@
 #include <time.h>
 
 #include "check.h"
+#include "corpus.h"
 #include "everywhere.h"
-#include "methods.h"
 #include "narc.h"
 #include "placements.h"
 #include "ray_reference.h"

@@ -61,8 +61,7 @@ static const char *check_arcs(const struct reference_body *a, const struct refer
     return fabs((u_x * x + u_y * y) - radii - gap) > bound ? "the arcs have another gap" : NULL;
 }
 
-/* Signed distance from a point in world axes, relative to A's position, to a body. */
-static double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y) {
+double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y) {
     double length = hypot(body->cosine, body->sine), scale = body->scale * length, distance = NAN;
     double c = body->cosine / length, s = body->sine / length;
     x -= body->x - a->x;

@@ -18,6 +18,9 @@ struct fractions {
 /* The documented bound of a separation's error. */
 double separation_bound(const struct reference_body *a, const struct reference_body *b);
 
+/* Signed distance from a point in world axes, relative to A's position, to a body. */
+double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y);
+
 /* Checks a contact against the exact gap of its pair: separation, normal, point, arcs and radii. Raises `worst` to this
  * contact's errors where they are larger. Returns NULL, or what is wrong (static storage). */
 const char *check_contact(const struct reference_body *a, const struct reference_body *b, double gap,

@@ -6,15 +6,6 @@
 
 #include <math.h>
 
-struct vector {
-    double x, y;
-};
-
-static struct vector turn(const struct reference_body *body, double x, double y) {
-    return (struct vector){body->scale * (body->cosine * x - body->sine * y),
-                           body->scale * (body->sine * x + body->cosine * y)};
-}
-
 static double cross(double a_x, double a_y, double b_x, double b_y) { return a_x * b_y - a_y * b_x; }
 
 static double dot(double a_x, double a_y, double b_x, double b_y) { return a_x * b_x + a_y * b_y; }
@@ -26,7 +17,7 @@ struct first_body make_first_body(const struct reference_body *body, const struc
     struct first_body out = {.count = body->count == 1 ? 2 : body->count, .circle = body->count == 1};
     narc_mass mass;
     assert_true(narc_compute_mass(body->arcs, body->count, &mass));
-    const struct vector centroid = turn(body, mass.centroid_x, mass.centroid_y);
+    const narc_point centroid = turn_point(body, mass.centroid_x, mass.centroid_y);
     out.centroid_x = x + centroid.x;
     out.centroid_y = y + centroid.y;
     for (size_t i = 0; i <= out.count; i++) {
@@ -36,7 +27,7 @@ struct first_body make_first_body(const struct reference_body *body, const struc
         out.start_x[i] = cos(start);
         out.start_y[i] = sin(start);
         if (i < out.count) {
-            const struct vector center = turn(body, arc->center_x, arc->center_y);
+            const narc_point center = turn_point(body, arc->center_x, arc->center_y);
             out.x[i] = x + center.x;
             out.y[i] = y + center.y;
             out.radius[i] = body->scale * arc->radius;
@@ -74,38 +65,17 @@ enum sureness test_arcs(const struct first_body *a, const struct first_body *b, 
 
 /* ------------------------------------------------------------------------------------------------ polygons */
 
-struct polygon {
-    size_t count;
-    struct vector vertex[NARC_MAX_ARCS];
-};
-
-static struct polygon make_polygon(const struct reference_body *body, const struct reference_body *origin) {
-    struct polygon out = {.count = body->count};
-    for (size_t i = 0; i < body->count; i++) {
-        assert_true(body->arcs[i].radius == 0);
-        const struct vector v = turn(body, body->arcs[i].center_x, body->arcs[i].center_y);
-        out.vertex[i] = (struct vector){v.x + (body->x - origin->x), v.y + (body->y - origin->y)};
-    }
-    return out;
-}
-
-static double gap_of_edges(const struct polygon *own, const struct polygon *other) {
+/* A junction's normal is that of the edge before it. */
+double polygon_gap(const struct reference_body *a, const struct reference_body *b) {
     double best = -INFINITY;
-    for (size_t i = 0; i < own->count; i++) {
-        const struct vector from = own->vertex[i], to = own->vertex[(i + 1) % own->count];
-        const double length = hypot(to.x - from.x, to.y - from.y);
-        const double n_x = (to.y - from.y) / length, n_y = (from.x - to.x) / length;
-        double least = INFINITY;
-        for (size_t j = 0; j < other->count; j++)
-            least = fmin(least, dot(n_x, n_y, other->vertex[j].x - to.x, other->vertex[j].y - to.y));
-        best = fmax(best, least);
+    for (int side = 0; side < 2; side++) {
+        const struct reference_body *body = side ? b : a;
+        for (size_t i = 0; i < body->count; i++) {
+            const double angle = body->arcs[i].start + atan2(body->sine, body->cosine) + side * PI;
+            best = fmax(best, reference_gap_along(a, b, cos(angle), sin(angle)));
+        }
     }
     return best;
-}
-
-double polygon_gap(const struct reference_body *a, const struct reference_body *b) {
-    const struct polygon of_a = make_polygon(a, a), of_b = make_polygon(b, a);
-    return fmax(gap_of_edges(&of_a, &of_b), gap_of_edges(&of_b, &of_a));
 }
 
 /* ------------------------------------------------------------------------------------------------ boxes */
@@ -136,7 +106,7 @@ struct smallest_boxes find_boxes(const struct shape *shape) {
 
 struct plain_box place_box(const struct plain_box *box, const struct reference_body *body,
                            const struct reference_body *origin) {
-    const struct vector middle = turn(body, box->x, box->y);
+    const narc_point middle = turn_point(body, box->x, box->y);
     return (struct plain_box){middle.x + body->x - origin->x,
                               middle.y + body->y - origin->y,
                               box->half_x * body->scale,
@@ -167,7 +137,7 @@ double circle_gap(const struct reference_body *a, const struct reference_body *b
     narc_circle of_a, of_b;
     assert_true(narc_compute_bounding_circle(a->arcs, a->count, &of_a));
     assert_true(narc_compute_bounding_circle(b->arcs, b->count, &of_b));
-    const struct vector from = turn(a, of_a.x, of_a.y), to = turn(b, of_b.x, of_b.y);
+    const narc_point from = turn_point(a, of_a.x, of_a.y), to = turn_point(b, of_b.x, of_b.y);
     return hypot(b->x - a->x + to.x - from.x, b->y - a->y + to.y - from.y) - a->scale * of_a.radius -
            b->scale * of_b.radius;
 }

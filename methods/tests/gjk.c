@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "methods.h"
+#include "method_support.h"
 
 static struct corpus corpora[3]; /* both precisions, and polygons */
 enum { CORPORA = 3 };
@@ -31,13 +31,13 @@ static int destroy_corpora(void **state) {
 }
 
 /* What a run on a corpus came to. */
-struct tally {
+struct counts {
     size_t pairs, outcomes[4], wrong;
     double worst; /* by how much a separation is less than the exact one, of what is allowed */
     double off;   /* by how much a point is off the outlines, of what is allowed */
 };
 
-static void print_tally(const char *name, const struct tally *t) {
+static void print_counts(const char *name, const struct counts *t) {
     printf("  %-28s %7zu pairs: done %zu, limit %zu, rounding %zu; largest error %.3f of the tolerance, points' %.3f\n",
            name, t->pairs, t->outcomes[NARC_OUTCOME_DONE], t->outcomes[NARC_OUTCOME_LIMIT],
            t->outcomes[NARC_OUTCOME_ROUNDING], t->worst, t->off);
@@ -60,7 +60,7 @@ static double allowed_distance(const struct exact_pair *pair, double allowed) {
  * the search ended well. Both but for rounding: the bound for the separation that is told, and as much for the other
  * limit, the distance of the segment from the origin, which is made of two support points. */
 static const char *check_gjk_contact(const struct exact_pair *pair, const narc_contact *told,
-                                     const narc_method_options *options, unsigned outcome, struct tally *tally) {
+                                     const narc_method_options *options, unsigned outcome, struct counts *counts) {
     const double separation = (double)told->separation;
     const double allowed = tolerance_of(options) * pair->size + 2 * pair->bound;
     /* GJK ended before it knew whether they collide, so the separation is not negative. */
@@ -74,8 +74,8 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
         return "more than the exact separation";
     if (outcome == NARC_OUTCOME_DONE) {
         const double allowed_off = allowed_distance(pair, allowed), off = distance_from_outlines(pair, told);
-        tally->worst = fmax(tally->worst, (pair->gap - separation) / allowed);
-        tally->off = fmax(tally->off, off / allowed_off);
+        counts->worst = fmax(counts->worst, (pair->gap - separation) / allowed);
+        counts->off = fmax(counts->off, off / allowed_off);
         if (pair->gap - separation > allowed)
             return "further from the exact separation than the tolerance";
         if (off > allowed_off)
@@ -85,25 +85,25 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
 }
 
 /* All contacts of a corpus. Outcomes must be wanted. `hints` may be NULL. */
-static struct tally check_contacts(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                   const char *name) {
+static struct counts check_contacts(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
+                                    const char *name) {
     const size_t count = corpus->scene.pair_count;
-    struct tally tally = {.pairs = count};
+    struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
     struct contacts all =
         query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY, .hints = hint_column(hints)});
     assert_int_equal(all.count, count);
     for (size_t k = 0; k < count; k++) {
         const unsigned outcome = options->out_outcomes[k];
-        const char *wrong = check_gjk_contact(&corpus->pairs[k], &all.rows[k], options, outcome, &tally);
-        tally.outcomes[outcome % 4]++;
+        const char *wrong = check_gjk_contact(&corpus->pairs[k], &all.rows[k], options, outcome, &counts);
+        counts.outcomes[outcome % 4]++;
         if (all.rows[k].pair != k)
             wrong = "pair index";
         if (wrong)
-            show_wrong_pair(corpus, k, name, wrong, &all.rows[k], outcome, &tally.wrong);
+            show_wrong_pair(corpus, k, name, wrong, &all.rows[k], outcome, &counts.wrong);
     }
     free(all.rows);
-    return tally;
+    return counts;
 }
 
 TEST(test_tolerances) {
@@ -112,35 +112,35 @@ TEST(test_tolerances) {
     for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
-            uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
+            uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
             const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
-            const struct tally tally = check_contacts(&corpora[c], &options, NULL, name);
-            print_tally(name, &tally);
-            wrong += tally.wrong;
+            const struct counts counts = check_contacts(&corpora[c], &options, NULL, name);
+            print_counts(name, &counts);
+            wrong += counts.wrong;
             free(outcomes);
         }
     }
     assert_int_equal(wrong, 0);
 }
 
-typedef struct tally check_corpus(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                  const char *name);
+typedef struct counts check_corpus(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
+                                   const char *name);
 
 /* How many pairs of all corpora run out of iterations; none is wrong. */
 static size_t count_all_limits(check_corpus *check, const char *what, unsigned iterations) {
     size_t limits = 0;
     for (int c = 0; c < CORPORA; c++) {
         char name[64];
-        uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
+        uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
         const narc_method_options options = {
             .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
         snprintf(name, sizeof name, "%s, iterations %u, scene %d", what, iterations, c);
-        const struct tally tally = check(&corpora[c], &options, NULL, name);
-        print_tally(name, &tally);
-        assert_int_equal(tally.wrong, 0);
-        limits += tally.outcomes[NARC_OUTCOME_LIMIT];
+        const struct counts counts = check(&corpora[c], &options, NULL, name);
+        print_counts(name, &counts);
+        assert_int_equal(counts.wrong, 0);
+        limits += counts.outcomes[NARC_OUTCOME_LIMIT];
         free(outcomes);
     }
     return limits;
@@ -168,11 +168,12 @@ TEST(test_margins) {
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = create_outcomes(count);
+        uint8_t *outcomes = make_junk(count);
         const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
         for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
+            uint64_t *bits = query_overlaps(&corpus->scene, &options, NULL);
             struct contacts found = query_contacts(&corpus->scene, &options, &(narc_query){.margin = margins[m]});
-            struct tally tally = {0};
+            struct counts counts = {0};
             size_t next = 0;
             for (size_t k = 0; k < count; k++) {
                 const struct exact_pair *pair = &corpus->pairs[k];
@@ -180,7 +181,7 @@ TEST(test_margins) {
                 const double away = pair->gap - (double)margins[m];
                 const char *wrong = NULL;
                 if (listed) {
-                    wrong = check_gjk_contact(pair, &found.rows[next], &options, outcomes[k], &tally);
+                    wrong = check_gjk_contact(pair, &found.rows[next], &options, outcomes[k], &counts);
                     wrong = found.rows[next].separation < margins[m] ? wrong : "reported, but not below the margin";
                 }
                 if (!listed && away < -pair->bound)
@@ -188,6 +189,8 @@ TEST(test_margins) {
                 else if (listed && outcomes[k] == NARC_OUTCOME_DONE &&
                          away > tolerance_of(&options) * pair->size + 2 * pair->bound)
                     wrong = "above the margin, but reported";
+                if (margins[m] == 0 && listed != bit_is_set(bits, k))
+                    wrong = "bit and list differ";
                 if (wrong) {
                     show_wrong_pair(corpus, k, "margin", wrong, NULL, outcomes[k], &wrong_pairs);
                     print_error("  margin %g, outcome %u\n", (double)margins[m], outcomes[k]);
@@ -195,12 +198,8 @@ TEST(test_margins) {
                 next += listed;
             }
             assert_int_equal(next, found.count);
-            if (margins[m] == 0) {
-                uint64_t *bits = query_overlaps(&corpus->scene, &options, NULL);
-                check_contacts_are_bits(&found, bits, count, "gjk");
-                free(bits);
-            }
             free(found.rows);
+            free(bits);
         }
         free(outcomes);
     }
@@ -210,17 +209,17 @@ TEST(test_margins) {
 /* ------------------------------------------------------------------------------------------------ overlaps */
 
 /* Bits and outcomes of a corpus. With a limit on iterations an answer may be missing, and then says so. */
-static struct tally check_overlaps(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                   const char *name) {
+static struct counts check_overlaps(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
+                                    const char *name) {
     const size_t count = corpus->scene.pair_count;
-    struct tally tally = {.pairs = count};
+    struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
     uint64_t *bits = query_overlaps(&corpus->scene, options, &(narc_query){.hints = hint_column(hints)});
     for (size_t k = 0; k < count; k++) {
         const struct exact_pair *pair = &corpus->pairs[k];
         const unsigned outcome = options->out_outcomes[k];
         const char *wrong = NULL;
-        tally.outcomes[outcome % 4]++;
+        counts.outcomes[outcome % 4]++;
         if (outcome > NARC_OUTCOME_ROUNDING)
             wrong = "no such outcome";
         else if (outcome == NARC_OUTCOME_LIMIT && bit_is_set(bits, k))
@@ -233,12 +232,12 @@ static struct tally check_overlaps(const struct corpus *corpus, const narc_metho
                  (outcome == NARC_OUTCOME_DONE || bit_is_set(bits, k)))
             wrong = "overlap";
         if (wrong) {
-            show_wrong_pair(corpus, k, name, wrong, NULL, outcome, &tally.wrong);
+            show_wrong_pair(corpus, k, name, wrong, NULL, outcome, &counts.wrong);
             print_error("  answer: outcome %u, bit %d\n", outcome, bit_is_set(bits, k));
         }
     }
     free(bits);
-    return tally;
+    return counts;
 }
 
 TEST(test_overlaps) {
@@ -254,21 +253,21 @@ TEST(test_overlaps) {
 /* Overlaps and contacts with these hints, and what those calls leave of them. */
 static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, const char *what) {
     const size_t count = corpus->scene.pair_count;
-    uint8_t *outcomes = create_outcomes(count);
+    uint8_t *outcomes = make_junk(count);
     uint32_t *of_overlaps = create_hints(count);
     memcpy(of_overlaps, hints, count * sizeof *hints);
     const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
     size_t wrong = 0;
     for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
-        const struct tally tally = check_overlaps(corpus, &options, of_overlaps, what);
-        wrong += tally.wrong;
+        const struct counts counts = check_overlaps(corpus, &options, of_overlaps, what);
+        wrong += counts.wrong;
         /* Rounding may leave a search with useless hints no way on; hardly ever. */
-        assert_true(tally.outcomes[NARC_OUTCOME_ROUNDING] <= count / 1000);
+        assert_true(counts.outcomes[NARC_OUTCOME_ROUNDING] <= count / 1000);
     }
     for (int again = 0; again < 2; again++) {
-        const struct tally tally = check_contacts(corpus, &options, hints, what);
-        print_tally(what, &tally);
-        wrong += tally.wrong;
+        const struct counts counts = check_contacts(corpus, &options, hints, what);
+        print_counts(what, &counts);
+        wrong += counts.wrong;
     }
     free(of_overlaps);
     free(outcomes);
@@ -277,7 +276,7 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
 
 static size_t count_limits(const struct corpus *corpus, unsigned iterations, uint32_t *hints) {
     const size_t count = corpus->scene.pair_count;
-    uint8_t *outcomes = create_outcomes(count);
+    uint8_t *outcomes = make_junk(count);
     size_t limits = 0;
     const narc_method_options options = {.method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
     free(query_overlaps(&corpus->scene, &options, &(narc_query){.hints = hint_column(hints)}));

@@ -5,7 +5,7 @@
 #ifndef NARC_TEST_METHOD_REFERENCES_H
 #define NARC_TEST_METHOD_REFERENCES_H
 
-#include "methods.h"
+#include "method_support.h"
 
 /* ----------------------------------------------------------------------------------------------- first pair of arcs */
 
@@ -26,7 +26,7 @@ enum sureness test_arcs(const struct first_body *a, const struct first_body *b, 
 
 /* ------------------------------------------------------------------------------------------------ polygons */
 
-/* The largest, over the edges of both, of the least height of the other's vertices above the edge. Of polygons only. */
+/* The largest gap along the normals of the edges of both. Of polygons only. */
 double polygon_gap(const struct reference_body *a, const struct reference_body *b);
 
 /* ------------------------------------------------------------------------------------------------ boxes */

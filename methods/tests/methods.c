@@ -49,32 +49,26 @@ TEST(test_sat_is_narc_find) {
         const narc_bodies bodies = scene_bodies(scene);
         const narc_pairs pairs = scene_pairs(scene);
         uint32_t *hints = create_hints(count), *own_hints = create_hints(count);
-        for (int round = 0; round < 2 * MARGINS; round++) {
-            const float margin = margins[round / 2];
-            uint8_t *outcomes = create_outcomes(count);
-            const narc_workers workers = narc_openmp_workers(1 + (unsigned)round % 3);
-            const narc_method_options options = {
-                .tolerance = round % 3 ? 0 : 0.5f, .iterations = round % 3 ? 0 : 1, .out_outcomes = outcomes};
-            const narc_query query = {
-                .margin = margin, .hints = hint_column(round % 2 ? hints : NULL), .workers = &workers};
-            const narc_query own_query = {.margin = margin, .hints = hint_column(round % 2 ? own_hints : NULL)};
+        uint8_t *outcomes = make_junk(count);
+        const narc_method_options options = {.tolerance = 0.5f, .iterations = 1, .out_outcomes = outcomes};
+        for (int m = 0; m < MARGINS; m++) {
+            const narc_query query = {.margin = margins[m], .hints = hint_column(hints)};
+            const narc_query own_query = {.margin = margins[m], .hints = hint_column(own_hints)};
             struct contacts found = query_contacts(scene, &options, &query);
             struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &own_query);
-            check_same_contacts(&found, &expected, "sat");
+            check_contacts_below(&found, &expected, INFINITY, "sat");
             assert_memory_equal(hints, own_hints, count * sizeof *hints);
-            check_all_done(outcomes, count);
-            memset(outcomes, 0xa5, count);
-            uint64_t *bits = query_overlaps(scene, &options, &query);
-            uint64_t *expected_bits = scene_overlaps(scene);
-            assert_memory_equal(bits, expected_bits, NARC_BIT_WORDS(count) * sizeof *bits);
-            assert_memory_equal(hints, own_hints, count * sizeof *hints);
-            check_all_done(outcomes, count);
-            free(bits);
-            free(expected_bits);
-            free(outcomes);
             free(found.rows);
             free(expected.rows);
         }
+        check_all_done(outcomes, count);
+        memset(outcomes, 0xa5, count);
+        uint64_t *bits = query_overlaps(scene, &options, NULL), *expected_bits = scene_overlaps(scene);
+        assert_memory_equal(bits, expected_bits, NARC_BIT_WORDS(count) * sizeof *bits);
+        check_all_done(outcomes, count);
+        free(bits);
+        free(expected_bits);
+        free(outcomes);
         free(hints);
         free(own_hints);
     }
@@ -175,7 +169,7 @@ static struct first_verdict judge_first(const struct exact_pair *pair, const nar
     return verdict;
 }
 
-struct first_tally {
+struct first_counts {
     size_t pairs, doubted, none, late, wrong;
     size_t inside,
         wrong_signs; /* pairs of shapes with all centres inside; all others whose answer has the wrong sign */
@@ -187,7 +181,7 @@ static bool centers_inside(const struct scene *scene, size_t k) {
 }
 
 static void check_first_pair(const struct corpus *corpus, const struct contacts *all, size_t k, unsigned outcome,
-                             struct first_tally *tally) {
+                             struct first_counts *counts) {
     const struct exact_pair *pair = &corpus->pairs[k];
     const double separation = (double)all->rows[k].separation;
     const struct first_verdict verdict = judge_first(pair, &all->rows[k], outcome);
@@ -206,26 +200,26 @@ static void check_first_pair(const struct corpus *corpus, const struct contacts 
     /* With all centres inside, what lies between two overlapping arcs' centres is in both shapes. */
     const bool outside_band = fabs(pair->gap) > pair->bound;
     if (!wrong && sure && outside_band && centers_inside(&corpus->scene, k)) {
-        tally->inside++;
+        counts->inside++;
         if ((separation < 0) != (pair->gap < 0))
             wrong = "the wrong sign though all centres lie inside";
     } else if (outside_band) {
-        tally->wrong_signs += (separation < 0) != (pair->gap < 0);
+        counts->wrong_signs += (separation < 0) != (pair->gap < 0);
     }
-    tally->pairs++;
-    tally->doubted += verdict.doubted;
-    tally->none += outcome == NARC_OUTCOME_NONE;
-    tally->late += verdict.found && verdict.before > 0;
+    counts->pairs++;
+    counts->doubted += verdict.doubted;
+    counts->none += outcome == NARC_OUTCOME_NONE;
+    counts->late += verdict.found && verdict.before > 0;
     if (wrong)
-        show_wrong_pair(corpus, k, "sat-first", wrong, &all->rows[k], outcome, &tally->wrong);
+        show_wrong_pair(corpus, k, "sat-first", wrong, &all->rows[k], outcome, &counts->wrong);
 }
 
 TEST(test_first_pair) {
-    struct first_tally tally = {0};
+    struct first_counts counts = {0};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = create_outcomes(count), *again = create_outcomes(count);
+        uint8_t *outcomes = make_junk(count), *again = make_junk(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
         const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes};
         const narc_method_options other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
@@ -236,14 +230,11 @@ TEST(test_first_pair) {
         assert_memory_equal(outcomes, again, count);
         for (size_t k = 0; k < count; k++) {
             assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
-            check_first_pair(corpus, &all, k, outcomes[k], &tally);
+            check_first_pair(corpus, &all, k, outcomes[k], &counts);
         }
         for (int m = 0; m < MARGINS; m++) {
             struct contacts found = query_contacts(&corpus->scene, &other, &(narc_query){.margin = margins[m]});
-            if (margins[m] < INFINITY)
-                check_contacts_below(&found, &all, margins[m], "sat-first");
-            else
-                check_same_contacts(&found, &all, "sat-first");
+            check_contacts_below(&found, &all, margins[m], "sat-first");
             assert_memory_equal(outcomes, again, count);
             free(found.rows);
         }
@@ -257,11 +248,11 @@ TEST(test_first_pair) {
     }
     printf("  sat-first: %zu pairs; in doubt %zu, without a pair of arcs %zu, with one that is not the first of all "
            "%zu; sign wrong %zu, of %zu with all centres inside 0\n",
-           tally.pairs, tally.doubted, tally.none, tally.late, tally.wrong_signs, tally.inside);
-    assert_int_equal(tally.wrong, 0);
+           counts.pairs, counts.doubted, counts.none, counts.late, counts.wrong_signs, counts.inside);
+    assert_int_equal(counts.wrong, 0);
     /* Hard places are in doubt on purpose, but only they are. */
-    assert_true(tally.doubted < tally.pairs / 2);
-    assert_true(tally.late > tally.pairs / 10);
+    assert_true(counts.doubted < counts.pairs / 2);
+    assert_true(counts.late > counts.pairs / 10);
 }
 
 /* ------------------------------------------------------------------------------------------------ polygon-sat */
@@ -287,7 +278,7 @@ TEST(test_polygons) {
     for (int c = POLYGONS; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = create_outcomes(count);
+        uint8_t *outcomes = make_junk(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
         const narc_method_options options = {.method = NARC_METHOD_POLYGON_SAT, .out_outcomes = outcomes};
         narc_query query = {.margin = INFINITY, .hints = hint_column(hints)};
@@ -339,15 +330,15 @@ TEST(test_polygons) {
  * normal, 27 e and 12 e, and the dot products and sums round by 20 e more. */
 static const double filter_band = 256.0 / 16777216.0;
 
-struct filter_tally {
+struct filter_counts {
     size_t apart, colliding, wrong, false_alarms;
 };
 
 /* `least` and `most`: how far the filter's shapes are apart, where there is a choice of them. */
 static void check_filter(const struct corpus *corpus, size_t k, bool told, double least, double most,
-                         struct filter_tally *tally) {
+                         struct filter_counts *counts) {
     const struct exact_pair *pair = &corpus->pairs[k];
-    const double misfit = pair->bound - NARC_ERROR_BOUND * pair->reach, band = filter_band * pair->reach + 2 * misfit;
+    const double band = filter_band * pair->reach;
     const char *wrong = NULL;
     if (pair->gap <= 0 && !told)
         wrong = "no, though the bodies collide";
@@ -355,17 +346,17 @@ static void check_filter(const struct corpus *corpus, size_t k, bool told, doubl
         wrong = "yes, though the filter's shapes are apart";
     else if (most < -band && !told)
         wrong = "no, though the filter's shapes overlap";
-    tally->apart += least > band;
-    tally->colliding += most < -band;
-    tally->false_alarms += told && pair->gap > 0;
+    counts->apart += least > band;
+    counts->colliding += most < -band;
+    counts->false_alarms += told && pair->gap > 0;
     if (wrong) {
-        show_wrong_pair(corpus, k, "filter", wrong, NULL, 0, &tally->wrong);
+        show_wrong_pair(corpus, k, "filter", wrong, NULL, 0, &counts->wrong);
         print_error("  filter: told %d, gap %.9g .. %.9g, band %.3g\n", told, least, most, band);
     }
 }
 
 TEST(test_filters) {
-    struct filter_tally tally[3] = {{0}};
+    struct filter_counts counts[3] = {{0}};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const struct scene *scene = &corpus->scene;
@@ -375,7 +366,7 @@ TEST(test_filters) {
         for (size_t k = 0; k < scene->shape_count; k++)
             boxes[k] = find_boxes(&scene->shapes[k]);
         uint64_t *bits[3];
-        uint8_t *outcomes = create_outcomes(count);
+        uint8_t *outcomes = make_junk(count);
         for (int f = 0; f < 3; f++) {
             const narc_method_options options = {.method = (narc_method)(NARC_METHOD_CIRCLE + f),
                                                  .out_outcomes = outcomes};
@@ -401,7 +392,7 @@ TEST(test_filters) {
                 }
             }
             for (int f = 0; f < 3; f++)
-                check_filter(corpus, k, bit_is_set(bits[f], k), least[f], most[f], &tally[f]);
+                check_filter(corpus, k, bit_is_set(bits[f], k), least[f], most[f], &counts[f]);
         }
         for (int f = 0; f < 3; f++)
             free(bits[f]);
@@ -410,10 +401,143 @@ TEST(test_filters) {
     }
     for (int f = 0; f < 3; f++) {
         printf("  %s: %zu apart, %zu overlapping; says yes of %zu separated pairs\n",
-               narc_method_name((narc_method)(NARC_METHOD_CIRCLE + f)), tally[f].apart, tally[f].colliding,
-               tally[f].false_alarms);
-        assert_int_equal(tally[f].wrong, 0);
-        assert_true(tally[f].apart > 0 && tally[f].colliding > 0);
+               narc_method_name((narc_method)(NARC_METHOD_CIRCLE + f)), counts[f].apart, counts[f].colliding,
+               counts[f].false_alarms);
+        assert_int_equal(counts[f].wrong, 0);
+        assert_true(counts[f].apart > 0 && counts[f].colliding > 0);
+    }
+}
+
+/* Filters say yes wherever the exact method does, of shapes far from their own origin too. */
+TEST(test_filters_far_from_origin) {
+    struct test_random random = test_random_named("filters far from origin");
+    for (int decade = FIRST_FAR; decade <= LAST_FAR; decade++) {
+        struct scene scene = make_far_scene(&random, decade);
+        uint64_t *exact = scene_overlaps(&scene);
+        for (narc_method method = NARC_METHOD_CIRCLE; narc_method_name(method); method++) {
+            uint64_t *passed = query_overlaps(&scene, &(narc_method_options){.method = method}, NULL);
+            for (size_t k = 0; k < NARC_BIT_WORDS(scene.pair_count); k++)
+                assert_true((exact[k] & ~passed[k]) == 0);
+            free(passed);
+        }
+        free(exact);
+        destroy_scene(&scene);
+    }
+}
+
+/* Which bodies are broken is the core's rule, for bodies at the limits of what they may be; outcomes are those of any
+ * other pair. */
+TEST(test_broken_bodies) {
+    enum { PAIRS = 1200 };
+    struct test_random random = test_random_named("broken bodies");
+    struct scene scene = create_scene(NARC_FLOAT64, 1, 2 * PAIRS, PAIRS);
+    const struct shape box = box_of(2, 1, 0);
+    scene_add_shape(&scene, &box);
+    for (size_t k = 0; k < PAIRS; k++) {
+        const double error = (random_below(&random, 2) ? 1 : -1) * NARC_ROTATION_TOLERANCE;
+        const double length = sqrt(1 + error) * (1 + random_between(&random, -4e-7, 4e-7));
+        const double size = (random_below(&random, 2) ? NARC_MIN_SIZE : NARC_MAX_SIZE) / hypot(1, 0.5);
+        struct body a = turned_body(0, 1), b = turned_body(random_between(&random, -PI, PI), 1);
+        if (k % 2) {
+            b.cosine = (float)(length * (double)b.cosine);
+            b.sine = (float)(length * (double)b.sine);
+        } else {
+            a.scale = b.scale = (float)(size * (1 + random_between(&random, -3e-5, 3e-5)));
+        }
+        scene_add_two(&scene, a, b);
+    }
+    struct contacts all = scene_contacts(&scene, INFINITY);
+    size_t broken = 0;
+    for (size_t k = 0; k < all.count; k++)
+        broken += all.rows[k].count == 0;
+    assert_in_range(broken, PAIRS / 5, PAIRS * 4 / 5);
+    for (narc_method method = NARC_METHOD_SAT; narc_method_name(method); method++) {
+        uint8_t outcomes[PAIRS];
+        size_t skipped = 0;
+        const narc_method_options options = {.method = method, .out_outcomes = outcomes};
+        const narc_query query = {.margin = INFINITY, .out_skipped = &skipped};
+        free(query_overlaps(&scene, &options, &query));
+        assert_int_equal(skipped, broken);
+        if (method < NARC_METHOD_CIRCLE) {
+            struct contacts found = query_contacts(&scene, &options, &query);
+            for (size_t k = 0; k < PAIRS; k++)
+                if (all.rows[k].count == 0)
+                    assert_true(found.rows[k].count == 0 && outcomes[k] == NARC_OUTCOME_DONE);
+            free(found.rows);
+        }
+        assert_int_equal(skipped, broken);
+    }
+    free(all.rows);
+    destroy_scene(&scene);
+}
+
+/* ------------------------------------------------------------------------------------------------ circles */
+
+/* Two bodies of one shape without rotation. */
+static struct scene make_two(const struct shape *shape, double x, double y) {
+    struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
+    struct body a = turned_body(0, 1), b = a;
+    b.x = x;
+    b.y = y;
+    scene_add_shape(&scene, shape);
+    scene_add_two(&scene, a, b);
+    return scene;
+}
+
+/* Every direction is as good. EPA's polygon with n corners comes as near as 1 - cos(pi / n) of the sum of radii, so that
+ * a tolerance of 1e-2 takes 23 of them; 8 points and the triangle's 3 are too few; and one of 1e-6 takes more than there
+ * may be: it ends with LIMIT then, though what it has found is right. */
+TEST(test_circles_in_one_place) {
+    static const struct {
+        float tolerance;
+        unsigned iterations, outcome;
+        double off;
+    } ways[] = {{1e-2f, 0, NARC_OUTCOME_DONE, 0.02 + 1e-5},
+                {1e-2f, 8, NARC_OUTCOME_LIMIT, INFINITY},
+                {1e-6f, 0, NARC_OUTCOME_LIMIT, 1e-5}};
+    const struct shape disc = circle_of(1);
+    struct scene scene = make_two(&disc, 0, 0);
+    uint8_t outcome;
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        const narc_method_options options = {NARC_METHOD_GJK, ways[k].tolerance, ways[k].iterations, &outcome, {NULL}};
+        struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
+        assert_int_equal(outcome, ways[k].outcome);
+        assert_true(fabs((double)found.rows[0].separation + 2) <= ways[k].off);
+        free(found.rows);
+        uint64_t *bits = query_overlaps(&scene, &options, NULL);
+        assert_true(bit_is_set(bits, 0) && outcome == NARC_OUTCOME_DONE);
+        free(bits);
+    }
+    /* The first of Algorithm 2's arcs has no direction to look along. */
+    const narc_method_options first = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
+    uint64_t *bits = query_overlaps(&scene, &first, NULL);
+    assert_true(!bit_is_set(bits, 0) && outcome == NARC_OUTCOME_NONE);
+    free(bits);
+    destroy_scene(&scene);
+}
+
+/* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
+ * must find it in one of them. */
+TEST(test_first_at_the_seam) {
+    static const float turns[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6f, 0.8f}};
+    const struct shape disc = circle_of(1);
+    for (size_t k = 0; k < 2 * sizeof turns / sizeof *turns; k++) {
+        const float *turn = turns[k / 2], side = k % 2 ? 1 : -1;
+        const narc_point to = {(double)(side * turn[0]), (double)(side * turn[1])};
+        struct scene scene = make_two(&disc, to.x, to.y);
+        for (size_t i = 0; i < 2; i++) {
+            scene.bodies[i].cosine = turn[0];
+            scene.bodies[i].sine = turn[1];
+        }
+        uint8_t outcome = 0xa5;
+        const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
+        struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
+        assert_int_equal(outcome, NARC_OUTCOME_DONE);
+        assert_true(fabs((double)found.rows[0].separation + 1) < 1e-6);
+        assert_true(fabs((double)found.rows[0].normal_x - to.x) < 1e-6);
+        assert_true(fabs((double)found.rows[0].normal_y - to.y) < 1e-6);
+        free(found.rows);
+        destroy_scene(&scene);
     }
 }
 
