@@ -37,8 +37,8 @@ typedef struct narc_batch {
 } narc_batch;
 
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
- *   further     Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
- *               besides to `further`, and if rows are not dense NARC_FURTHER_ROW times that to the row's count.
+ *   more        Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
+ *               besides to `more`, and if rows are not dense NARC_MORE_ROW times that to the row's count.
  *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
  *               the places that are that pair's. */
 typedef struct narc_row_list {
@@ -48,11 +48,11 @@ typedef struct narc_row_list {
 typedef struct narc_rows {
     char *base;
     ptrdiff_t stride;
-    size_t *further;
+    size_t *more;
     narc_row_list *lists;
 } narc_rows;
 
-enum { NARC_FURTHER_ROW = 256 };
+enum { NARC_MORE_ROW = 256 };
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {

@@ -35,7 +35,7 @@ typedef void row_writer(const struct call *call, char *const *place, vi numbers,
 struct question {
     size_t size;        /* bytes of a row */
     size_t normal_at;   /* where its normal lies */
-    uint32_t extra_row; /* what the word behind the pair gains for another row of it: NARC_FURTHER_ROW to the count */
+    uint32_t extra_row; /* what the word behind the pair gains for another row of it: NARC_MORE_ROW to the count */
     /* The row of a pair without a contact; `separation` INFINITY: it has no answer. */
     void (*none)(char *place, uint32_t pair, float separation);
     row_writer *discs;            /* the rows of circles; NULL: write_contacts(), inline */

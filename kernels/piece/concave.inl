@@ -179,7 +179,7 @@ INLINE void list_gaps(const struct call *call, const struct queue *queue, int k,
 }
 
 /* Notes in pairs' rows how many there are besides, of `counts` in all. */
-INLINE void note_further_rows(const struct call *call, vi counts, char *const *place) {
+INLINE void note_more_rows(const struct call *call, vi counts, char *const *place) {
     int32_t count[V_WIDTH];
     if (call->rows->dense)
         return;
@@ -192,7 +192,7 @@ INLINE void note_further_rows(const struct call *call, vi counts, char *const *p
         memcpy(&word, place[lane] + sizeof word, sizeof word);
         word += more * call->question->extra_row;
         memcpy(place[lane] + sizeof word, &word, sizeof word);
-        *call->rows->out.further += more;
+        *call->rows->out.more += more;
     }
 }
 
@@ -252,7 +252,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     char *place[V_WIDTH];
     find_places(call, get_bits(queue, PAIR, k), any, place);
     call->question->gaps(call, queue, k, &deepest, place);
-    note_further_rows(call, found, place);
+    note_more_rows(call, found, place);
 }
 
 /* Answers the last pairs that wait: while there are others, whole vectors. */

@@ -15,9 +15,9 @@
 
 /* The count is the upper half of the word behind the pair, in memory the second. */
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-enum { EXTRA_ROW = NARC_FURTHER_ROW };
+enum { EXTRA_ROW = NARC_MORE_ROW };
 #else
-enum { EXTRA_ROW = NARC_FURTHER_ROW << 16 };
+enum { EXTRA_ROW = NARC_MORE_ROW << 16 };
 #endif
 
 NARC_QUESTION(contact, narc_contact, offsetof(narc_contact, normal_x), EXTRA_ROW, write_no_contact, write_contacts,

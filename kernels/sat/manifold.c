@@ -46,7 +46,7 @@ static void write_no_manifold(char *place, uint32_t pair, float separation) {
     memcpy(place, &manifold, sizeof manifold);
 }
 
-NARC_QUESTION(manifold, narc_manifold, offsetof(narc_manifold, normal_x), NARC_FURTHER_ROW, write_no_manifold,
+NARC_QUESTION(manifold, narc_manifold, offsetof(narc_manifold, normal_x), NARC_MORE_ROW, write_no_manifold,
               write_manifolds, true, NULL)
 NARC_ROWS(manifolds, narc_manifold, write_manifolds, STAGES)
 

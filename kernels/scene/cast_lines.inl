@@ -72,16 +72,16 @@ INLINE vl advance_line(const narc_casts *casts, const struct touch *touch, size_
 }
 
 /* Goes on to where circles touch, where that is later than Newton's step. */
-INLINE void go_further(const narc_casts *casts, const struct touch *touch, size_t k, int h,
-                       const struct held_arcs arcs[2], const struct outline_part parts[2], const double *next,
-                       struct step *out) {
+INLINE void try_ahead(const narc_casts *casts, const struct touch *touch, size_t k, int h,
+                      const struct held_arcs arcs[2], const struct outline_part parts[2], const double *next,
+                      struct step *out) {
     const size_t slot = k + (size_t)h;
     vd duration;
     const vl found = find_touch(casts, touch, k, h, arcs, parts, &duration);
     const vd ahead = d_of_floats(casts->time + slot) + duration, safe = d_of_floats(out->time + h);
-    const vl further = found & d_lt(d_load(next), ahead) & d_le(ahead, d_load(casts->end + slot));
-    d_put_floats(out->time + h, d_select(further, round_down(ahead), safe));
-    d_put_floats(out->back + h, d_select(further, safe, d_of_floats(out->back + h)));
+    const vl tries = found & d_lt(d_load(next), ahead) & d_le(ahead, d_load(casts->end + slot));
+    d_put_floats(out->time + h, d_select(tries, round_down(ahead), safe));
+    d_put_floats(out->back + h, d_select(tries, safe, d_of_floats(out->back + h)));
 }
 
 INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
@@ -101,7 +101,7 @@ INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, co
         load_held(shapes, &parts[side], parts[side].arc, &arcs[side]);
     }
     for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-        go_further(casts, touch, k, h, arcs, parts, next + h, out);
+        try_ahead(casts, touch, k, h, arcs, parts, next + h, out);
 }
 
 #endif

@@ -390,7 +390,8 @@ void test_separations() {
     for (size_t k = 0; k < found.size(); k++)
         CHECK(separations[k] <= found[k].separation && separations[k] >= found[k].separation);
     const auto short_by_one = narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, few);
-    CHECK(status_of(short_by_one) == NARC_ERROR_CAPACITY && short_by_one.error().value == found.size());
+    CHECK(status_of(short_by_one) == NARC_ERROR_CAPACITY &&
+          short_by_one.error().value == static_cast<double>(found.size()));
 }
 
 void test_small_batches() {

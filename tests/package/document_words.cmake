@@ -3,7 +3,7 @@
 # have it. Run as
 #   cmake -D SOURCE=<the project's folder> -P document_words.cmake
 cmake_minimum_required(VERSION 3.22)
-set(folders include soa dispatch/broad_phase methods files tools tests/support tests/api)
+set(folders include soa kernels dispatch methods files tools tests/support tests/api)
 
 file(READ "${SOURCE}/docs/architecture.md" text)
 string(REGEX REPLACE ".*\n\\| Not \\| But \\|\n" "" text "${text}")
