@@ -10,10 +10,10 @@
 
 #include "chains.h"
 #include "check.h"
+#include "corpus.h"
 #include "expect.h"
 #include "guard.h"
 #include "layouts.h"
-#include "methods.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "scene.h"
