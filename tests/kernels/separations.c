@@ -45,8 +45,8 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
         query.workers = &workers;
         query.row_stride = 0;
         query.out_skipped = &skipped;
-        query.hints =
-            threads > 1 ? hint_column(hints) : (narc_hint_column){0}; /* the third time they are those of the second */
+        query.hints = threads > 1 ? (narc_hint_column){hints, sizeof *hints}
+                                  : (narc_hint_column){0}; /* the third time they are those of the second */
         assert_int_equal(narc_find_separations(store, bodies, pairs, &query, found, NULL), NARC_OK);
         assert_memory_equal(found, expected, pairs->count * sizeof *found);
         query.row_stride = -STRIDE * (ptrdiff_t)sizeof *strided;
