@@ -13,7 +13,6 @@
 #include "expect.h"
 #include "guard.h"
 #include "layouts.h"
-#include "methods.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "scene.h"
