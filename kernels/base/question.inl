@@ -18,7 +18,7 @@
 #include "simd/simd.h"
 
 /* Answers the pairs `begin` ... of its queue, or passes them on to those of later stages. */
-typedef void stage(const struct call *call, struct queue queues[STAGES], int begin);
+typedef void stage(const struct call *call, struct queue *queues, int begin);
 
 /* Answers the pairs k ... of a queue of boxes or of capsules, `live` of them (box/box_pairs.inl). */
 struct box_queue;
@@ -38,7 +38,6 @@ struct question {
     uint32_t extra_row; /* what the word behind the pair gains for another row of it: NARC_MORE_ROW to the count */
     /* The row of a pair without a contact; `separation` INFINITY: it has no answer. */
     void (*none)(char *place, uint32_t pair, float separation);
-    row_writer *discs;            /* the rows of circles; NULL: write_contacts(), inline */
     stage *answer;                /* the rows of pairs that are settled */
     stage *edges;                 /* those of pairs that may have second points; NULL: nobody asks */
     stage *polygons;              /* those of polygons */
@@ -54,9 +53,5 @@ struct row_search {
 };
 
 extern const struct row_search NARC_NAMED(search);
-
-/* Answers any question that has no second points, and whose rows are contacts or dense (sat/contact.c). */
-size_t NARC_NAMED(rows)(const struct question *question, const narc_batch *batch, size_t first, size_t count,
-                        size_t *skipped, const narc_rows *out);
 
 #endif

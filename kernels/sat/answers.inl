@@ -125,10 +125,10 @@ INLINE void answer_polygons(const struct call *call, struct queue *queues, int b
     }
 }
 
-/* `concave`: a queue for pairs with concave arcs, or NULL if there are no pieces. */
+/* `queues`: `end` of them, one for each stage. `concave`: one for pairs with concave arcs, or NULL if there are no pieces. */
 INLINE size_t find_rows(const struct question *question, size_t size, int end, triage *settle, detour *take,
                         const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
-                        struct queue *concave) {
+                        struct queue *queues, struct queue *concave) {
     const struct row_search *const search = &NARC_NAMED(search);
     const bool hinted = batch->query->hints.base != NULL;
     stage *const stages[STAGES] = {hinted ? search->hinted : search->stages[PROBE],
@@ -145,7 +145,6 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
                                   .edged = NARC_SHORTCUTS && !hinted ? CLIMB : 0,
                                   .end = end};
-    struct queue queues[STAGES];
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(question, batch, first, count, skipped, out, &rows);
@@ -162,7 +161,7 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
 
 /* A question, name_question, from its row_writer. `normal`, `extra`: normal_at and extra_row; `second`: are second points
  * asked for? */
-#define NARC_QUESTION(name, type, normal, extra, nothing, writer, second, discs)                                       \
+#define NARC_QUESTION(name, type, normal, extra, nothing, writer, second)                                              \
     static void name##_of_settled(const struct call *call, struct queue *queues, int begin) {                          \
         answer_settled(call, queues, begin, writer, false);                                                            \
     }                                                                                                                  \
@@ -186,7 +185,6 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
                                                     normal,                                                            \
                                                     extra,                                                             \
                                                     nothing,                                                           \
-                                                    discs,                                                             \
                                                     name##_of_settled,                                                 \
                                                     (second) ? name##_of_edges : NULL,                                 \
                                                     name##_of_polygons,                                                \
@@ -206,8 +204,9 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
     }                                                                                                                  \
     NOINLINE size_t find_##name(const struct question *question, const narc_batch *batch, size_t first, size_t count,  \
                                 size_t *skipped, const narc_rows *out, struct queue *concave) {                        \
+        struct queue queues[end];                                                                                      \
         return find_rows(question, sizeof(type), end, triage_##name, detour_##name, batch, first, count, skipped, out, \
-                         concave);                                                                                     \
+                         queues, concave);                                                                             \
     }                                                                                                                  \
     /* Only where there are pieces is their queue on the stack. */                                                     \
     NOINLINE size_t find_##name##_of_pieces(const struct question *question, const narc_batch *batch, size_t first,    \

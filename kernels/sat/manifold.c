@@ -47,7 +47,7 @@ static void write_no_manifold(char *place, uint32_t pair, float separation) {
 }
 
 NARC_QUESTION(manifold, narc_manifold, offsetof(narc_manifold, normal_x), NARC_MORE_ROW, write_no_manifold,
-              write_manifolds, true, NULL)
+              write_manifolds, true)
 NARC_ROWS(manifolds, narc_manifold, write_manifolds, STAGES)
 
 size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,

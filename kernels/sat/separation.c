@@ -12,8 +12,8 @@
 #include "sat/answers.inl"
 #include "simd/simd.h"
 
-static inline void write_separations(const struct call *call, char *const *place, vi numbers,
-                                     const struct answer *answer, const struct sides *sides) {
+INLINE void write_separations(const struct call *call, char *const *place, vi numbers, const struct answer *answer,
+                              const struct sides *sides) {
     float separation[V_WIDTH];
     (void)call, (void)numbers, (void)sides;
     v_store(separation, answer->separation);
@@ -27,9 +27,10 @@ static void write_no_separation(char *place, uint32_t pair, float separation) {
     memcpy(place, &none, sizeof none);
 }
 
-NARC_QUESTION(separation, float, 0, 0, write_no_separation, write_separations, false, write_separations)
+NARC_QUESTION(separation, float, 0, 0, write_no_separation, write_separations, false)
+NARC_ROWS(separations, float, write_separations, ANSWER_EDGES)
 
 size_t NARC_NAMED(separation)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                               const narc_rows *out) {
-    return NARC_NAMED(rows)(&separation_question, batch, first, count, skipped, out);
+    return answer_separations(&separation_question, batch, first, count, skipped, out);
 }
