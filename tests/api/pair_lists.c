@@ -352,7 +352,7 @@ static void check_step(reference *r, body *bodies, size_t count, bool with_ids, 
 static float eighths(struct test_random *random, size_t most) { return (float)random_below(random, most + 1) / 8; }
 
 static narc_box eighths_box(struct test_random *random, size_t side) {
-    const float x = eighths(random, 8 * side), y = eighths(random, 8 * side);
+    const float half = (float)side / 2, x = eighths(random, 8 * side) - half, y = eighths(random, 8 * side) - half;
     return (narc_box){x, y, x + eighths(random, 16), y + eighths(random, 16)};
 }
 
