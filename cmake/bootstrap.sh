@@ -10,26 +10,24 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes; with NARC_TEST_PRESET=ci warnings are errors
-  gate       what a change must pass besides: style, long tests, benchmarks that run, without dependencies, sanitizers,
-             fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly. It
-             goes on in the build of NARC_TEST_PRESET=ci
+  gate       what a change must pass besides: style, long tests, the applications, benchmarks that run, without
+             dependencies, sanitizers, fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded
+             answers on WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
   soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
              is interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
-  bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
-             Benchmark's and those of bench/README.md
-  bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
+  bench      the kernels and what a scene is asked, beside Box2D, Chipmunk, libccd and GEOS; tables and plots go to out/.
+             Options are Google Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
-  lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
-             tables of times beside LAMMPS' own styles; all goes to out/lammps/
+  lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, and a biaxial compression on 1 and 2 ranks, which
+             goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
-             angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: slopes, collisions, piles of
-             discs and long grains, biaxial tests, hoppers, packings, flows, a drum besides, in an hour on two cores.
-             apps/dem/README.md says what they mean
+             angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
+             biaxial tests, hoppers besides. apps/dem/README.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -169,8 +167,8 @@ check_processors() {
 
 # The recorded answers alone.
 check_golden() {
-    build "$1" test_golden test_stored_bits
-    ctest --preset "$1" -R '^(golden_.*|stored_bits)$' || fail "tests failed in build/$1"
+    build "$1" test_golden test_method_golden test_stored_bits
+    ctest --preset "$1" -R '^((method_)?golden_.*|stored_bits)$' || fail "tests failed in build/$1"
 }
 
 # WebAssembly, by check or check_golden.
@@ -244,33 +242,35 @@ run() {
     ls -l out/shapes.json out/shapes.png out/bodies.csv out/contacts.csv out/collisions.png
 }
 
-# Each row several times, in random order with all others, so that what else the machine does hits them all alike.
+# Each row several times, in random order with all others, so that what else the machine does hits them all alike. Without
+# a filter a run for each subject, since scenes of a million bodies in all libraries do not lie in memory together.
 bench() {
     require_packages $bench_packages
     build bench bench_narc
     mkdir -p out
-    rm -f out/bench.json out/bench.md out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
-    say "benchmarks"
-    build/bench/bench/micro/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
-        --benchmark_min_time=0.1 --benchmark_out=out/bench.json --benchmark_out_format=json --out=out "$@"
+    rm -f out/bench.md out/bench-*.json out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
+    case "$*" in
+    *--benchmark_filter=*) bench_rows asked "$@" ;;
+    *)
+        bench_rows rays --benchmark_filter='^ray' "$@"
+        bench_rows regions --benchmark_filter='^region' "$@"
+        bench_rows nearest --benchmark_filter='^(nearest|distance)' "$@"
+        bench_rows index --benchmark_filter='^(index|still|impact|ground)' "$@"
+        bench_rows pairs --benchmark_filter='-^(ray|region|nearest|distance|index|still|impact|ground)' "$@"
+        ;;
+    esac
     say "plots"
-    gnuplot -e "folder='out'" bench/micro/plots.gp
+    gnuplot -e "folder='out'" bench/plots.gp
     say "written"
-    ls -l out/bench* out/*.dat
+    ls -l out/bench*
 }
 
-bench_scene() {
-    require_packages $bench_packages
-    build bench bench_scenes bench_ground
-    mkdir -p out
-    rm -f out/scene-*.md
-    for name in ground rays casts points regions index; do
-        say "$name"
-        build/bench/bench/scene/bench_$name >out/scene-$name.md
-        cat out/scene-$name.md
-    done
-    say "written"
-    ls -l out/scene-*.md
+bench_rows() {
+    name=$1
+    shift
+    say "benchmarks: $name"
+    build/bench/bench/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
+        --benchmark_min_time=0.1 --benchmark_out="out/bench-$name.json" --benchmark_out_format=json --out=out "$@"
 }
 
 paper() {
@@ -309,22 +309,41 @@ fit_study() {
     ls -l out/fit-*
 }
 
-# A project of its own, apps/lammps, on the installed package of a preset's build. More ranks than cores are fine for
-# tests.
-build_lammps() {
-    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
-        OMP_NUM_THREADS=1
-    build "$1" all
+# The package of a preset's build, build/installed, on which the applications are built: projects of their own.
+install_package() {
+    build "$1" narc_tool narc_static narc_files_static narc_methods_static
     cmake --install "build/$1" --prefix build/installed >/dev/null || fail "installing build/$1 failed"
-    say "build/lammps"
-    cmake -S apps/lammps -B build/lammps -DCMAKE_PREFIX_PATH="$PWD/build/installed" -DNARC_WERROR=ON ||
-        fail "configuring build/lammps failed"
-    cmake --build build/lammps || fail "building build/lammps failed"
 }
 
+# build_app APP FOLDER OPTION...: one of apps/, in build/FOLDER; and its tests, with options of ctest.
+build_app() {
+    app=$1 folder=$2
+    shift 2
+    say "build/$folder"
+    cmake -S "apps/$app" -B "build/$folder" -DCMAKE_PREFIX_PATH="$PWD/build/installed" -DNARC_WERROR=ON "$@" ||
+        fail "configuring build/$folder failed"
+    cmake --build "build/$folder" || fail "building build/$folder failed"
+}
+
+test_app() {
+    folder=$1
+    shift
+    ctest --test-dir "build/$folder" --output-on-failure "$@" || fail "tests failed in build/$folder"
+}
+
+# With the flags of the sanitizers' build. The long tests are plain arithmetic.
+test_dem_with_sanitizers() {
+    build_app dem dem-asan -DCMAKE_BUILD_TYPE=Debug \
+        "-DCMAKE_C_FLAGS=$(sed -n 's/^CMAKE_C_FLAGS:[A-Z]*=//p' build/asan/CMakeCache.txt)"
+    ASAN_OPTIONS=detect_stack_use_after_return=1 test_app dem-asan -LE slow
+}
+
+# More ranks than cores are fine for tests.
 test_lammps() {
-    build_lammps "$1"
-    ctest --test-dir build/lammps --output-on-failure || fail "tests failed in build/lammps"
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+        OMP_NUM_THREADS=1
+    build_app lammps lammps
+    test_app lammps
 }
 
 # The largest difference of numbers in two dumps, which is at most 1e-6 of a grain's diameter.
@@ -345,7 +364,8 @@ check_momentum() {
 
 lammps() {
     require_packages $lammps_packages
-    test_lammps release
+    install_package release
+    test_lammps
     rm -rf out/lammps
     mkdir -p out/lammps
     say "a packing of some thousand 8-arcs"
@@ -364,9 +384,6 @@ lammps() {
         check_momentum biaxial-1.log
         check_momentum biaxial-2.log
     ) || fail "the compression failed"
-    say "times"
-    cmake --build build/lammps --target tables >out/lammps/tables.txt || fail "measuring failed"
-    grep '|' out/lammps/tables.txt
     say "written"
     ls -l out/lammps
 }
@@ -385,7 +402,8 @@ fit_sand() {
 # has written.
 dem() {
     require_packages $dem_packages
-    build release narc_tool dem
+    install_package release
+    build_app dem dem -DNARC_BUILD_TESTS=OFF
     case ${1:-pile} in
     pile | cases) rm -rf out/dem && mkdir -p out && fit_sand ;;
     *) fail "dem $1: it is pile or cases" ;;
@@ -393,7 +411,7 @@ dem() {
     [ "${1:-pile}" = pile ] && which=sand || which=all
     say "cases ($which): $([ $which = sand ] && echo '11 minutes' || echo 'two hours') of processor time"
     # Debian's Python has its packages.
-    /usr/bin/python3 apps/dem/cases/cases.py build/release/apps/dem/dem out/dem --sand out/dem/sand.json --jobs "$jobs" \
+    /usr/bin/python3 apps/dem/cases/cases.py build/dem/dem out/dem --sand out/dem/sand.json --jobs "$jobs" \
         $which | tee out/dem/results.txt
     build/release/tools/narc collide --shapes out/dem/pile/shapes.json --out out/dem/contacts.csv \
         --picture out/dem/grains.png --bodies "$(find out/dem/pile -name 'pile-0*.csv' | sort | tail -n 1)"
@@ -413,23 +431,29 @@ test_build() {
 check_style() {
     say "style"
     git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
-    # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
-    # what is installed has builds of its own; what is for other systems and libraries is in none here.
-    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'apps/*.c' 'bench/*.c' 'tests/*.c' \
-        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*_box2d3.c' ':!*/wasm_*.c' |
+    # The compilation database of the build with everything in it, the kernels once for each instruction set, and that of
+    # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
+    # here.
+    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
+        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*box2d3.c' ':!*/wasm_*.c' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
+    git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
 }
 
 gate() {
     require_packages $gate_packages
     build ci all
+    install_package ci
+    build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
+    test_app dem
     ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' || fail "tests failed in build/ci"
     # What these libraries do for the kernels is the same on each instruction set: plain C is built.
     cmake --preset bare -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF ||
         fail "configuring build/bare failed"
     check bare
     check asan
+    test_dem_with_sanitizers
     require_sanitizers
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
@@ -437,7 +461,7 @@ gate() {
     fuzz 10 1 "$fixed" # addresses, which fuzzers learn from, alike from run to run
     skipped=
     if install_packages $lammps_packages; then
-        test_lammps ci
+        test_lammps
     else
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
     fi
@@ -499,7 +523,6 @@ bench)
     shift
     bench "$@"
     ;;
-bench-scene) bench_scene ;;
 paper)
     shift
     paper "$@"

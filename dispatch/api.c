@@ -44,6 +44,26 @@ narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bod
     return status == NARC_OK ? narc_answer_overlaps(kernels->overlap, &batch, out_bits, error) : status;
 }
 
+#if !NARC_SMALL
+narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                  const narc_query *query, float *out_separations, narc_error *error) {
+    narc_batch batch;
+    const narc_kernel_table *kernels = NULL;
+    const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (!out_separations && batch.count > 0)
+        return narc_fail_missing(error, "out_separations");
+    narc_query dense = *batch.query;
+    size_t found;
+    dense.dense = 1;
+    batch.query = &dense;
+    batch.row_size = sizeof *out_separations;
+    return narc_answer_rows(kernels->separation, &batch, out_separations, out_separations ? SIZE_MAX : 0, &found,
+                            error);
+}
+#endif
+
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                narc_error *error) {
@@ -52,6 +72,7 @@ narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bod
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
     if (status != NARC_OK)
         return status;
+    batch.row_size = sizeof *out_rows;
     return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
 }
 
@@ -63,9 +84,9 @@ narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bo
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
     if (status != NARC_OK)
         return status;
-    batch.manifolds = true;
+    batch.row_size = sizeof *out_rows;
     batch.flat_sine = find_flat_sine(batch.query->flat_angle);
-    return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
+    return narc_answer_rows(kernels->manifold, &batch, out_rows, capacity, out_count, error);
 }
 
 narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,

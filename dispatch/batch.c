@@ -28,7 +28,7 @@ enum { APART = 16 };
 struct job {
     const narc_batch *batch;
     size_t first, count, part_size;
-    atomic_size_t skipped, further;
+    atomic_size_t skipped, more;
 
     narc_overlap_kernel *overlap;
     uint64_t *bits;
@@ -89,8 +89,8 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
 /* ------------------------------------------------------------------------------------------------ rows */
 
 /* What kernels count beside rows: pairs without an answer, and rows beyond their pair's first one. */
-struct tally {
-    size_t skipped, further;
+struct counts {
+    size_t skipped, more;
 };
 
 static char *find_row(const narc_rows *rows, size_t row) { return rows->base + (ptrdiff_t)row * rows->stride; }
@@ -124,10 +124,10 @@ NOINLINE void close_gaps(struct job *job, size_t parts) {
 
 /* Answers a few pairs where there is room for `room` rows only. Not inlined: the others need no room for these. */
 NOINLINE size_t list_apart(const struct job *job, size_t first, size_t count, char *to, size_t room,
-                           struct tally *tally) {
+                           struct counts *counts) {
     _Alignas(16) char rows[APART * sizeof(narc_manifold)];
-    const narc_rows apart = {.base = rows, .stride = (ptrdiff_t)job->row_size, .further = &tally->further};
-    const size_t found = job->kernel(job->batch, first, count, &tally->skipped, &apart);
+    const narc_rows apart = {.base = rows, .stride = (ptrdiff_t)job->row_size, .more = &counts->more};
+    const size_t found = job->kernel(job->batch, first, count, &counts->skipped, &apart);
     for (size_t k = 0; k < found && k < room; k++)
         memcpy(to + (ptrdiff_t)k * job->rows.stride, find_row(&apart, k), job->row_size);
     return found;
@@ -135,53 +135,53 @@ NOINLINE size_t list_apart(const struct job *job, size_t first, size_t count, ch
 
 /* Finds the rows of `count` pairs from the job's pair `start` on, group by group, and lists them behind each other from
  * row `start` on, as far as there is room. Returns how many there are. */
-static size_t list_rows(const struct job *job, size_t start, size_t count, size_t room, struct tally *tally) {
+static size_t list_rows(const struct job *job, size_t start, size_t count, size_t room, struct counts *counts) {
     const bool dense = job->batch->query->dense != 0;
     size_t found = 0;
     for (size_t k = 0, group; k < count; k += group) {
         const size_t left = count - k, free = found < room ? room - found : 0;
         const bool direct = dense || free >= left || free >= APART;
         narc_rows to = job->rows;
-        to.further = &tally->further;
+        to.more = &counts->more;
         if (!dense && free > 0)
             to.base = find_row(&to, start + found);
         group = direct ? NARC_ROW_GROUP : APART;
         group = left < group ? left : group;
         if (direct && !dense && free < group)
             group = free;
-        found += direct ? job->kernel(job->batch, job->first + start + k, group, &tally->skipped, &to)
-                        : list_apart(job, job->first + start + k, group, to.base, free, tally);
+        found += direct ? job->kernel(job->batch, job->first + start + k, group, &counts->skipped, &to)
+                        : list_apart(job, job->first + start + k, group, to.base, free, counts);
     }
     return found;
 }
 
 static void find_part_of_rows(void *argument, size_t part) {
     struct job *const job = argument;
-    struct tally tally = {0, 0};
+    struct counts counts = {0, 0};
     const size_t count = size_of_part(job, part);
-    const size_t found = list_rows(job, part * job->part_size, count, count, &tally);
-    atomic_fetch_add_explicit(&job->skipped, tally.skipped, memory_order_relaxed);
-    atomic_fetch_add_explicit(&job->further, tally.further, memory_order_relaxed);
+    const size_t found = list_rows(job, part * job->part_size, count, count, &counts);
+    atomic_fetch_add_explicit(&job->skipped, counts.skipped, memory_order_relaxed);
+    atomic_fetch_add_explicit(&job->more, counts.more, memory_order_relaxed);
     atomic_store(&job->ended[part], found + 1);
     if (!job->batch->query->dense)
         close_gaps(job, (job->count - 1) / job->part_size + 1);
 }
 
 /* The same by several workers, with room for as many rows as there are pairs. */
-static size_t share_rows(struct job *job, struct tally *tally) {
+static size_t share_rows(struct job *job, struct counts *counts) {
     const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
     job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
     const size_t parts = (job->count - 1) / job->part_size + 1;
     atomic_init(&job->skipped, 0);
-    atomic_init(&job->further, 0);
+    atomic_init(&job->more, 0);
     atomic_init(&job->due, 0);
     job->found = 0;
     atomic_flag_clear(&job->closing);
     for (size_t part = 0; part < parts; part++)
         atomic_init(&job->ended[part], 0);
     narc_run_parts(job->batch->query->workers, parts, find_part_of_rows, job);
-    tally->skipped += atomic_load(&job->skipped);
-    tally->further += atomic_load(&job->further);
+    counts->skipped += atomic_load(&job->skipped);
+    counts->more += atomic_load(&job->more);
     for (size_t part = 0; part < parts && job->batch->query->dense; part++)
         job->found += atomic_load(&job->ended[part]) - 1;
     return job->found;
@@ -208,7 +208,7 @@ static narc_status check_rows(const narc_batch *batch, const narc_rows *rows, si
 /* The rows of a batch with more than one group of pairs, or with little room. Workers take so many pairs at a time as
  * there is room for; where that is little, this thread takes them. */
 NOINLINE size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
-                         size_t capacity, struct tally *tally) {
+                         size_t capacity, struct counts *counts) {
     const narc_query *query = batch->query;
     const size_t end = batch->first + batch->count;
     size_t found = 0;
@@ -225,20 +225,20 @@ NOINLINE size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_
             job.rows.base = find_row(rows, found);
         if (!shared)
             job.count = left;
-        found += shared ? share_rows(&job, tally) : list_rows(&job, 0, left, room, tally);
+        found += shared ? share_rows(&job, counts) : list_rows(&job, 0, left, room, counts);
     }
     return found;
 }
 
 /* What a row's count says of its pair: how many rows there are besides. */
-static size_t get_further(const narc_batch *batch, const char *row) {
+static size_t get_more(const narc_batch *batch, const char *row) {
     narc_contact contact;
     narc_manifold manifold;
     memcpy(&contact, row, sizeof contact);
-    if (!batch->manifolds)
-        return contact.count / NARC_FURTHER_ROW;
+    if (batch->row_size == sizeof contact)
+        return contact.count / NARC_MORE_ROW;
     memcpy(&manifold, row, sizeof manifold);
-    return manifold.count / NARC_FURTHER_ROW;
+    return manifold.count / NARC_MORE_ROW;
 }
 
 /* Pairs all of whose rows are wanted, at least two each, and from where on. */
@@ -253,13 +253,13 @@ struct wanted {
 NOINLINE void list_wanted(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, struct wanted *wanted,
                           const narc_rows *rows, size_t capacity) {
     _Alignas(16) char all[NARC_MAX_ARCS * sizeof(narc_manifold)];
-    size_t skipped = 0, further = 0;
+    size_t skipped = 0, more = 0;
     narc_query query = *batch->query;
     query.selection = (narc_index_column){wanted->pair, sizeof *wanted->pair};
     query.hints = (narc_hint_column){0};
     narc_batch some = *batch;
     some.query = &query;
-    const narc_rows apart = {all, (ptrdiff_t)row_size, &further, wanted->list};
+    const narc_rows apart = {all, (ptrdiff_t)row_size, &more, wanted->list};
     if (wanted->count > 0)
         kernel(&some, 0, wanted->count, &skipped, &apart);
     for (size_t i = 0; i < wanted->count; i++)
@@ -270,16 +270,16 @@ NOINLINE void list_wanted(narc_row_kernel *kernel, const narc_batch *batch, size
 
 /* Where pairs with concave arcs have several rows, the deepest one is there, of `count` rows: lists the others, from
  * the last pair on. What has no room is left out. */
-NOINLINE void list_further(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
-                           size_t count, size_t capacity) {
+NOINLINE void list_more(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
+                        size_t count, size_t capacity) {
     struct wanted wanted = {.count = 0};
     size_t to = count;
     for (size_t k = 0; k < count; k++)
-        to += get_further(batch, find_row(rows, k));
+        to += get_more(batch, find_row(rows, k));
     size_t k = count;
     while (to > k) {
         char *const row = find_row(rows, --k);
-        const size_t own = get_further(batch, row) + 1;
+        const size_t own = get_more(batch, row) + 1;
         to -= own;
         if (own == 1 && to < capacity)
             memcpy(find_row(rows, to), row, row_size);
@@ -298,25 +298,24 @@ NOINLINE void list_further(narc_row_kernel *kernel, const narc_batch *batch, siz
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
                              size_t *out_count, narc_error *error) {
     const narc_query *query = batch->query;
-    const size_t row_size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
-    struct tally tally = {0, 0};
-    const narc_rows rows = {.base = out_rows,
-                            .stride = query->row_stride ? query->row_stride : (ptrdiff_t)row_size,
-                            .further = &tally.further};
+    const size_t row_size = batch->row_size;
+    struct counts counts = {0, 0};
+    const narc_rows rows = {
+        .base = out_rows, .stride = query->row_stride ? query->row_stride : (ptrdiff_t)row_size, .more = &counts.more};
     const narc_status status = check_rows(batch, &rows, row_size, capacity, out_count, error);
     if (status != NARC_OK)
         return status;
     size_t found = 0;
     if (batch->count <= NARC_ROW_GROUP && batch->count <= capacity)
-        found = batch->count > 0 ? kernel(batch, batch->first, batch->count, &tally.skipped, &rows) : 0;
+        found = batch->count > 0 ? kernel(batch, batch->first, batch->count, &counts.skipped, &rows) : 0;
     else
-        found = list_all(kernel, batch, row_size, &rows, capacity, &tally);
-    if (NARC_PIECES && tally.further > 0 && !query->dense) {
-        list_further(kernel, batch, row_size, &rows, found < capacity ? found : capacity, capacity);
-        found += tally.further;
+        found = list_all(kernel, batch, row_size, &rows, capacity, &counts);
+    if (NARC_PIECES && counts.more > 0 && !query->dense) {
+        list_more(kernel, batch, row_size, &rows, found < capacity ? found : capacity, capacity);
+        found += counts.more;
     }
     if (query->out_skipped)
-        *query->out_skipped = tally.skipped;
+        *query->out_skipped = counts.skipped;
     *out_count = found;
     if (found > capacity)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu rows, but there is room for %zu", found,

@@ -78,7 +78,7 @@ static void take_every_other(const narc_bodies *set, size_t offset, narc_bodies 
 
 /* The sets that A and B are of. Where pairs have no indices, body k is pair k's. */
 static narc_status find_sets(const narc_bodies *bodies, const narc_pairs *pairs, narc_batch *batch, narc_error *error) {
-    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
+    const bool own = narc_have_own_bodies(pairs);
     narc_status status = find_set(bodies, &batch->filled[0], &batch->a, error);
     if (status == NARC_OK && pairs->other_bodies)
         status = find_set(pairs->other_bodies, &batch->filled[1], &batch->b, error);
@@ -132,8 +132,7 @@ struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side) 
     const narc_pairs *pairs = batch->pairs;
     const narc_index_column column = side == 0 ? pairs->a : pairs->b;
     const size_t item = column.base ? narc_index_at(column, pair) : pair;
-    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* see find_sets() */
-    return (struct narc_side){own ? 2 * pair + (size_t)side : item,
+    return (struct narc_side){narc_body_at(pairs, side, pair),
                               narc_index_at(side == 0 ? batch->a->shape : batch->b->shape, item)};
 }
 
@@ -377,7 +376,8 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     out_batch->shapes = shapes; /* one by one: `filled` is large, and mostly not needed */
     out_batch->pairs = pairs;
     out_batch->query = q;
-    out_batch->manifolds = out_batch->whole = false;
+    out_batch->row_size = 0;
+    out_batch->of_casts = false;
     out_batch->first = q->first;
     out_batch->count = q->count;
     out_batch->asked = q->selection.base || q->selection.stride ? q->selection_count : pairs->count;

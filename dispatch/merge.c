@@ -80,27 +80,27 @@ static bool has_same_normal(const narc_manifold *a, const narc_manifold *b, floa
     return x * x + y * y <= limit * limit;
 }
 
-static float find_reach(const narc_manifold_point *p, const narc_manifold_point *q) {
+static float find_size(const narc_manifold_point *p, const narc_manifold_point *q) {
     return sqrtf(fmaxf(p->x * p->x + p->y * p->y, q->x * q->x + q->y * q->y));
 }
 
 static bool is_near(float x, float y, float room) { return x * x + y * y <= room * room; }
 
 static bool is_same_point(const narc_manifold_point *p, const narc_manifold_point *q) {
-    return is_near(p->x - q->x, p->y - q->y, SAME_POINT * find_reach(p, q));
+    return is_near(p->x - q->x, p->y - q->y, SAME_POINT * find_size(p, q));
 }
 
 /* Is a point of row a one of row b? Deep ones may agree on one of both surfaces alone: round the bottom of a valley two
  * rows turn about the body's corner. */
 static bool is_told_by(const narc_manifold *a, const narc_manifold_point *p, const narc_manifold *b,
                        const narc_manifold_point *q) {
-    const float half_a = p->separation / 2, half_b = q->separation / 2, reach = find_reach(p, q);
+    const float half_a = p->separation / 2, half_b = q->separation / 2, size = find_size(p, q);
     const float x = p->x - q->x, y = p->y - q->y;
     const float turn_x = half_a * a->normal_x - half_b * b->normal_x,
                 turn_y = half_a * a->normal_y - half_b * b->normal_y;
-    return is_same_point(p, q) || (fabsf(p->separation - q->separation) <= SAME_SEPARATION * reach &&
-                                   (is_near(x - turn_x, y - turn_y, SAME_POINT * reach) ||
-                                    is_near(x + turn_x, y + turn_y, SAME_POINT * reach)));
+    return is_same_point(p, q) ||
+           (fabsf(p->separation - q->separation) <= SAME_SEPARATION * size &&
+            (is_near(x - turn_x, y - turn_y, SAME_POINT * size) || is_near(x + turn_x, y + turn_y, SAME_POINT * size)));
 }
 
 /* Which point of b is that of a, or b->count. */
@@ -138,7 +138,7 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
         low = along < low.y * first.normal_x - low.x * first.normal_y ? *p : low;
         high = along > high.y * first.normal_x - high.x * first.normal_y ? *p : high;
     }
-    const float room = SAME_SEPARATION * find_reach(&low, &high);
+    const float room = SAME_SEPARATION * find_size(&low, &high);
     if (deepest.separation < fminf(low.separation, high.separation) - room)
         *(low.separation > high.separation ? &low : &high) = deepest;
     const bool is_one = is_same_point(&low, &high);
@@ -155,7 +155,7 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
     const narc_manifold_point *p = find_deepest(a), *q = find_deepest(b);
     const float x = p->x + a->normal_x * p->separation / 2 - q->x - b->normal_x * q->separation / 2;
     const float y = p->y + a->normal_y * p->separation / 2 - q->y - b->normal_y * q->separation / 2;
-    const float reach = fmaxf(fabsf(p->x) + fabsf(p->y), fabsf(q->x) + fabsf(q->y)), room = SAME_POINT * reach;
+    const float size = fmaxf(fabsf(p->x) + fabsf(p->y), fabsf(q->x) + fabsf(q->y)), room = SAME_POINT * size;
     const float at_a = x * a->normal_x + y * a->normal_y, at_b = x * b->normal_x + y * b->normal_y;
     const float turn_x = b->normal_x - a->normal_x, turn_y = b->normal_y - a->normal_y;
     const bool turns_back =
@@ -173,7 +173,7 @@ static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
         return false;
     const float x = q->x + b->normal_x * q->separation / 2 - p->x - a->normal_x * p->separation / 2;
     const float y = q->y + b->normal_y * q->separation / 2 - p->y - a->normal_y * p->separation / 2;
-    const float room = BACK_ROOM * find_reach(p, q); /* normals point into the ground */
+    const float room = BACK_ROOM * find_size(p, q); /* normals point into the ground */
     return x * a->normal_x + y * a->normal_y >= -room && x * b->normal_x + y * b->normal_y <= room;
 }
 
@@ -181,9 +181,9 @@ static bool are_back_to_back(const narc_manifold *a, const narc_manifold *b) {
  * the line is level there, both tell of one stretch. */
 static bool goes_over(const narc_manifold *a, const narc_manifold *b) {
     const narc_manifold_point *p = &a->point[0], *q = &b->point[0], *last = &a->point[a->count - 1];
-    const float room = SAME_POINT * find_reach(p, q), half_a = p->separation / 2, half_b = q->separation / 2;
+    const float room = SAME_POINT * find_size(p, q), half_a = p->separation / 2, half_b = q->separation / 2;
     if (!((a->count == 2 || (a->radius_a >= INFINITY && a->radius_b >= INFINITY)) && b->radius_b < 0 && b->count == 1 &&
-          fabsf(p->separation - last->separation) <= SAME_SEPARATION * find_reach(p, last) &&
+          fabsf(p->separation - last->separation) <= SAME_SEPARATION * find_size(p, last) &&
           has_same_normal(a, b, SAME_SEAM_NORMAL)))
         return false;
     /* The place of the arc's circle that has the line's normal. */

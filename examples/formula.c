@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * formula.c - the separation as the largest gap over all candidates: O(m n), no library. The lines between the marks
- * are printed in docs/algorithm.md.
+ * formula.c - the separation as the largest gap over all candidates: O(m n), no library: docs/algorithm.md, section 4.
  */
 #include "formula.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-/* formula: begin */
 static const double full_turn = 6.283185307179586, seam = 1e-12; /* so that no direction falls between two arcs */
 
 static arc place(arc a, pose p) {
@@ -41,4 +39,3 @@ double formula_separation(shape a, pose pose_a, shape b, pose pose_b) {
         }
     return separation;
 }
-/* formula: end */

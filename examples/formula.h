@@ -5,7 +5,6 @@
 #ifndef FORMULA_H
 #define FORMULA_H
 
-/* formula: begin */
 typedef struct {
     double x, y;
 } vector;
@@ -24,7 +23,6 @@ typedef struct {
     vector position;
     double angle, scale;
 } pose;
-/* formula: end */
 
 /* The signed distance of two bodies: positive when they are apart, minus the penetration depth when they overlap.
  * -INFINITY if a shape has no arcs. Shapes are not checked. */

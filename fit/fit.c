@@ -117,11 +117,7 @@ static narc_status check_request(const narc_path *path, const narc_fit_request *
 
 /* The hull of the flattened contours, moved and scaled to fit in the unit circle. */
 static narc_status scale_hull(const narc_contours *contours, struct job *job, narc_error *error) {
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < contours->point_count; k++) {
-        const narc_point p = contours->points[k];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
-    }
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
     job->frame.middle = (narc_point){0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
     job->frame.radius = 0;
     for (size_t k = 0; k < contours->point_count; k++)

@@ -6,11 +6,12 @@
  *
  *   narc_shapes.h says what shapes are, narc_pairs.h what bodies, pairs, queries and rows are. A batch call takes all
  *   three, and answers for every pair, exactly: the shapes collide when no direction separates them, and the separation
- *   is the largest gap over all directions. There is no approximation and no iteration tolerance. Three forms of answer:
+ *   is the largest gap over all directions. There is no approximation and no iteration tolerance. Four forms of answer:
  *
- *       narc_find_overlaps()   one bit per pair
- *       narc_find_contacts()   a row for each pair that collides: separation, normal, point, features and curvatures
- *       narc_find_manifolds()  the same for solvers: one or two points a pair, with ids that carry impulses over
+ *       narc_find_overlaps()     one bit per pair
+ *       narc_find_separations()  one float per pair, for force laws, tolerances and distance fields
+ *       narc_find_contacts()     a row for each pair that collides: separation, normal, point, features and curvatures
+ *       narc_find_manifolds()    the same for solvers: one or two points a pair, with ids that carry impulses over
  *
  *   They share one narc_query, of which all may be left out. A batch may have one pair: below some pairs a call leaves
  *   out what only large batches need.
@@ -99,6 +100,17 @@ NARC_API const char *narc_version(void);
 NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         const narc_query *query, uint64_t *out_bits, narc_error *error);
 
+/* How far apart are they? out_separations[k] is the separation of pair k, to the last bit that of its contact, of several
+ * the deepest's; +INFINITY where narc_find_contacts() has none: a pair further apart than the margin, or without an answer.
+ *   query            NULL: defaults, so only pairs that collide; margin = INFINITY: all. row_stride: from a float to the
+ *                    next; `dense` and what is of manifolds do nothing
+ *   out_separations  room up to the last pair that is asked of (of a selection, up to the batch's last), overlapping none
+ *                    of the inputs; floats of pairs that are not asked of are untouched
+ * Errors as narc_find_overlaps(). Allocates nothing. Not in narc_small.wasm. */
+NARC_API narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies,
+                                           const narc_pairs *pairs, const narc_query *query, float *out_separations,
+                                           narc_error *error);
+
 /* The contacts of all pairs whose separation is less than the margin, in the order of the pairs.
  *   query      NULL: defaults
  *   out_rows   room for `capacity` rows, overlapping none of the inputs. What lies behind the last one may be used,
@@ -126,6 +138,50 @@ NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bo
 NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                          const narc_query *query, narc_manifold *out_rows, size_t capacity,
                                          size_t *out_count, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ rows again */
+
+/* A contact in double precision: separation, normal and point as in narc_contact. */
+typedef struct narc_refined_contact {
+    double separation;
+    double normal_x, normal_y;
+    double point_x, point_y;
+} narc_refined_contact;
+
+/* What a batch leaves out and rows are refined with. All of it may be left out: rotations, shifts and shapes are then as
+ * the batch has them.
+ *   arcs                       of each shape of the store (an array of narc_count_shapes() pointers) those that it was
+ *                              made of, as many and in their order; NULL, or NULL of a shape: as the store has them, which
+ *                              keeps the digits of a float
+ *   cosine, sine               of bodies: columns as those of positions, which may be double
+ *   other_cosine, other_sine   of pairs->other_bodies
+ *   shift_x, shift_y           of pairs
+ *   workers                    threads to use; NULL: the calling one */
+typedef struct narc_refinement {
+    const narc_arc *const *arcs;
+    narc_position_column cosine, sine;
+    narc_position_column other_cosine, other_sine;
+    narc_position_column shift_x, shift_y;
+    const narc_workers *workers;
+    void *reserved[2]; /* NULL */
+} narc_refinement;
+
+/* Rows of narc_find_contacts() again, in double precision: for force laws, to which the roundings of single precision
+ * are a noise. Row k of the answer is of row k, of the same bodies and pairs.
+ *   refinement   NULL: {0}
+ *   rows         `count` of them, in any order. A row without a contact (count 0) keeps its separation, and all else is 0
+ *   out_rows     `count` rows, overlapping none of the inputs
+ * What the features of a row touch is taken as it is: separation, normal and point are theirs, within some roundings of
+ * double precision of both extents and the distance. Single precision chose the features: where others are as deep but for
+ * NARC_ERROR_BOUND these may have been, so that the separation is within twice that bound of the exact one, and mostly
+ * within 1e-14. Where the centres of two arcs, or two corners, lie in one place up to rounding, the normal stays the row's.
+ * What is not finite is a row with separation +INFINITY and all else 0.
+ * Errors, all found before anything is written: as narc_find_contacts() for bodies and pairs, NARC_ERROR_INDEX (`error`
+ * names the row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. Not in
+ * narc_small.wasm. */
+NARC_API narc_status narc_refine_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                          const narc_refinement *refinement, const narc_contact *rows, size_t count,
+                                          narc_refined_contact *out_rows, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ poses */
 

@@ -399,6 +399,29 @@ auto find_manifolds(const narc_shapes *shapes, const narc_bodies &bodies, const 
     return detail::find_rows(narc_find_manifolds, shapes, bodies, pairs, query, rows, field...);
 }
 
+// Contacts again, as narc_refined_contact: `rows` is a span, an array or a vector of them.
+template <class Rows>
+auto refine_contacts(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                     const narc_refinement &refinement, span<const narc_contact> contacts, Rows &&rows) {
+    return detail::fill_rows<narc_refined_contact>(
+        rows, contacts.size(),
+        [&](narc_refined_contact *out, size_t, narc_error *error) {
+            return narc_refine_contacts(shapes, &bodies, &pairs, &refinement, contacts.data(), contacts.size(), out,
+                                        error);
+        });
+}
+
+// separations[k] is that of pair k: a span, an array or a vector of floats, with room up to the last pair that is asked of.
+template <class Floats>
+result<void> find_separations(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                              const narc_query &query, Floats &&separations) {
+    detail::make_room(separations, pairs.count);
+    const span<float> room(separations);
+    if (room.size() < pairs.count)
+        return result<void>(detail::too_short(pairs.count));
+    return detail::ask<void>(narc_find_separations, shapes, &bodies, &pairs, &query, room.data());
+}
+
 // Bit k % 64 of bits[k / 64] is that of pair k.
 template <class Bits>
 result<void> find_overlaps(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,

@@ -271,8 +271,8 @@ typedef struct narc_parts {
 } narc_parts;
 
 /* Cuts an outline into convex parts, which may overlap: approximate convex decomposition (Lien and Amato 2006). Inside
- * is what an odd number of contours is around; contours that cross are outlines each, one that crosses itself is the loops
- * between its crossings. A bay or hole stays where no point
+ * is what an odd number of contours is around; contours that cross are outlines each, but for holes that cross, and one that
+ * crosses itself is the loops between its crossings. A bay or hole stays where no point
  * of it is further from the inside than the tolerance, so narrow ones may be as deep as they like. Cuts go from the
  * deepest bays to where that leaves least, and parts are joined again as far as the tolerance lets them be: a search, no
  * proof that fewer do not serve. Where the outline is as thin as a line, so is a part, with 0.1 % of its length in width.
@@ -320,7 +320,8 @@ typedef struct narc_arc_chains {
 
 /* The curves of a path, and lines alone, by narc_fit_bezier(). Of lines one after the other, such as those of traced
  * outlines, as many as the tolerance lets be become one line or two arcs; pieces join with a common tangent but at
- * corners: where the lines turn by more than half a radian within some tolerances. A chain of lines that is a whole
+ * corners: where the lines turn by more than half a radian within some tolerances. Contours whose arcs would meet, those of
+ * another one or their own, are fitted nearer; if they still do, by lines alone. A chain of lines that is a whole
  * contour may begin at another of its points. Arcs that a store would not take because they are flat become lines.
  * narc_add_chain() takes each chain as narc_describe_chain() gives it, with default options. Contours are closed by a
  * line where they are open, unless `open`, and those that are a point are left out. Closed chains have the inside on their

@@ -29,15 +29,16 @@ typedef struct narc_batch {
     const narc_query *query;
     size_t first, count;
     size_t asked;    /* how many pairs are selected */
-    bool manifolds;  /* are rows manifolds? Else contacts */
-    bool whole;      /* are runs of chains whole shapes, of which what lies behind touches, too? */
+    size_t row_size; /* of answers that are rows */
+    bool of_casts;   /* does scene/casts.c ask? Then all columns are arrays of whole vectors, pair k has body k of both
+                        sets, and runs of chains are whole shapes, of which what lies behind touches, too */
     float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
     narc_bodies filled[2];
 } narc_batch;
 
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
- *   further     Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
- *               besides to `further`, and if rows are not dense NARC_FURTHER_ROW times that to the row's count.
+ *   more        Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
+ *               besides to `more`, and if rows are not dense NARC_MORE_ROW times that to the row's count.
  *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
  *               the places that are that pair's. */
 typedef struct narc_row_list {
@@ -47,15 +48,26 @@ typedef struct narc_row_list {
 typedef struct narc_rows {
     char *base;
     ptrdiff_t stride;
-    size_t *further;
+    size_t *more;
     narc_row_list *lists;
 } narc_rows;
 
-enum { NARC_FURTHER_ROW = 256 };
+enum { NARC_MORE_ROW = 256 };
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
     return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;
+}
+
+/* Do pairs bring their own bodies, 2 k and 2 k + 1? In the sets of a batch those are k (dispatch/check.c). */
+static inline bool narc_have_own_bodies(const narc_pairs *pairs) {
+    return !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
+}
+
+/* The caller's number of a pair's A or B, side 0 or 1. */
+static inline size_t narc_body_at(const narc_pairs *pairs, int side, size_t pair) {
+    const narc_index_column column = side == 0 ? pairs->a : pairs->b;
+    return narc_have_own_bodies(pairs) ? 2 * pair + (size_t)side : column.base ? narc_index_at(column, pair) : pair;
 }
 
 /* What the box kernel works on. */
@@ -122,46 +134,17 @@ enum { NARC_ORDER_BODIES = 128 };
  * most (scene/casts.c). */
 #define NARC_TURNING_TOLERANCE 0x1p-10
 
-/* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
- * And room for a vector that begins anywhere. */
-enum { NARC_CAST_SLOTS = 48, NARC_CAST_ROOM = NARC_CAST_SLOTS + 16 };
-
-/* What a step of a cast may come to, beside NARC_CAST_...: it goes on; it has no answer. */
-enum { NARC_CAST_GOES_ON = 3, NARC_CAST_BROKEN = 4 };
-
-/* What is `back` in narc_casts but a time. */
-#define NARC_CAST_FREE   (-1.0f)
-#define NARC_CAST_DIRECT (-2.0f)
-
-/* Of one body of each cast that is under way: how it is at the start, a unit vector but for rounding, the angle by
- * which it turns in the step, and as it is at the cast's time. */
-struct narc_cast_side {
-    uint32_t shape[NARC_CAST_ROOM];
-    float cosine[NARC_CAST_ROOM], sine[NARC_CAST_ROOM], scale[NARC_CAST_ROOM], angle[NARC_CAST_ROOM];
-    double lever[NARC_CAST_ROOM]; /* of what turns: the largest |point x normal| of its outline, scaled */
-    double turned_x[NARC_CAST_SLOTS], turned_y[NARC_CAST_SLOTS];
-};
-
-/* Casts under way, a slot each. The kernels may write behind the last one, up to NARC_CAST_ROOM. Times are floats,
- * rounded down: a place at a time is exact, and the caller's own. */
-typedef struct narc_casts {
-    float tolerance;                                           /* the caller's, */
-    bool front_only;                                           /* and this */
-    struct narc_cast_side side[2];                             /* A, B */
-    double x[NARC_CAST_ROOM], y[NARC_CAST_ROOM];               /* B's position at the start, from A's */
-    double motion_x[NARC_CAST_ROOM], motion_y[NARC_CAST_ROOM]; /* B's against A's */
-    float target[NARC_CAST_ROOM];                              /* the caller's */
-    double end[NARC_CAST_ROOM];                                /* nothing touches then or later */
-    double enough[NARC_CAST_ROOM];     /* a separation that is so much above the target is a hit */
-    float turning[NARC_CAST_ROOM];     /* 1: turning moves an outline; else 0 */
-    float time[NARC_CAST_ROOM];        /* where it is now */
-    float back[NARC_CAST_ROOM];        /* where it was to go, had it not tried to go further; NARC_CAST_FREE: it has
-                                        not; NARC_CAST_DIRECT: it went too far once, and tries no more */
-    float rounds[NARC_CAST_ROOM];      /* contacts so far */
-    int32_t outcome[NARC_CAST_ROOM];   /* of the last step */
-    float pose[2][NARC_CAST_SLOTS][4]; /* x, y, cosine, sine of A and B at the time; A stands at the origin */
-    narc_contact contact[NARC_CAST_SLOTS];
-} narc_casts;
+/* What the kernel of casts works on: pairs of a batch, and the motions of A's and of B's bodies. Any pairs; of `nearest`
+ * those of a mover follow each other, its row is the one with the number of A, and says whom it hits first; all such
+ * rows are misses before. */
+typedef struct narc_cast_batch {
+    const narc_batch *batch;
+    narc_motions motions[2];
+    float target, tolerance;
+    narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A */
+    bool nearest, front_only;
+    narc_impact *out;
+} narc_cast_batch;
 
 /* The most pairs that one call for rows takes. */
 enum { NARC_ROW_GROUP = 1024 };

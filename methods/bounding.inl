@@ -13,11 +13,11 @@
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"
-#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/boxes.inl"
+#include "methods/run.inl"
 #include "simd/simd.h"
 
 /* The extent of a box along a unit vector, from its centre. */
@@ -57,18 +57,15 @@ INLINE vm filter_obbs(const struct call *call, size_t pair, const struct filter 
 }
 
 static void overlap_circle(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, NULL, filter_circles, 0, NULL, 0, 0, NULL);
+    run_filter(filter_circles, batch, first, count, skipped, out_bits);
 }
 
 static void overlap_aabb(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, NULL, filter_aabbs, 0, NULL, 0, 0, NULL);
+    run_filter(filter_aabbs, batch, first, count, skipped, out_bits);
 }
 
 static void overlap_obb(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, NULL, filter_obbs, 0, NULL, 0, 0, NULL);
+    run_filter(filter_obbs, batch, first, count, skipped, out_bits);
 }
 
 #endif

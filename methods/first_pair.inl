@@ -15,15 +15,14 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/pipeline.inl"
 #include "base/queue.inl"
-#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
 #include "methods/boxes.inl"
 #include "methods/outcomes.inl"
+#include "methods/run.inl"
 #include "simd/simd.h"
 
 INLINE vm in_closed_cone(vec2 start, vec2 end, vec2 u) {
@@ -99,11 +98,10 @@ INLINE void store_first_gap(const struct call *call, const struct queue *queue, 
     const vec2 n = v2_divide(gap->normal, gap->length);
     const struct feature on_a = find_feature_at(records, get_ring_a(queue, k), gap->record_a, &pose, n, false);
     const struct feature on_b = find_feature_at(records, get_ring_b(queue, k), gap->record_b, &pose, n, true);
-    store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
+    store_contacts(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 
-static void find_first_pairs(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
+static void find_first_pairs(const struct call *call, struct queue *queue, int begin) {
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         vm found;
         const vm live = vm_front(queue->count - k);

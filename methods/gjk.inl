@@ -22,7 +22,6 @@
 #include <string.h>
 
 #include "base/call.inl"
-#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -32,6 +31,7 @@
 #include "methods/lanes.inl"
 #include "methods/method_kernels.h"
 #include "methods/outcomes.inl"
+#include "methods/run.inl"
 #include "methods/simplex.inl"
 #include "methods/support.inl"
 #include "simd/simd.h"
@@ -195,7 +195,7 @@ INLINE void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verd
 }
 
 /* Passes the pairs that collide on to EPA, each with the triangle that holds the origin. */
-INLINE void pass_on(const struct lanes *lanes, const struct search *s, vm collides, struct collisions *to) {
+INLINE void pass_collisions(const struct lanes *lanes, const struct search *s, vm collides, struct collisions *to) {
     const struct vertex *const corners[] = {&s->p, &s->q, &s->third};
     float corner[3][4][V_WIDTH];
     for (int c = 0; c < 3; c++) {
@@ -245,20 +245,18 @@ INLINE void search_all(const struct call *call, const struct queue *queue, int b
         struct best best = s.best;
         best.separation = v_max(best.separation, v_set(0));
         append_found(&lanes, vm_or(verdict.separate, verdict.limit), &best, found);
-        pass_on(&lanes, &s, verdict.collides, colliding);
+        pass_collisions(&lanes, &s, verdict.collides, colliding);
     }
 }
 
-static void find_overlaps_gjk(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
+static void find_overlaps_gjk(const struct call *call, struct queue *queue, int begin) {
     search_all(call, queue, begin, NULL, NULL);
 }
 
-static void find_contacts_gjk(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+static void find_contacts_gjk(const struct call *call, struct queue *queue, int begin) {
     struct collisions colliding;
     struct queue found;
     struct found_arcs arcs;
-    (void)next;
     start_queue(&found, &arcs);
     colliding.pairs.count = 0;
     search_all(call, queue, begin, &colliding, &found);

@@ -14,8 +14,8 @@
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/queue.inl"
-#include "base/rows.inl"
 #include "base/vec2.inl"
+#include "methods/run.inl"
 #include "methods/simplex.inl"
 #include "simd/simd.h"
 
@@ -113,7 +113,7 @@ static inline void store_found(const struct call *call, const struct queue *queu
         const struct feature on_a = find_found(call, queue, k, point, queue->record_a, SCALE_A);
         const struct feature on_b = find_found(call, queue, k, point, queue->record_b, SCALE_B);
         const vm keep = vm_and(vm_front(queue->count - k), is_below(separation, get_margins(call, queue, k)));
-        store_rows(call, queue, k, keep, separation, n, &on_a, &on_b);
+        store_contacts(call, queue, k, keep, separation, n, &on_a, &on_b);
     }
 }
 

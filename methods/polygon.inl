@@ -15,13 +15,12 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/pipeline.inl"
 #include "base/queue.inl"
-#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
+#include "methods/run.inl"
 #include "methods/support.inl"
 #include "simd/simd.h"
 
@@ -82,11 +81,10 @@ INLINE void store_polygon_contacts(const struct call *call, const struct queue *
     struct feature on_a = find_feature_at(records, get_ring_a(queue, k), s.record_a, &pose, n, false);
     struct feature on_b = find_feature_at(records, get_ring_b(queue, k), s.record_b, &pose, n, true);
     move_together(&on_a, &on_b);
-    store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
+    store_contacts(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 
-static void find_polygons(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
+static void find_polygons(const struct call *call, struct queue *queue, int begin) {
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const struct gap gap = find_polygon_gap(call->batch->shapes, queue, k, live, get_margins(call, queue, k));

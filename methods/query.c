@@ -171,5 +171,6 @@ narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies
     if (!call.contact)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->method, "%s answers overlaps only",
                          narc_method_name(options->method));
+    batch.row_size = sizeof *out_rows;
     return narc_answer_rows(run_contacts, &batch, out_rows, capacity, out_count, error);
 }

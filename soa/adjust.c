@@ -70,7 +70,7 @@ static bool sides_touch(const polygon *p, size_t i, size_t j) {
 }
 
 /* Copies, moves and scales the points, and finds the size that they had and where their mean was. */
-static narc_status normalise(const narc_point *points, size_t count, polygon *out, narc_circle *out_place,
+static narc_status normalise(const narc_point *points, size_t count, polygon *out, narc_circle *out_frame,
                              narc_error *error) {
     double x = 0, y = 0, size = 0;
     for (size_t i = 0; i < count; i++) {
@@ -90,13 +90,13 @@ static narc_status normalise(const narc_point *points, size_t count, polygon *ou
     out->count = count;
     for (size_t i = 0; i < count; i++)
         out->point[i] = (narc_point){(points[i].x - x) / size, (points[i].y - y) / size};
-    *out_place = (narc_circle){x, y, size};
+    *out_frame = (narc_circle){x, y, size};
     return NARC_OK;
 }
 
-static narc_status read_polygon(const narc_point *points, size_t count, polygon *out, narc_circle *out_place,
+static narc_status read_polygon(const narc_point *points, size_t count, polygon *out, narc_circle *out_frame,
                                 narc_error *error) {
-    narc_status status = normalise(points, count, out, out_place, error);
+    narc_status status = normalise(points, count, out, out_frame, error);
     if (status != NARC_OK)
         return status;
     for (size_t i = 0; i < count; i++) {
@@ -256,14 +256,14 @@ static void lengthen_sides(lines *l, size_t count, double least) {
         l->distance[i] += part * (l->mean_distance - l->distance[i]);
 }
 
-static void intersect(const lines *l, size_t count, narc_circle place, narc_point *out_points) {
+static void intersect(const lines *l, size_t count, narc_circle frame, narc_point *out_points) {
     for (size_t i = 0; i < count; i++) {
         size_t before = (i + count - 1) % count;
         double a = l->distance[before], b = l->distance[i], s = narc_sin(l->turn[i]);
         double x = (a * l->normal_y[i] - b * l->normal_y[before]) / s;
         double y = (b * l->normal_x[before] - a * l->normal_x[i]) / s;
         out_points[i] =
-            (narc_point){place.x + place.radius * (l->middle.x + x), place.y + place.radius * (l->middle.y + y)};
+            (narc_point){frame.x + frame.radius * (l->middle.x + x), frame.y + frame.radius * (l->middle.y + y)};
     }
 }
 
@@ -271,14 +271,14 @@ static void intersect(const lines *l, size_t count, narc_circle place, narc_poin
 
 narc_status narc_adjust_polygon(const narc_point *points, size_t count, narc_point *out_points, narc_error *error) {
     polygon p;
-    narc_circle place = {0, 0, 1};
+    narc_circle frame = {0, 0, 1};
     double fitted[NARC_MAX_ARCS], alpha[NARC_MAX_ARCS];
     if (!points || !out_points)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", points ? "out_points" : "polygon");
     if (count < 3 || count > NARC_MAX_ARCS)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "there are %zu points, not 3 to %d", count,
                          NARC_MAX_ARCS);
-    narc_status status = read_polygon(points, count, &p, &place, error);
+    narc_status status = read_polygon(points, count, &p, &frame, error);
     if (status != NARC_OK)
         return status;
     fit_alphas(&p, fitted);
@@ -295,7 +295,7 @@ narc_status narc_adjust_polygon(const narc_point *points, size_t count, narc_poi
             alpha[i] = fitted[i] + parts[k] * (NARC_PI / (double)count - fitted[i]);
         lay_lines(&p, alpha, &l);
         lengthen_sides(&l, count, parts[k]);
-        intersect(&l, count, place, junctions);
+        intersect(&l, count, frame, junctions);
         status = narc_build_points(junctions, count, 0, arcs, &arc_count, k + 1 == ATTEMPTS ? error : NULL);
         if (status == NARC_OK) {
             memcpy(out_points, junctions, count * sizeof *junctions);

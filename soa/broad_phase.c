@@ -85,8 +85,8 @@ enum { BYTES_PER_BOX = 128 };
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */
         return NARC_OK;
-    const size_t n = with_room(count, 1024), strays = narc_most_strays(n), parts = n / NARC_PART_BOXES + 1;
-    const size_t both = n + strays, padded = both + NARC_BOX_PADDING;
+    const size_t n = with_room(count, 1024), unsorted = narc_most_unsorted(n), parts = n / NARC_PART_BOXES + 1;
+    const size_t both = n + unsorted, padded = both + NARC_BOX_PADDING;
     if (both > SIZE_MAX - 64 || !replace(broad, &broad->box_memory, both + 64, BYTES_PER_BOX))
         return NARC_ERROR_MEMORY;
     char *at = broad->box_memory;
@@ -100,7 +100,7 @@ narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     broad->boxes.max_y = take(&at, padded, sizeof(float));
     broad->boxes.body = take(&at, padded, sizeof(uint32_t));
     broad->ends = take(&at, n + 1, sizeof *broad->ends);
-    broad->strays = take(&at, strays, sizeof *broad->strays);
+    broad->unsorted = take(&at, unsorted, sizeof *broad->unsorted);
     broad->parts = take(&at, parts < NARC_STRIP_PARTS ? parts : NARC_STRIP_PARTS, sizeof *broad->parts);
     broad->box_capacity = n;
     return NARC_OK;

@@ -117,7 +117,7 @@ struct narc_broad_phase {
     narc_kept_list lists[2]; /* the last one, and memory for the next */
     int last;
     bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters` */
-    bool is_sorted;       /* what is sorted below are the kept boxes, but for strays */
+    bool is_sorted;       /* what is sorted below are the kept boxes, but for unsorted ones */
     bool has_filter;      /* `kinds` and `filters` are in use */
     bool has_sets;        /* `filters` may say other than that all bodies may form pairs */
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
@@ -127,35 +127,35 @@ struct narc_broad_phase {
     narc_body_filter *filters;
     uint8_t *kinds;
     uint32_t *last_index; /* its number in the last list */
-    uint32_t *place;      /* of its box in the columns, NARC_NO_PLACE or NARC_STRAY */
+    uint32_t *place;      /* of its box in the columns, NARC_NO_PLACE or NARC_UNSORTED */
     uint8_t *fresh;       /* 1: it gets a new kept box, or may form other pairs */
     uint8_t *taken;       /* for each body of the last list: it has a number in this one */
     /* what narc_find_pairs() sorts */
     size_t box_capacity, block_capacity, match_capacity; /* match_capacity: of uint32_t */
     /* for each box */
     narc_box_entry *entries, *spare;
-    narc_box_columns boxes; /* in the order of their strips; strays and NARC_BOX_PADDING items behind them */
+    narc_box_columns boxes; /* in the order of their strips; unsorted ones and NARC_BOX_PADDING items behind them */
     narc_strip *strips;
     narc_level *levels;     /* those that have boxes, the highest strips first */
     uint32_t *ends;         /* of each body's list of partners; one more than boxes */
     narc_strip_part *parts; /* one for every NARC_PART_BOXES boxes, NARC_STRIP_PARTS at most */
-    uint32_t *strays;       /* bodies whose kept boxes are others than when all were sorted */
+    uint32_t *unsorted;     /* bodies whose kept boxes are others than when all were sorted */
     /* for each block of pairs */
     uint32_t *pair_a, *pair_b; /* NARC_PAIR_BLOCK each */
     narc_pair_block *blocks;
     /* of the last call */
     atomic_size_t block_count; /* blocks that tasks asked for, perhaps more than there are */
-    size_t strip_count, level_count, sorted_count, stray_count;
+    size_t strip_count, level_count, sorted_count, unsorted_count;
     uint64_t steps;                   /* of the last sweep */
     int64_t lowest_strip, strip_span; /* of all levels; numbers of strips leave strip_span for each level */
 };
 
-/* A body that is not in the columns; a stray, whose box there overlaps nothing. Neither is a place. */
+/* A body that is not in the columns; an unsorted one, whose box there overlaps nothing. Neither is a place. */
 #define NARC_NO_PLACE UINT32_MAX
-#define NARC_STRAY    (UINT32_MAX - 1)
+#define NARC_UNSORTED (UINT32_MAX - 1)
 
-/* So many boxes may be strays. */
-static inline size_t narc_most_strays(size_t count) { return count / 8; }
+/* So many boxes may be unsorted. */
+static inline size_t narc_most_unsorted(size_t count) { return count / 8; }
 
 /* What a kernel may read behind the last box: the widest vector. */
 enum { NARC_BOX_PADDING = 16 };

@@ -9,13 +9,11 @@
 #include "chain.h"
 #include "error.h"
 #include "outline.h"
+#include "vec2.h"
 
 /* Parts that join, or that have one small part between them, have met if they do so further from their ends than this
  * many times their size. */
 #define NEAR_ENDS 1e-7
-
-static double cross(narc_point a, narc_point b) { return a.x * b.y - a.y * b.x; }
-static narc_point subtract(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
 
 /* ------------------------------------------------------------------------------------------------ two curves */
 
@@ -26,8 +24,8 @@ static bool is_common(const narc_curve *a, const narc_curve *b, narc_point p, do
     const narc_curve *const curves[] = {a, b};
     for (int k = 0; k < 2; k++) {
         const narc_curve *c = curves[k];
-        const narc_point from = subtract(p, c->from), to = subtract(c->to, p);
-        if (c->radius > 0 ? !narc_curve_holds(c, subtract(p, c->center)) : from.x * to.x + from.y * to.y < 0)
+        const narc_point from = narc_subtract(p, c->from), to = narc_subtract(c->to, p);
+        if (c->radius > 0 ? !narc_curve_holds(c, narc_subtract(p, c->center)) : from.x * to.x + from.y * to.y < 0)
             return false;
         if (away > 0 && (fmax(fabs(from.x), fabs(from.y)) <= away || fmax(fabs(to.x), fabs(to.y)) <= away))
             return false;
@@ -42,25 +40,26 @@ static bool has_common(const narc_curve *a, const narc_curve *b, narc_point p, n
 }
 
 static bool do_lines_meet(const narc_curve *a, const narc_curve *b, double away) {
-    const narc_point d = subtract(a->to, a->from), e = subtract(b->to, b->from), w = subtract(b->from, a->from);
-    const double across = cross(d, e);
-    const double s = cross(w, e) / across, t = cross(w, d) / across;
+    const narc_point d = narc_subtract(a->to, a->from), e = narc_subtract(b->to, b->from),
+                     w = narc_subtract(b->from, a->from);
+    const double across = narc_cross(d, e);
+    const double s = narc_cross(w, e) / across, t = narc_cross(w, d) / across;
     return across != 0 && s >= 0 && s <= 1 && t >= 0 && t <= 1 &&
            (away == 0 || (fmin(s, 1 - s) * measure(a) > away && fmin(t, 1 - t) * measure(b) > away));
 }
 
 static bool do_line_and_arc_meet(const narc_curve *line, const narc_curve *arc, double away) {
-    const narc_point d = subtract(line->to, line->from), w = subtract(arc->center, line->from);
+    const narc_point d = narc_subtract(line->to, line->from), w = narc_subtract(arc->center, line->from);
     const double length = sqrt(d.x * d.x + d.y * d.y);
     const narc_point along = {d.x / length, d.y / length};
-    const double t = w.x * along.x + w.y * along.y, height = cross(along, w);
+    const double t = w.x * along.x + w.y * along.y, height = narc_cross(along, w);
     const double square = (arc->radius - height) * (arc->radius + height);
     const narc_point foot = {line->from.x + t * along.x, line->from.y + t * along.y};
     return square >= 0 && has_common(line, arc, foot, along, sqrt(square), away);
 }
 
 static bool do_arcs_meet(const narc_curve *a, const narc_curve *b, double away) {
-    const narc_point d = subtract(b->center, a->center);
+    const narc_point d = narc_subtract(b->center, a->center);
     const double distance = sqrt(d.x * d.x + d.y * d.y);
     if (!(distance > 0))
         return false;
@@ -73,17 +72,18 @@ static bool do_arcs_meet(const narc_curve *a, const narc_curve *b, double away) 
 
 /* Does a curve go through a point, but for `room`? */
 static bool holds(const narc_curve *c, narc_point p, double room) {
-    const narc_point from = subtract(p, c->from), along = subtract(c->to, c->from), a = subtract(p, c->center);
+    const narc_point from = narc_subtract(p, c->from), along = narc_subtract(c->to, c->from),
+                     a = narc_subtract(p, c->center);
     const double length = sqrt(along.x * along.x + along.y * along.y), t = from.x * along.x + from.y * along.y;
     if (c->radius > 0)
-        return fabs(sqrt(a.x * a.x + a.y * a.y) - c->radius) <= room && cross(c->u, a) >= -room &&
-               cross(a, c->v) >= -room;
-    return fabs(cross(along, from)) <= room * length && t >= -room * length && t <= (length + room) * length;
+        return fabs(sqrt(a.x * a.x + a.y * a.y) - c->radius) <= room && narc_cross(c->u, a) >= -room &&
+               narc_cross(a, c->v) >= -room;
+    return fabs(narc_cross(along, from)) <= room * length && t >= -room * length && t <= (length + room) * length;
 }
 
 /* The middle of a curve between two of its points. */
 static narc_point find_middle(const narc_curve *c, narc_point p, narc_point q) {
-    const narc_point d = subtract(q, p);
+    const narc_point d = narc_subtract(q, p);
     const double length = sqrt(d.x * d.x + d.y * d.y);
     const double side = narc_curve_holds(c, (narc_point){d.y, -d.x}) ? c->radius / length : -c->radius / length;
     return c->radius > 0 ? (narc_point){c->center.x + side * d.y, c->center.y - side * d.x}

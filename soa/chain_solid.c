@@ -7,6 +7,7 @@
 #include "chain.h"
 #include "elementary.h"
 #include "outline.h"
+#include "vec2.h"
 
 /* What is this near to the ends of a front, relative to its size, is where the next one begins. */
 #define END_ROOM 0x1p-18
@@ -16,12 +17,6 @@
  * walls of a crack. */
 #define LOCAL_TURN 1.0
 
-static double cross(narc_point a, narc_point b) { return a.x * b.y - a.y * b.x; }
-static double dot(narc_point a, narc_point b) { return a.x * b.x + a.y * b.y; }
-static narc_point subtract(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
-static narc_point add(narc_point a, double length, narc_point d) {
-    return (narc_point){a.x + length * d.x, a.y + length * d.y};
-}
 static double find_distance(narc_point a, narc_point b) { return narc_hypot(a.x - b.x, a.y - b.y); }
 
 /* ------------------------------------------------------------------------------------------------ thickness */
@@ -43,16 +38,17 @@ typedef struct rays {
 
 /* A place that a curve has; `side`: on the ray from that end, or the other way. */
 static void try_place(rays *r, narc_point p, const narc_point *side) {
-    const narc_point w = subtract(p, r->from);
+    const narc_point w = narc_subtract(p, r->from);
     double depth;
     if (r->is_line) {
-        const double at = dot(w, r->along);
+        const double at = narc_dot(w, r->along);
         if (!side && !(at >= 0 && at <= r->size))
             return;
-        depth = -dot(w, r->side[0]);
+        depth = -narc_dot(w, r->side[0]);
     } else {
-        const bool before = side ? dot(w, *side) > 0 : cross(r->side[0], w) >= 0 && cross(w, r->side[1]) >= 0;
-        const bool behind = side ? !before : cross(r->side[0], w) <= 0 && cross(w, r->side[1]) <= 0;
+        const bool before =
+            side ? narc_dot(w, *side) > 0 : narc_cross(r->side[0], w) >= 0 && narc_cross(w, r->side[1]) >= 0;
+        const bool behind = side ? !before : narc_cross(r->side[0], w) <= 0 && narc_cross(w, r->side[1]) <= 0;
         if (!behind && !(before && r->size > 0))
             return;
         const double away = narc_hypot(w.x, w.y);
@@ -66,35 +62,36 @@ static void try_place(rays *r, narc_point p, const narc_point *side) {
 /* What a curve has on the line through o along the unit vector d. */
 static void try_crossings(rays *r, const narc_curve *c, narc_point o, narc_point d, const narc_point *side) {
     if (c->radius > 0) {
-        const narc_point w = subtract(c->center, o);
-        const double across = cross(d, w), square = (c->radius - across) * (c->radius + across);
+        const narc_point w = narc_subtract(c->center, o);
+        const double across = narc_cross(d, w), square = (c->radius - across) * (c->radius + across);
         for (int k = -1; k <= 1 && square >= 0; k += 2) {
-            const narc_point p = add(o, dot(w, d) + k * sqrt(square), d);
-            if (narc_curve_holds(c, subtract(p, c->center)))
+            const narc_point p = narc_add_scaled(o, narc_dot(w, d) + k * sqrt(square), d);
+            if (narc_curve_holds(c, narc_subtract(p, c->center)))
                 try_place(r, p, side);
         }
         return;
     }
-    const double from = cross(d, subtract(c->from, o)), to = cross(d, subtract(c->to, o));
+    const double from = narc_cross(d, narc_subtract(c->from, o)), to = narc_cross(d, narc_subtract(c->to, o));
     if (from != to && ((from <= 0 && to >= 0) || (from >= 0 && to <= 0)))
-        try_place(r, add(c->from, from / (from - to), subtract(c->to, c->from)), side);
+        try_place(r, narc_add_scaled(c->from, from / (from - to), narc_subtract(c->to, c->from)), side);
 }
 
 static void try_curve(rays *r, const narc_curve *c) {
     try_place(r, c->from, NULL);
     try_place(r, c->to, NULL);
     for (int k = 0; k < 2; k++)
-        try_crossings(r, c, r->is_line && k > 0 ? add(r->from, r->size, r->along) : r->from, r->side[k], &r->side[k]);
+        try_crossings(r, c, r->is_line && k > 0 ? narc_add_scaled(r->from, r->size, r->along) : r->from, r->side[k],
+                      &r->side[k]);
     if (c->radius > 0) { /* the line through its centre meets it square */
-        const narc_point w = subtract(c->center, r->from);
+        const narc_point w = narc_subtract(c->center, r->from);
         const double away = narc_hypot(w.x, w.y);
         if (r->is_line || away > 0)
             try_crossings(r, c, c->center, r->is_line ? r->side[0] : (narc_point){w.x / away, w.y / away}, NULL);
     } else if (!r->is_line) {
-        const narc_point d = subtract(c->to, c->from), w = subtract(r->from, c->from);
-        const double square = dot(d, d), part = dot(w, d) / square;
+        const narc_point d = narc_subtract(c->to, c->from), w = narc_subtract(r->from, c->from);
+        const double square = narc_dot(d, d), part = narc_dot(w, d) / square;
         if (square > 0 && part > 0 && part < 1)
-            try_place(r, add(c->from, part, d), NULL);
+            try_place(r, narc_add_scaled(c->from, part, d), NULL);
     }
 }
 
@@ -121,13 +118,13 @@ static void try_all(rays *r) {
         ends[k] = (narc_curve){.center = r->from, .radius = fabs(radius)};
         ends[k].u = (narc_point){sign * r->side[0].x, sign * r->side[0].y};
         ends[k].v = (narc_point){sign * r->side[1].x, sign * r->side[1].y};
-        ends[k].from = add(r->from, radius, r->side[0]);
-        ends[k].to = add(r->from, radius, r->side[1]);
+        ends[k].from = narc_add_scaled(r->from, radius, r->side[0]);
+        ends[k].to = narc_add_scaled(r->from, radius, r->side[1]);
         if (r->is_line) {
             const double depth = k ? -r->least : 0;
             ends[k].radius = 0;
-            ends[k].from = add(r->from, depth, r->side[0]);
-            ends[k].to = add(ends[k].from, r->size, r->along);
+            ends[k].from = narc_add_scaled(r->from, depth, r->side[0]);
+            ends[k].to = narc_add_scaled(ends[k].from, r->size, r->along);
         }
         box[k] = narc_find_curve_box(&ends[k]);
     }
@@ -154,8 +151,8 @@ double narc_find_thickness(const narc_curves *curves, const narc_arc *arcs, size
     rays r = {.curves = curves, .room = END_ROOM * most, .least = most};
     if (curves->count == 0)
         return most;
-    r.begin = add(origin, 1, begin);
-    r.end = add(origin, 1, end);
+    r.begin = narc_add_scaled(origin, 1, begin);
+    r.end = narc_add_scaled(origin, 1, end);
     r.room += narc_find_curve_room(&(narc_curve){.from = r.begin, .to = r.end});
     narc_point last = r.begin;
     for (size_t k = 0; k < count; k++) {
@@ -165,14 +162,14 @@ double narc_find_thickness(const narc_curves *curves, const narc_arc *arcs, size
         narc_find_normal(arc->start, &n[0].x, &n[0].y);
         narc_find_normal(arc->end, &n[1].x, &n[1].y);
         if (!signbit(arc->radius))
-            try_line(&r, last, add(center, arc->radius, n[0]));
+            try_line(&r, last, narc_add_scaled(center, arc->radius, n[0]));
         r.is_line = false;
         r.from = center;
         r.size = arc->radius;
         r.side[0] = n[0];
         r.side[1] = n[1];
         try_all(&r);
-        last = add(center, arc->radius, n[1]);
+        last = narc_add_scaled(center, arc->radius, n[1]);
     }
     if (count == 0 || !signbit(arcs[0].radius))
         try_line(&r, last, r.end);
@@ -194,11 +191,11 @@ void narc_find_end_sides(const narc_chain *chain, narc_curves *curves) {
         rays r = {.curves = &whole, .from = from, .along = {-n.y, n.x}, .side = {n, n}, .begin = from, .end = from};
         r.is_line = true;
         r.least = 4 * (box->max_x - box->min_x + box->max_y - box->min_y);
-        r.room = 4 * narc_find_curve_room(&(narc_curve){.from = from, .to = add(from, -r.least, n)});
+        r.room = 4 * narc_find_curve_room(&(narc_curve){.from = from, .to = narc_add_scaled(from, -r.least, n)});
         try_all(&r);
         narc_curve *side = &curves->end_sides[end];
-        side->from = add(from, end ? r.room : -r.room, r.along);
-        side->to = add(side->from, -r.least, n);
+        side->from = narc_add_scaled(from, end ? r.room : -r.room, r.along);
+        side->to = narc_add_scaled(side->from, -r.least, n);
     }
 }
 
@@ -255,12 +252,13 @@ static bool leave_surface(const narc_curves *t, size_t own, bool is_on_curve, do
 }
 
 static double find_curve_distance(const narc_curve *c, narc_point p) {
-    const narc_point d = subtract(c->to, c->from), w = subtract(p, c->from), out = subtract(p, c->center);
+    const narc_point d = narc_subtract(c->to, c->from), w = narc_subtract(p, c->from),
+                     out = narc_subtract(p, c->center);
     if (c->radius > 0)
         return narc_curve_holds(c, out) ? fabs(narc_hypot(out.x, out.y) - c->radius)
                                         : fmin(find_distance(p, c->from), find_distance(p, c->to));
-    const double square = dot(d, d), part = square > 0 ? fmin(1, fmax(0, dot(w, d) / square)) : 0;
-    return find_distance(p, add(c->from, part, d));
+    const double square = narc_dot(d, d), part = square > 0 ? fmin(1, fmax(0, narc_dot(w, d) / square)) : 0;
+    return find_distance(p, narc_add_scaled(c->from, part, d));
 }
 
 /* The distance of a curve, of a convex arc from one part of it to another. */
@@ -272,8 +270,8 @@ static double find_part_distance(const narc_curve *c, double from, double to, na
         part.u = (narc_point){x * c->u.x - y * c->u.y, x * c->u.y + y * c->u.x};
         narc_find_cosine(to * c->turn, &x, &y);
         part.v = (narc_point){x * c->u.x - y * c->u.y, x * c->u.y + y * c->u.x};
-        part.from = add(c->center, c->radius, part.u);
-        part.to = add(c->center, c->radius, part.v);
+        part.from = narc_add_scaled(c->center, c->radius, part.u);
+        part.to = narc_add_scaled(c->center, c->radius, part.v);
     }
     return find_curve_distance(&part, p);
 }

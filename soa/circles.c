@@ -156,7 +156,7 @@ void narc_inscribe_outline(const narc_outline *outline, narc_circle *out_circle)
     double bound = circle.radius;
     for (int step = 0; step < MAX_STEPS; step++) {
         narc_point normal;
-        double room = -narc_find_gap(outline, circle.x, circle.y, &normal);
+        double room = -narc_find_point_separation(outline, circle.x, circle.y, &normal);
         if (room > out_circle->radius)
             *out_circle = (narc_circle){circle.x, circle.y, room};
         /* The bound from above cannot grow, unless constraints are so nearly equal that it is rounding that decides. */

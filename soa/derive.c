@@ -141,7 +141,7 @@ bool narc_compute_distance(const narc_arc *arcs, size_t count, narc_point point,
     narc_outline o;
     if (!read_list(arcs, count, out_distance, &o))
         return false;
-    *out_distance = narc_find_gap(&o, point.x - o.origin_x, point.y - o.origin_y, NULL);
+    *out_distance = narc_find_point_separation(&o, point.x - o.origin_x, point.y - o.origin_y, NULL);
     return true;
 }
 

@@ -33,8 +33,8 @@ static uint8_t find_flags(const narc_outline *o, size_t count, double size, doub
         narc_point from = narc_find_end(o, i ? i - 1 : o->count - 1), to = narc_find_start(o, i);
         smooth = smooth && narc_hypot(to.x - from.x, to.y - from.y) <= NARC_TOLERANCE * size + room;
         polygon = polygon && o->radius[i] == 0;
-        inside = inside && (o->radius[i] == 0 ||
-                            narc_find_gap(o, o->center_x[i], o->center_y[i], NULL) <= CENTER_SLACK * size + room);
+        inside = inside && (o->radius[i] == 0 || narc_find_point_separation(o, o->center_x[i], o->center_y[i], NULL) <=
+                                                     CENTER_SLACK * size + room);
     }
     return (uint8_t)((smooth ? NARC_SHAPE_SMOOTH : 0) | (count == 1 ? NARC_SHAPE_CIRCLE : 0) |
                      (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
@@ -392,8 +392,9 @@ static narc_status check_header(const narc_shape_header *header, const narc_outl
               room <=
           bound))
         return fail_stored(error, "a circle that does not hold its shape");
-    if (!(inner <=
-          -narc_find_gap(o, (double)header->inner_x - o->origin_x, (double)header->inner_y - o->origin_y, NULL) - room))
+    if (!(inner <= -narc_find_point_separation(o, (double)header->inner_x - o->origin_x,
+                                               (double)header->inner_y - o->origin_y, NULL) -
+                       room))
         return fail_stored(error, "a circle that is not in its shape");
     if (header->extent_ratio != UINT8_MAX &&
         (extent * (1 + 5e-7) > header->extent_ratio * bound || misfit > NARC_MAX_MISFIT * extent + join))
@@ -417,7 +418,7 @@ static double read_upper_half(uint32_t half) {
 
 /* Does a circle of radius `inner` that touches the outline from inside, at a point with the normal n, lie in it? */
 static bool has_room(const narc_outline *o, narc_point p, double n_x, double n_y, double inner, double room) {
-    return -narc_find_gap(o, p.x - inner * n_x, p.y - inner * n_y, NULL) >= inner - room;
+    return -narc_find_point_separation(o, p.x - inner * n_x, p.y - inner * n_y, NULL) >= inner - room;
 }
 
 /* Are the inner radii of an arc none that it does not have? The windows are narrower than those of the encoder by more

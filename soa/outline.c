@@ -107,7 +107,7 @@ double narc_find_height(const narc_outline *o, double x, double y) {
 
 /* In one sector p.n - h(n) = (p - centre).n - radius, a sinusoid: it is largest where n points from the centre to p
  * if the sector has that direction, else at a boundary, which starts some sector. */
-double narc_find_gap(const narc_outline *o, double x, double y, narc_point *out_normal) {
+double narc_find_point_separation(const narc_outline *o, double x, double y, narc_point *out_normal) {
     double best = -INFINITY;
     narc_point normal = {0, 0};
     for (size_t i = 0; i < o->count; i++) {

@@ -58,7 +58,7 @@ double narc_find_height(const narc_outline *outline, double x, double y);
 
 /* The largest of p.n - h(n) over all unit n: the signed distance of the point p to the outline. `out_normal` may be
  * NULL. */
-double narc_find_gap(const narc_outline *outline, double x, double y, narc_point *out_normal);
+double narc_find_point_separation(const narc_outline *outline, double x, double y, narc_point *out_normal);
 
 /* Two points and what lies between them. */
 static inline bool narc_is_segment(const narc_outline *outline) {

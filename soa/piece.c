@@ -7,11 +7,13 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "vec2.h"
+
 #define WIDTH_ROOM 0x1p-10
 
 /* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what
  * its front reaches from its middle (chain_pieces.c). */
-static double find_piece_size(const narc_toucher *t) {
+static double find_piece_size(const narc_contact_side *t) {
     const size_t count = t->header->count, first = t->header->first_arc & NARC_FIRST_ARC;
     const narc_stored_arc *const a = &t->arcs[0].arc;
     if (narc_is_concave(t->header)) {
@@ -28,8 +30,8 @@ static double find_piece_size(const narc_toucher *t) {
 /* How deep a contact of two bodies, one of them a piece, may be. How thick the solid behind a piece is, is not known:
  * of two pieces the smaller one counts, or an eighth of the larger one where a tip or the bottom of a valley is
  * smaller. */
-static double find_reach(const narc_toucher *a, const narc_toucher *b) {
-    const narc_toucher *const body = narc_is_piece(a->header) ? b : a;
+static double find_most_depth(const narc_contact_side *a, const narc_contact_side *b) {
+    const narc_contact_side *const body = narc_is_piece(a->header) ? b : a;
     double size;
     if (!narc_is_piece(body->header))
         return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, 0, &size) +
@@ -40,51 +42,43 @@ static double find_reach(const narc_toucher *a, const narc_toucher *b) {
     return least > most ? least : most;
 }
 
-typedef struct spot {
-    double x, y;
-} spot;
-
-static double cross(spot a, spot b) { return a.x * b.y - a.y * b.x; }
-static double dot(spot a, spot b) { return a.x * b.x + a.y * b.y; }
-static spot subtract(spot a, spot b) { return (spot){a.x - b.x, a.y - b.y}; }
-static spot add(spot a, double length, spot d) { return (spot){a.x + length * d.x, a.y + length * d.y}; }
 static double get_least(double a, double b) { return a < b ? a : b; }
 static double get_most(double a, double b) { return a > b ? a : b; }
 
 /* Is a direction in a sector of at most half a turn? */
-static bool holds(spot start, spot end, spot d) {
-    return cross(start, d) >= 0 && cross(d, end) >= 0 && dot(start, d) + dot(end, d) >= 0;
+static bool holds(narc_point start, narc_point end, narc_point d) {
+    return narc_cross(start, d) >= 0 && narc_cross(d, end) >= 0 && narc_dot(start, d) + narc_dot(end, d) >= 0;
 }
 
 /* An arc as a body sees it, in the body's axes and unit: its circle, the directions of its ends from the centre,
  * counter-clockwise, and these ends, in the order of the piece's normals. */
 typedef struct seen_arc {
-    spot center, start, end, first, last;
+    narc_point center, start, end, first, last;
     double radius;
 } seen_arc;
 
 static seen_arc see_own(const narc_stored_arc *a) {
     const double radius = (double)a->radius, sign = radius < 0 ? -1 : 1;
     seen_arc out = {.center = {(double)a->center_x, (double)a->center_y}, .radius = sign * radius};
-    const spot start = {(double)a->start_x, (double)a->start_y}, end = {(double)a->end_x, (double)a->end_y};
-    out.start = (spot){sign * start.x, sign * start.y};
-    out.end = (spot){sign * end.x, sign * end.y};
-    out.first = add(out.center, radius, start);
-    out.last = add(out.center, radius, end);
+    const narc_point start = {(double)a->start_x, (double)a->start_y}, end = {(double)a->end_x, (double)a->end_y};
+    out.start = (narc_point){sign * start.x, sign * start.y};
+    out.end = (narc_point){sign * end.x, sign * end.y};
+    out.first = narc_add_scaled(out.center, radius, start);
+    out.last = narc_add_scaled(out.center, radius, end);
     return out;
 }
 
 /* A body beside a piece. `turn`, `part`, `at`: the piece's axes, unit and origin in the body's. */
 typedef struct view {
-    const narc_toucher *piece, *body;
-    spot turn, at;
+    const narc_contact_side *piece, *body;
+    narc_point turn, at;
     double part;
     double room; /* for rounding */
 } view;
 
 #define FRONT_ROOM 0x1p-18 /* of the piece's size and the body's together */
 
-static view make_view(const narc_toucher *piece, const narc_toucher *body) {
+static view make_view(const narc_contact_side *piece, const narc_contact_side *body) {
     return (view){piece,
                   body,
                   {piece->x * body->x + piece->y * body->y, piece->x * body->y - piece->y * body->x},
@@ -93,48 +87,53 @@ static view make_view(const narc_toucher *piece, const narc_toucher *body) {
                   FRONT_ROOM * (find_piece_size(piece) / body->scale + (double)body->header->bound_radius)};
 }
 
-static spot turn_by(spot turn, spot d) { return (spot){turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y}; }
+static narc_point turn_by(narc_point turn, narc_point d) {
+    return (narc_point){turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y};
+}
 
-static spot see_place(const view *v, spot p) { return add(v->at, v->part, turn_by(v->turn, p)); }
+static narc_point see_point(const view *v, narc_point p) {
+    return narc_add_scaled(v->at, v->part, turn_by(v->turn, p));
+}
 
 /* An arc of the piece, by its number. */
 static seen_arc see_arc(const view *v, size_t number) {
     const size_t count = v->piece->header->count, first = v->piece->header->first_arc & NARC_FIRST_ARC;
     const seen_arc own = see_own(&v->piece->arcs[(number + count - first) % count].arc);
-    return (seen_arc){see_place(v, own.center), turn_by(v->turn, own.start), turn_by(v->turn, own.end),
-                      see_place(v, own.first),  see_place(v, own.last),      v->part * own.radius};
+    return (seen_arc){see_point(v, own.center), turn_by(v->turn, own.start), turn_by(v->turn, own.end),
+                      see_point(v, own.first),  see_point(v, own.last),      v->part * own.radius};
 }
 
 /* ------------------------------------------------------------------------------------------------ near an end */
 
-/* Does one of the body's deepest places, along its outward normal w, that lie behind the front, lie near an end? */
-static bool lies_near_end(const view *v, spot w) {
+/* Does one of the body's deepest points, along its outward normal w, that lie behind the front, lie near an end? */
+static bool lies_near_end(const view *v, narc_point w) {
     const narc_shape_header *const header = v->piece->header;
-    const bool hollow = narc_is_concave(header);
+    const bool concave = narc_is_concave(header);
     const narc_solid *const solid = &v->piece->arcs[header->count].solid;
-    const seen_arc first = see_arc(v, 0), last = hollow ? first : see_arc(v, header->count - 5u);
-    const spot along = {-w.y, w.x}, end[2] = {hollow ? first.first : first.last, hollow ? last.last : last.first};
+    const seen_arc first = see_arc(v, 0), last = concave ? first : see_arc(v, header->count - 5u);
+    const narc_point along = {-w.y, w.x},
+                     end[2] = {concave ? first.first : first.last, concave ? last.last : last.first};
     double size, low = INFINITY, high = -INFINITY;
     const double height = narc_find_front_height(v->body->header, v->body->arcs, w.x, w.y, 0, &size);
     const double flat = height - v->room - 0x1p-20 * size;
     for (size_t k = 0; k < v->body->header->count; k++) {
         const seen_arc arc = see_own(&v->body->arcs[k].arc);
-        const spot places[3] = {arc.first, arc.last, add(arc.center, arc.radius, w)};
+        const narc_point points[3] = {arc.first, arc.last, narc_add_scaled(arc.center, arc.radius, w)};
         for (int i = 0; i < (holds(arc.start, arc.end, w) ? 3 : 2); i++)
-            if (dot(places[i], w) >= flat) {
-                low = get_least(low, dot(places[i], along));
-                high = get_most(high, dot(places[i], along));
+            if (narc_dot(points[i], w) >= flat) {
+                low = get_least(low, narc_dot(points[i], along));
+                high = get_most(high, narc_dot(points[i], along));
             }
     }
-    const double at[2] = {dot(end[0], along), dot(end[1], along)};
-    const double from = hollow ? low : get_most(low, get_least(at[0], at[1])),
-                 to = hollow ? high : get_least(high, get_most(at[0], at[1]));
+    const double at[2] = {narc_dot(end[0], along), narc_dot(end[1], along)};
+    const double from = concave ? low : get_most(low, get_least(at[0], at[1])),
+                 to = concave ? high : get_least(high, get_most(at[0], at[1]));
     if (from > to + 2 * v->room)
         return false;
     for (int i = 0; i < 2; i++) {
-        const double x = get_least(get_most(at[i], from), get_most(from, to)) - at[i], y = height - dot(end[i], w);
-        const double reach = v->part * (double)solid->clearance[i];
-        if (x * x + y * y <= reach * reach)
+        const double x = get_least(get_most(at[i], from), get_most(from, to)) - at[i], y = height - narc_dot(end[i], w);
+        const double clearance = v->part * (double)solid->clearance[i];
+        if (x * x + y * y <= clearance * clearance)
             return true;
     }
     return false;
@@ -142,43 +141,43 @@ static bool lies_near_end(const view *v, spot w) {
 
 /* ------------------------------------------------------------------------------------------------ meeting the front */
 
-static double find_line_square(spot c, spot p, spot q) {
-    const spot way = subtract(q, p), to = subtract(c, p);
-    const double square = dot(way, way), along = dot(to, way);
+static double find_line_square(narc_point c, narc_point p, narc_point q) {
+    const narc_point way = narc_subtract(q, p), to = narc_subtract(c, p);
+    const double square = narc_dot(way, way), along = narc_dot(to, way);
     const double part = square > 0 ? get_least(get_most(along / square, 0), 1) : 0;
-    const spot off = add(to, -part, way);
-    return dot(off, off);
+    const narc_point off = narc_add_scaled(to, -part, way);
+    return narc_dot(off, off);
 }
 
 /* Does the body meet a segment, or a point? If its inscribed circle does; not if its bounding circle does not; else they
  * are apart along a normal of one of them or the way from a centre to an end, or meet. */
-static bool meets_line(const view *v, spot p, spot q) {
+static bool meets_line(const view *v, narc_point p, narc_point q) {
     const narc_shape_header *const header = v->body->header;
-    const spot inner = {(double)header->inner_x, (double)header->inner_y},
-               bound = {(double)header->bound_x, (double)header->bound_y}, way = subtract(q, p);
+    const narc_point inner = {(double)header->inner_x, (double)header->inner_y},
+                     bound = {(double)header->bound_x, (double)header->bound_y}, way = narc_subtract(q, p);
     const double inner_radius = (double)header->inner_radius, bound_radius = (double)header->bound_radius + v->room;
     double size;
     if (inner_radius > 0 && find_line_square(inner, p, q) <= inner_radius * inner_radius)
         return true;
     if (find_line_square(bound, p, q) > bound_radius * bound_radius)
         return false;
-    const double length = sqrt(dot(way, way));
+    const double length = sqrt(narc_dot(way, way));
     if (length > 0) {
-        const spot n = {way.y / length, -way.x / length};
-        const double height = dot(p, n);
+        const narc_point n = {way.y / length, -way.x / length};
+        const double height = narc_dot(p, n);
         if (height > narc_find_front_height(header, v->body->arcs, n.x, n.y, 0, &size) + v->room ||
             -height > narc_find_front_height(header, v->body->arcs, -n.x, -n.y, 0, &size) + v->room)
             return false;
     }
     for (size_t k = 0; k < header->count; k++) {
         const seen_arc a = see_own(&v->body->arcs[k].arc);
-        const spot to[2] = {subtract(p, a.center), subtract(q, a.center)};
+        const narc_point to[2] = {narc_subtract(p, a.center), narc_subtract(q, a.center)};
         const double radius = a.radius + v->room;
-        if (dot(to[0], a.start) > radius && dot(to[1], a.start) > radius)
+        if (narc_dot(to[0], a.start) > radius && narc_dot(to[1], a.start) > radius)
             return false;
         for (int i = 0; i < 2; i++) {
-            const double away = sqrt(dot(to[i], to[i]));
-            if (away > radius && holds(a.start, a.end, to[i]) && dot(to[1 - i], to[i]) > radius * away)
+            const double away = sqrt(narc_dot(to[i], to[i]));
+            if (away > radius && holds(a.start, a.end, to[i]) && narc_dot(to[1 - i], to[i]) > radius * away)
                 return false;
         }
     }
@@ -188,30 +187,31 @@ static bool meets_line(const view *v, spot p, spot q) {
 /* Does the outline of the body cross an arc of the front? */
 static bool crosses_arc(const view *v, const seen_arc *arc) {
     const narc_shape_header *const header = v->body->header;
-    const spot center = arc->center;
+    const narc_point center = arc->center;
     const double r = arc->radius;
     for (size_t k = 0; k < header->count; k++) {
         const seen_arc a = see_own(&v->body->arcs[k].arc),
                        b = see_own(&v->body->arcs[k + 1 < header->count ? k + 1 : 0].arc);
-        const spot way = subtract(a.center, center);
-        const double radius = a.radius + v->room, square = dot(way, way), away = sqrt(square);
+        const narc_point way = narc_subtract(a.center, center);
+        const double radius = a.radius + v->room, square = narc_dot(way, way), away = sqrt(square);
         if (away > 0 && away <= r + radius && away >= fabs(r - radius)) {
             const double along = (square + r * r - radius * radius) / (2 * away),
                          across = sqrt(get_most(0, r * r - along * along));
             for (int side = -1; side <= 1; side += 2) {
-                const spot at = {(along * way.x - side * across * way.y) / away,
-                                 (along * way.y + side * across * way.x) / away};
-                if (holds(arc->start, arc->end, at) && holds(a.start, a.end, subtract(at, way)))
+                const narc_point at = {(along * way.x - side * across * way.y) / away,
+                                       (along * way.y + side * across * way.x) / away};
+                if (holds(arc->start, arc->end, at) && holds(a.start, a.end, narc_subtract(at, way)))
                     return true;
             }
         }
-        const spot from = subtract(add(a.last, v->room, a.end), center),
-                   edge = subtract(add(b.first, v->room, a.end), add(a.last, v->room, a.end));
-        const double length = dot(edge, edge), half = dot(from, edge),
-                     root = half * half - length * (dot(from, from) - r * r);
+        const narc_point from = narc_subtract(narc_add_scaled(a.last, v->room, a.end), center),
+                         edge = narc_subtract(narc_add_scaled(b.first, v->room, a.end),
+                                              narc_add_scaled(a.last, v->room, a.end));
+        const double length = narc_dot(edge, edge), half = narc_dot(from, edge),
+                     root = half * half - length * (narc_dot(from, from) - r * r);
         for (int side = -1; side <= 1 && length > 0 && root >= 0; side += 2) {
             const double part = (-half + side * sqrt(root)) / length;
-            if (part >= 0 && part <= 1 && holds(arc->start, arc->end, add(from, part, edge)))
+            if (part >= 0 && part <= 1 && holds(arc->start, arc->end, narc_add_scaled(from, part, edge)))
                 return true;
         }
     }
@@ -221,12 +221,12 @@ static bool crosses_arc(const view *v, const seen_arc *arc) {
 /* Does the body meet an arc of the front, whose ends it does not meet? */
 static bool meets_arc(const view *v, const seen_arc *arc) {
     const narc_shape_header *const header = v->body->header;
-    const spot inner = subtract((spot){(double)header->inner_x, (double)header->inner_y}, arc->center),
-               bound = subtract((spot){(double)header->bound_x, (double)header->bound_y}, arc->center);
-    const double off = fabs(sqrt(dot(inner, inner)) - arc->radius);
+    const narc_point inner = narc_subtract((narc_point){(double)header->inner_x, (double)header->inner_y}, arc->center),
+                     bound = narc_subtract((narc_point){(double)header->bound_x, (double)header->bound_y}, arc->center);
+    const double off = fabs(sqrt(narc_dot(inner, inner)) - arc->radius);
     if (off <= (double)header->inner_radius && holds(arc->start, arc->end, inner))
         return true;
-    if (fabs(sqrt(dot(bound, bound)) - arc->radius) > (double)header->bound_radius + v->room)
+    if (fabs(sqrt(narc_dot(bound, bound)) - arc->radius) > (double)header->bound_radius + v->room)
         return false;
     return crosses_arc(v, arc);
 }
@@ -236,7 +236,7 @@ static bool meets_front(const view *v) {
     const seen_arc first = see_arc(v, 0);
     if (narc_is_concave(header))
         return meets_line(v, first.first, first.first) || meets_line(v, first.last, first.last) || meets_arc(v, &first);
-    spot last = first.last;
+    narc_point last = first.last;
     for (size_t number = 1; number + 5 <= header->count; number++) {
         const seen_arc arc = see_arc(v, number);
         if (meets_line(v, last, arc.first) || (number + 6 <= header->count && arc.radius > 0 && meets_arc(v, &arc)))
@@ -247,22 +247,22 @@ static bool meets_front(const view *v) {
 }
 
 /* Is the middle of a body, `depth` deep along its outward normal w, behind the front? */
-static bool is_behind(const narc_toucher *body, spot w, double depth) {
+static bool is_behind(const narc_contact_side *body, narc_point w, double depth) {
     double size;
     const double height = narc_find_front_height(body->header, body->arcs, w.x, w.y, 0, &size);
     return depth > body->scale * (height - (double)body->header->bound_x * w.x - (double)body->header->bound_y * w.y);
 }
 
-bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation, bool front_only) {
+bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, double separation, bool front_only) {
     const bool of_a = narc_is_piece(a->header);
-    const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
+    const narc_contact_side *const piece = of_a ? a : b, *const body = of_a ? b : a;
     const double depth = -separation, sign = of_a ? -1 : 1; /* normals point from A to B */
-    const spot w = {sign * body->x, sign * body->y};
+    const narc_point w = {sign * body->x, sign * body->y};
     if (depth <= 0)
         return true;
-    const double reach = find_reach(a, b);
-    if (depth > reach || narc_is_piece(body->header))
-        return depth <= reach;
+    const double most = find_most_depth(a, b);
+    if (depth > most || narc_is_piece(body->header))
+        return depth <= most;
     if (front_only && is_behind(body, w, depth))
         return false;
     const double thickness = (double)piece->arcs[piece->header->count].solid.thickness;
@@ -270,6 +270,6 @@ bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separa
         return true;
     const view seen = make_view(piece, body);
     if (signbit(thickness)) /* of a line in the air that side tells of a body on which there is less of it */
-        return depth <= reach / 2 && meets_front(&seen);
+        return depth <= most / 2 && meets_front(&seen);
     return lies_near_end(&seen, w) || meets_front(&seen);
 }

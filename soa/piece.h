@@ -73,11 +73,11 @@ static inline double narc_find_front_depth(const narc_shape_header *header, cons
 
 /* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to
  * the other's position. */
-typedef struct narc_toucher {
+typedef struct narc_contact_side {
     const narc_shape_header *header;
     const narc_record *arcs;
     double scale, x, y, other_x, other_y;
-} narc_toucher;
+} narc_contact_side;
 
 /* Is a contact of a body with a piece, which has this thickness, so shallow that it is true? */
 static inline bool narc_is_shallow(const narc_shape_header *body, double scale, double thickness, double separation) {
@@ -86,6 +86,6 @@ static inline bool narc_is_shallow(const narc_shape_header *body, double scale, 
 
 /* Of two bodies, one of them a piece: is a contact with this separation one that reaches the piece? `front_only`: and no
  * deeper than the middle of the body. */
-bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation, bool front_only);
+bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, double separation, bool front_only);
 
 #endif

@@ -22,9 +22,9 @@ void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides)
         vec n = {cos(arc->start), sin(arc->start)};
         double length = u.y * n.x - u.x * n.y;
         if (count > 1 && length > LEAST_EDGE * size) {
-            const double along = (before->radius - arc->radius) / dot(u, u);
-            length = sqrt(fmax(dot(u, u) - along * along * dot(u, u), 0));
-            n = plus(times(along, u), times(length / dot(u, u), (vec){u.y, -u.x}));
+            const double rise = before->radius - arc->radius, square = dot(u, u);
+            length = sqrt(fmax(square - rise * rise, 0));
+            n = plus(times(rise / square, u), times(length / square, (vec){u.y, -u.x}));
         } else {
             length = 0;
         }
@@ -32,6 +32,21 @@ void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides)
     }
     for (size_t i = 0; i < count; i++)
         out_sides[i].has_edge = out_sides[i].length > 0 || out_sides[(i + 1) % count].length > 0;
+}
+
+/* At the point that is furthest from the origin the normal points away from the origin, so the arc's centre is on the
+ * same line: the point is the support in that direction, or in the opposite one if the arc is flatter. */
+double find_outline_reach(const narc_arc *arcs, size_t count) {
+    double reach = 0;
+    for (size_t i = 0; i < 2 * count; i++) {
+        const narc_arc *arc = &arcs[i / 2];
+        const double sign = i % 2 ? -1 : 1;
+        const bool central = arc->center_x == 0 && arc->center_y == 0;
+        narc_point p = {0, 0};
+        narc_find_support(arcs, count, central ? 1 : sign * arc->center_x, sign * arc->center_y, &p, NULL);
+        reach = fmax(reach, hypot(p.x, p.y));
+    }
+    return reach;
 }
 
 /* ---------------------------------------------------------------------------------------- as they lie */

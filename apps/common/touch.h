@@ -38,6 +38,9 @@ typedef struct touch_side {
 /* The sides of an outline: as many as arcs, in their order. */
 void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides);
 
+/* The distance of an outline's furthest point from the origin. */
+double find_outline_reach(const narc_arc *arcs, size_t count);
+
 /* A grain as it is: its outline, rotation and scale. */
 typedef struct touch_grain {
     const touch_side *sides;

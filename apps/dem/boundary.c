@@ -24,7 +24,7 @@ static void push_grain(dem *d, dem_body *b, double by) {
 void dem_set_shear(dem *d, double rate) {
     const double middle = 0.5 * (d->settings.low.y + d->settings.high.y);
     for (dem_body *b = d->bodies; b < d->bodies + d->grain_count; b++)
-        push_grain(d, b, (rate - d->settings.shear) * (b->place.y - middle));
+        push_grain(d, b, (rate - d->settings.shear) * (b->position.y - middle));
     d->settings.shear = rate;
 }
 
@@ -69,19 +69,19 @@ void dem_wrap_bodies(dem *d) {
     for (size_t k = 0; k < d->body_count; k++) {
         dem_body *b = &d->bodies[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];
-        const vec old = b->place;
+        const vec old = b->position;
         const int32_t before = b->cell_y;
         if (wall && wall->kind == DEM_PLATE)
             continue;
         if (s->periodic_y)
-            b->place.y = wrap(b->place.y, s->low.y, size.y, &b->cell_y);
+            b->position.y = wrap(b->position.y, s->low.y, size.y, &b->cell_y);
         if (s->sheared && b->cell_y != before) {
-            b->place.x -= (b->cell_y - before) * d->offset;
+            b->position.x -= (b->cell_y - before) * d->offset;
             push_grain(d, b, -(b->cell_y - before) * dem_find_drift(d));
         }
         if (s->periodic_x)
-            b->place.x = wrap(b->place.x, s->low.x, size.x, &b->cell_x);
+            b->position.x = wrap(b->position.x, s->low.x, size.x, &b->cell_x);
         if (wall)
-            wall->pivot = plus(wall->pivot, minus(b->place, old));
+            wall->pivot = plus(wall->pivot, minus(b->position, old));
     }
 }

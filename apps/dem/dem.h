@@ -7,19 +7,25 @@
  *   A step goes from positions to forces and back. narc answers which grains touch, where and how deep; all else is
  *   here, a file for each part:
  *
- *       main.c        the command line, stages, progress, signals
- *       input.c       the JSON file; input_bodies.c: its shapes, walls and grains; schema.c: tables of keys
- *       model.c       memory, shapes, bodies
- *       place.c       where grains start
- *       neighbours.c  boxes, pairs with a skin, images, history
+ *       memory.c      errors, arrays that grow
+ *       files.c       files that are read, or appear, as a whole
+ *       shapes.c      outlines, shapes
+ *       bodies.c      grains and walls, and as narc sees them
  *       boundary.c    wrapping, shear
- *       step.c        velocity Verlet, the narrow phase
- *       laws.c        forces of contacts and bodies
+ *       filling.c     where grains start
+ *       neighbours.c  boxes, pairs with a skin, images, history
  *       walls.c       motion of walls, servo control
+ *       laws.c        forces of contacts and bodies
+ *       step.c        velocity Verlet, the narrow phase
+ *       world.c       a world's beginning and end
  *       measures.c    energies, stress, counts
  *       tables.c      tables of measures, and of grains; vtk.c: files for ParaView
  *       restart.c     the state in a file, bit for bit
- *       files.c       files that are read, or appear, as a whole
+ *       schema.c      tables of keys of JSON
+ *       input_bodies.c  the input's shapes, walls and grains; input.c: all else
+ *       main.c        the command line, stages, progress, signals
+ *
+ *   A file calls those above it, and none below.
  *
  * Conventions
  *
@@ -107,8 +113,8 @@ typedef struct dem_settings {
 
 /* What a step needs comes first: memory comes in lines. */
 typedef struct dem_body {
-    vec place; /* of the centre of mass, the shape's origin */
-    vec turn;  /* the rotation, a unit vector */
+    vec position; /* of the centre of mass, the shape's origin */
+    vec turn;     /* the rotation, a unit vector */
     vec velocity;
     double spin;
     vec force; /* of contacts alone; gravity is added where velocities change */
@@ -117,13 +123,13 @@ typedef struct dem_body {
     double extent, disc;                  /* of the scaled shape; the radius of a disc, 0: it is none */
     float scale;
     uint32_t shape, material, first_part;
-    int32_t cell_x, cell_y;    /* how often it crossed the periodic border, for true displacements */
-    double reach;              /* of the scaled shape */
-    vec list_place, list_turn; /* where it was when the pairs were found */
+    int32_t cell_x, cell_y;       /* how often it crossed the periodic border, for true displacements */
+    double reach;                 /* of the scaled shape */
+    vec list_position, list_turn; /* where it was when the pairs were found */
     double mass, inertia;
 } dem_body;
 
-/* The convex parts of all bodies, in their order: what narc is asked about, with the place of their body. Parts of one
+/* The convex parts of all bodies, in their order: what narc is asked about, with the position of their body. Parts of one
  * body form no pair. A body of one outline has one, so without others part k is body k. */
 typedef struct dem_part {
     uint32_t body, outline;
@@ -150,7 +156,7 @@ typedef struct dem_wall {
     dem_wall_kind kind;
     uint32_t shape, material; /* as it begins: dem_start() makes it a body */
     double scale;
-    vec place;
+    vec position;
     double angle;
     vec normal;   /* a plate's, into the grains' half plane */
     double half;  /* of the side of its block: how far its face is from its body's place */
@@ -270,10 +276,12 @@ struct dem {
     size_t extra_count;
     uint32_t *match;
 
-    char place[256];          /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
+    char input_path[256];     /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
     char error[512];          /* what went wrong */
     void (*on_error)(dem *d); /* NULL: the program ends; it must not return */
 };
+
+/* --------------------------------------------------------------------------------------------------------- memory.c */
 
 /* Ends the program with status 2: "dem: message", one line on standard error. */
 __attribute__((format(printf, 1, 2), noreturn)) void dem_quit(const char *format, ...);
@@ -282,49 +290,58 @@ __attribute__((format(printf, 1, 2), noreturn)) void dem_quit(const char *format
 __attribute__((format(printf, 2, 3), noreturn)) void dem_fail(dem *d, const char *format, ...);
 void dem_demand(dem *d, narc_status status, const char *what, const narc_error *error); /* fails unless it is NARC_OK */
 
-/* ------------------------------------------------------------------------------------------------ model.c */
+/* Room for `needed` items of an array, NULL at first; it grows by halves. The items that there are stay. Where memory
+ * runs out the program ends. */
+void dem_grow(void *array_pointer, size_t needed, size_t size);
+void dem_release(void *array);
 
-extern const dem_settings dem_defaults;
+/* ---------------------------------------------------------------------------------------------------------- files.c */
 
-/* An empty world. dem_destroy() frees what there is, after an error too. */
-void dem_create(dem *d, dem_settings settings);
-void dem_destroy(dem *d);
+/* All bytes of a file, and a NUL behind them: to be released. */
+char *dem_read_file(const char *path, size_t *out_size);
+
+/* A file that is written under a temporary name and gets its own when it is closed. */
+typedef struct dem_file {
+    FILE *file;
+    const char *path; /* as it was given: must last as long */
+    char *target, *temporary;
+} dem_file;
+
+/* Errors tell the system's reason. */
+dem_file dem_open_file(dem *d, const char *path);
+void dem_close_file(dem *d, dem_file *file);
+
+/* --------------------------------------------------------------------------------------------------------- shapes.c */
 
 /* Adds a shape, moved so that its centroid is its origin: of one outline; of `part_count`, whose arcs, counts[i] each,
  * stand one behind the other in common coordinates. Returns its index. */
 uint32_t dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count);
 uint32_t dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count);
 
+/* --------------------------------------------------------------------------------------------------------- bodies.c */
+
 /* A grain as it is added. */
 typedef struct dem_grain {
     uint32_t shape, material;
-    vec place;
+    vec position;
     double angle, scale; /* the scale is rounded to float */
     vec velocity;
     double spin;
 } dem_grain;
 
-/* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
+/* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .position}, and of a box .shape, .scale
  * and .angle, of a plate .normal (of any length); its place is a point of its border. */
 void dem_add_grain(dem *d, dem_grain grain);
 void dem_add_wall(dem *d, dem_wall wall);
 
-/* Checks the whole, makes room. To be called once, before the first step. */
-void dem_start(dem *d);
-
-/* Some body is broken, or so far away that nothing finds it: which? */
-__attribute__((noreturn)) void dem_fail_lost(dem *d);
-
-/* Room for `needed` items of an array, NULL at first; it grows by halves. The items that there are stay. Where memory
- * runs out the program ends. */
-void dem_grow(void *array_pointer, size_t needed, size_t size);
-void dem_release(void *array);
+/* Makes walls bodies, behind all grains. */
+void dem_add_walls(dem *d);
 
 /* All parts where they are now, for narc, until the next call. */
 narc_bodies dem_make_poses(dem *d);
 
-/* The box around all grains: squares as large as they reach. */
-dem_region dem_bound_grains(const dem *d);
+/* The box around all grains: squares as large as they reach; and the places where walls start. */
+dem_region dem_bound(const dem *d, bool with_walls);
 
 /* "grain" or "wall", and its number: for messages. */
 const char *dem_name_kind(const dem *d, size_t body);
@@ -357,7 +374,22 @@ static inline vec dem_turn(vec turn, vec by) {
     return times(1.5 - 0.5 * dot(now, now), now);
 }
 
-/* ------------------------------------------------------------------------------------------------ place.c */
+/* Some body is broken, or so far away that nothing finds it: which? */
+__attribute__((noreturn)) void dem_fail_lost(dem *d);
+
+const char *dem_explain_depth(const dem *d); /* why bodies overlap too far */
+
+/* ------------------------------------------------------------------------------------------------------- boundary.c */
+
+/* Another rate of shear, from now on: all grains get the velocities that go with it. */
+void dem_set_shear(dem *d, double rate);
+
+void dem_wrap_bodies(dem *d);
+void dem_shear_cell(dem *d);                            /* the way of a step */
+vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
+double dem_find_drift(const dem *d);                    /* the speed of the cell above */
+
+/* ---------------------------------------------------------------------------------------------------------- filling.c */
 
 enum { DEM_MAX_CHOICES = 64 };
 
@@ -391,22 +423,22 @@ double dem_draw_size(const dem_sizes *sizes, uint64_t *random);
 void dem_fill_randomly(dem *d, const dem_filling *filling, uint64_t *random);
 void dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
 
-/* ------------------------------------------------------------------------------- neighbours.c, boundary.c */
+/* ----------------------------------------------------------------------------------------------------- neighbours.c */
 
 void dem_renew_lists(dem *d);
 
-/* Another rate of shear, from now on: all grains get the velocities that go with it. */
-void dem_set_shear(dem *d, double rate);
+/* ---------------------------------------------------------------------------------------------------------- walls.c */
 
-void dem_wrap_bodies(dem *d);
-void dem_shear_cell(dem *d);                            /* the way of a step */
-vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
-double dem_find_drift(const dem *d);                    /* the speed of the cell above */
+void dem_steer_walls(dem *d);
+void dem_move_walls(dem *d);
 
-/* ------------------------------------------------------------------------------------------ step.c, laws.c */
+/* Of walls and of shear in half a step, with the forces as they are. */
+void dem_count_work(dem *d);
 
-void dem_step(dem *d);
-void dem_find_first_forces(dem *d); /* of where bodies begin */
+/* The force of the grains on a wall. */
+vec dem_wall_force(const dem *d, size_t wall);
+
+/* ----------------------------------------------------------------------------------------------------------- laws.c */
 
 /* The damping ratio that gives a restitution, above 0 and at most 1. */
 double dem_damping_ratio(dem_law law, double restitution);
@@ -419,20 +451,24 @@ void dem_set_law(dem *d, uint32_t a, uint32_t b, dem_contact_law law);
 double dem_find_shortest_contact(const dem *d);
 
 void dem_apply_laws(dem *d);
-const char *dem_explain_depth(const dem *d); /* why bodies overlap too far, for a message */
 
-/* ------------------------------------------------------------------------------------------------ walls.c */
+/* ----------------------------------------------------------------------------------------------------------- step.c */
 
-void dem_steer_walls(dem *d);
-void dem_move_walls(dem *d);
+void dem_step(dem *d);
+void dem_find_first_forces(dem *d); /* of where bodies begin */
 
-/* Of walls and of shear in half a step, with the forces as they are. */
-void dem_count_work(dem *d);
+/* ---------------------------------------------------------------------------------------------------------- world.c */
 
-/* The force of the grains on a wall. */
-vec dem_wall_force(const dem *d, size_t wall);
+extern const dem_settings dem_defaults;
 
-/* ------------------------------------------------------------------------------------------------ measures.c */
+/* An empty world. dem_destroy() frees what there is, after an error too. */
+void dem_create(dem *d, dem_settings settings);
+void dem_destroy(dem *d);
+
+/* Checks the whole, makes room. To be called once, before the first step. */
+void dem_start(dem *d);
+
+/* ------------------------------------------------------------------------------------------------------- measures.c */
 
 /* Kinetic + potential + elastic + damping + friction - walls stays what it was. */
 typedef struct dem_energies {
@@ -478,22 +514,6 @@ dem_load *dem_find_loads(const dem *d);
 uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
 uint64_t dem_hash(const dem *d);
 
-/* ------------------------------------------------------------------------------------------------ files.c */
-
-/* All bytes of a file, and a NUL behind them: to be released. */
-char *dem_read_file(const char *path, size_t *out_size);
-
-/* A file that is written under a temporary name and gets its own when it is closed. */
-typedef struct dem_file {
-    FILE *file;
-    const char *path; /* as it was given: must last as long */
-    char *target, *temporary;
-} dem_file;
-
-/* Errors tell the system's reason. */
-dem_file dem_open_file(dem *d, const char *path);
-void dem_close_file(dem *d, dem_file *file);
-
 /* ---------------------------------------------------------------------------------------- tables.c, vtk.c */
 
 /* The table of measures, a line for each time, which grows while the run goes on. A new one; or, if the position is
@@ -513,17 +533,17 @@ void dem_write_vtk(dem *d, const char *stem, uint64_t number);
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
 /* What a run is beside the state: kept in a restart file, so that it goes on where it was. */
-typedef struct dem_place {
+typedef struct dem_progress {
     uint64_t input;        /* hash of what the input says of bodies, laws and boundaries */
     uint64_t stage;        /* index */
     uint64_t stage_step;   /* steps done in it */
     uint64_t csv_position; /* bytes */
     uint64_t frame;        /* number of the next frame */
-} dem_place;
+} dem_progress;
 
-void dem_write_restart(dem *d, const dem_place *place, const char *path);
+void dem_write_restart(dem *d, const dem_progress *progress, const char *path);
 
 /* Into a world with the same input, after dem_start(). */
-void dem_read_restart(dem *d, dem_place *place, const char *path);
+void dem_read_restart(dem *d, dem_progress *progress, const char *path);
 
 #endif

@@ -3,14 +3,12 @@
 
   python3 grains.py draw FRAME.vtk PICTURE [--color FIELD|none] [--top VALUE] [--no-forces]
                     [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES]
-  python3 grains.py strain BEFORE AFTER PICTURE [--top VALUE]    shear strain between two frames of grains: bands
   python3 grains.py contacts CONTACTS ...        fabric, anisotropy, distribution of forces
-  python3 grains.py average TABLE [--from TIME]  means of the columns, and how well they are known
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
 
-TABLE is apps/dem's table of measures or a log of LAMMPS, GRAINS apps/dem's table of grains or a dump of LAMMPS, CONTACTS
-apps/dem's .vtk or a dump of LAMMPS' compute narc/contact with the ID contacts; of a dump the last frame counts. A
-picture has the kind that its name ends in: .png, .svg, .pdf."""
+GRAINS is apps/dem's table of grains or a dump of LAMMPS, CONTACTS apps/dem's .vtk or a dump of LAMMPS' compute
+narc/contact with the ID contacts; of a dump the last frame counts. A picture has the kind that its name ends in: .png,
+.svg, .pdf."""
 import argparse
 import math
 
@@ -72,22 +70,12 @@ def make_columns(head, rows):
 
 
 def read_table(path):
-    """A table of apps/dem; the tables of a log of LAMMPS, one after the other; the last frame of a dump."""
+    """A table of apps/dem; the last frame of a dump of LAMMPS."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
     if lines[0].startswith("ITEM:"):
         start = max(i for i, line in enumerate(lines) if line.startswith(("ITEM: ATOMS", "ITEM: ENTRIES")))
         return make_columns(lines[start].split()[2:], [line.split() for line in lines[start + 1 :] if line])
-    if lines[0].startswith("LAMMPS"):
-        head, rows, inside = [], [], False
-        for words in map(str.split, lines):
-            if words[:1] == ["Step"]:
-                head, inside = words, True
-            elif words[:1] == ["Loop"]:
-                inside = False
-            elif inside and len(words) == len(head):
-                rows.append(words)
-        return make_columns(head, rows)
     return make_columns(lines[0].split(","), [line.split(",") for line in lines[1:] if line])
 
 
@@ -102,30 +90,11 @@ def find_fabric(normals):
     return fabric, 2 * (values[1] - values[0]), math.degrees(math.atan2(vectors[1, 1], vectors[0, 1])) % 180
 
 
-def find_bearing(count, ends, least):
-    """Contacts of each of so many grains, by pairs of indices (below 0: a wall), without rattlers: who has fewer than
-    `least` is taken away until all are held."""
-    held = np.ones(count + 1, bool)  # the last one is for walls
-    while True:
-        both = ends[held[ends].all(1)]
-        number = np.bincount(both[both >= 0], minlength=count)
-        fall = held[:-1] & (number < least)
-        if not fall.any():
-            return np.where(held[:-1], number, 0)
-        held[:-1] &= ~fall
-
-
 def find_force_distribution(forces, bins=12, highest=4):
     """The density of forces over their mean, in bins; the last one's beginning is `highest`."""
     edges = np.linspace(0, highest, bins + 1)
     counts, _ = np.histogram(forces / forces.mean(), edges)
     return 0.5 * (edges[1:] + edges[:-1]), counts / (len(forces) * np.diff(edges))
-
-
-def average(values, blocks=8):
-    """The mean, and its standard error by the means of blocks, which are longer than what is correlated."""
-    means = [block.mean() for block in np.array_split(values, min(blocks, len(values)))]
-    return values.mean(), np.std(means, ddof=1) / math.sqrt(len(means)) if len(means) > 1 else math.nan
 
 
 def find_repose(x, y, radius, half):
@@ -139,44 +108,6 @@ def find_repose(x, y, radius, half):
         flank = np.array([p for p in flank if 0.15 * half <= p[0] <= 0.85 * half])
         angles.append(math.degrees(math.atan(-np.polyfit(flank[:, 0], flank[:, 1], 1)[0])) if len(flank) > 2 else 0.0)
     return angles
-
-
-def find_packing_fraction(frame, region, rows=800):
-    """The share of a region, low x, low y, high x, high y, that grains cover, by a raster of so many rows."""
-    low_x, low_y, high_x, high_y = region
-    step = (high_y - low_y) / rows
-    covered = np.zeros((rows, round((high_x - low_x) / step)), bool)
-    for cell, wall in zip(frame["cells"], frame["fields"]["wall"]):
-        corners = (frame["points"][cell] - (low_x, low_y)) / step
-        (left, down), (right, up) = np.maximum(corners.min(0), 0).astype(int), corners.max(0).astype(int) + 1
-        x, y = np.meshgrid(np.arange(left, min(right, covered.shape[1])) + 0.5, np.arange(down, min(up, rows)) + 0.5)
-        if wall or x.size == 0:
-            continue
-        inside = np.ones(x.shape, bool)
-        for a, b in zip(corners, np.roll(corners, -1, 0)):  # a part is convex
-            inside &= (b[0] - a[0]) * (y - a[1]) >= (b[1] - a[1]) * (x - a[0])
-        covered[down:up, left:right] |= inside
-    return covered.mean()
-
-
-def read_mesh(path):
-    """The polygons of a form that fix narc/shapes of LAMMPS has drawn, as lists of corners."""
-    with open(path, encoding="utf-8") as file:
-        lines = [line.split() for line in file]
-    corners = np.array([line[1:3] for line in lines if line[0] == "v"], float)
-    return [corners[np.array(line[1:], int) - 1] for line in lines if line[0] == "f"]
-
-
-def make_frame(table, meshes):
-    """Grains of a dump of LAMMPS as read_vtk() has them, by the mesh of each."""
-    points, cells, count = [], [], 0
-    for x, y, radius, angle, mesh in zip(table["x"], table["y"], table["radius"], table["c_picture[1]"], meshes):
-        turn = radius * np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
-        for polygon in mesh:
-            points.append(polygon @ turn + (x, y))
-            cells.append(count + np.arange(len(polygon)))
-            count += len(polygon)
-    return {"points": np.concatenate(points), "cells": cells, "fields": {"wall": np.zeros(len(cells))}}
 
 
 def load_grains(path):
@@ -245,50 +176,22 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
     pyplot.close(figure)
 
 
-def find_strain(before, after, triangles):
-    """Of each triangle of points how much longer it has become one way than across: the logarithm of the ratio of its
-    principal stretches."""
-    sides = [points[triangles[:, 1:]] - points[triangles[:, :1]] for points in (before, after)]
-    stretches = np.linalg.svd(np.linalg.solve(*sides), compute_uv=False)
-    return np.log(stretches[:, 0] / stretches[:, 1])
-
-
-def draw_strain(before, after, out, top=None, width=6, dpi=110):
-    """Shear strain between grains' centres, a mean around each grain. Triangles along the rim that are much longer
-    than others are left out."""
-    pyplot = open_plots()
-    from matplotlib.tri import Triangulation
-
-    tables = [read_table(path) for path in (before, after)]
-    places = [np.transpose([table["x"], table["y"]]) for table in tables]
-    triangles = Triangulation(*places[0].T).triangles
-    sides = np.linalg.norm(places[0][triangles] - places[0][np.roll(triangles, 1, axis=1)], axis=2).max(axis=1)
-    triangles = triangles[sides < 3 * np.median(sides)]
-    strain, count = find_strain(*places, triangles), len(places[0])
-    sums, around = [np.bincount(triangles.ravel(), np.repeat(w, 3), count) for w in (strain, np.ones(len(strain)))]
-    means = sums / np.maximum(around, 1)
-    (low_x, low_y), (high_x, high_y) = places[1].min(0), places[1].max(0)
-    figure = pyplot.figure(figsize=(width, width * (high_y - low_y) / (high_x - low_x)))
-    axes = figure.add_axes([0, 0, 1, 1], xlim=(low_x, high_x), ylim=(low_y, high_y), aspect="equal")
-    axes.axis("off")
-    axes.tripcolor(Triangulation(*places[1].T, triangles), means, shading="gouraud", cmap="YlOrRd",
-                   clim=(0, top or np.quantile(means, 0.98)))
-    figure.savefig(out, dpi=dpi)
-    pyplot.close(figure)
-
-
 # ----------------------------------------------------------------------------------------------- the command
+
+
+def read_contacts(path):
+    """Normals, forces along them, and the share of friction that is mobilised, which LAMMPS does not tell."""
+    if path.endswith(".vtk"):
+        fields = read_vtk(path)["fields"]
+        return fields["normal"][:, :2], fields["normal_force"], fields["mobilised_friction"]
+    table = read_table(path)
+    normals, forces = [np.transpose([table["c_contacts[%d]" % (k + i)] for i in (0, 1)]) for k in (5, 7)]
+    return normals, np.sum(normals * forces, axis=1), None
 
 
 def print_contacts(paths):
     for path in paths:
-        if path.endswith(".vtk"):
-            fields = read_vtk(path)["fields"]
-            normals, forces, mobilised = fields["normal"][:, :2], fields["normal_force"], fields["mobilised_friction"]
-        else:
-            table = read_table(path)
-            normals, force = [np.transpose([table["c_contacts[%d]" % (k + i)] for i in (0, 1)]) for k in (5, 7)]
-            forces, mobilised = np.sum(normals * force, axis=1), None
+        normals, forces, mobilised = read_contacts(path)
         fabric, anisotropy, principal = find_fabric(normals)
         print("%s: %d contacts" % (path, len(normals)))
         print("fabric %.4f %.4f %.4f, anisotropy %.4f along %.1f degrees"
@@ -297,13 +200,6 @@ def print_contacts(paths):
             print("mobilised friction %.4f" % mobilised.mean())
         for force, density in zip(*find_force_distribution(forces)):
             print("force / mean %.3f density %.4f" % (force, density))
-
-
-def print_averages(path, start):
-    table = read_table(path)
-    time = table["time"] if "time" in table else table["Step"]
-    for name, values in table.items():
-        print("%s %.6g +- %.2g" % ((name,) + average(values[time >= start])))
 
 
 def main():
@@ -317,15 +213,7 @@ def main():
     one.add_argument("--region", type=float, nargs=4)
     one.add_argument("--width", type=float, default=8)
     one.add_argument("--no-forces", dest="forces", action="store_false")
-    one = commands.add_parser("strain")
-    one.add_argument("before")
-    one.add_argument("after")
-    one.add_argument("out")
-    one.add_argument("--top", type=float)
     commands.add_parser("contacts").add_argument("paths", nargs="+")
-    one = commands.add_parser("average")
-    one.add_argument("table")
-    one.add_argument("--from", dest="start", type=float, default=-math.inf)
     one = commands.add_parser("repose")
     one.add_argument("grains")
     one.add_argument("--half", type=float, required=True)
@@ -333,12 +221,8 @@ def main():
     command = options.pop("command")
     if command == "draw":
         draw(**options)
-    elif command == "strain":
-        draw_strain(**options)
     elif command == "contacts":
         print_contacts(options["paths"])
-    elif command == "average":
-        print_averages(options["table"], options["start"])
     else:
         print("%.1f %.1f degrees" % tuple(find_repose(*load_grains(options["grains"]), options["half"])))
 

@@ -9,22 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-void dem_go_to(dem *d, const json_value *at) {
-    snprintf(d->place, sizeof d->place, "%.100s: %s%s", at->file, at->place, at->place[0] ? ": " : "");
-}
-
-void *dem_allocate(size_t count, size_t size) {
-    char *memory = NULL;
-    dem_grow(&memory, count, size);
-    memset(memory, 0, count * size);
-    return memory;
-}
-
 /* ------------------------------------------------------------------------------------------------ materials, laws */
-
-json_names dem_materials(const dem *d) {
-    return (json_names){d->materials, d->material_count, sizeof *d->materials, "is not a material"};
-}
 
 static void read_materials(const json_value *list, dem *d) {
     const char *no = d->settings.law == DEM_HERTZ ? NULL : "is of the Hertz law: the linear law's stiffness is kn";
@@ -280,7 +265,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
         read_output(&output, d, input);
     dem_go_to(d, &root);
     dem_start(d);
-    d->place[0] = 0;
+    d->input_path[0] = 0;
     input->hash = hash_input(&root, d);
     cJSON_Delete((cJSON *)root.item);
 }

@@ -44,13 +44,13 @@ typedef struct dem_input {
     uint64_t hash; /* of all but stages and output */
 } dem_input;
 
-/* Reads the file, makes the world and starts it. Errors end the program: "dem: file: place: problem 'value'". */
+/* Reads the file, makes the world and starts it. Errors end the program: "dem: file: path: problem 'value'". */
 void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_input);
 void dem_free_input(dem_input *input);
 
 void dem_enter_stage(dem *d, const dem_stage *stage);
 
-/* What input_bodies.c reads of it: shapes from the file, which `name` names, then walls and grains. */
+/* input_bodies.c: shapes from the file, which `name` names, then walls and grains. */
 void dem_read_shapes(const json_value *name, const char *path, dem *d);
 void dem_read_walls(const json_value *list, dem *d);
 void dem_read_grains(const json_value *list, dem *d, uint64_t *random);

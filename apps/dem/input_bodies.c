@@ -9,6 +9,21 @@
 
 #include "input.h"
 
+void dem_go_to(dem *d, const json_value *at) {
+    snprintf(d->input_path, sizeof d->input_path, "%.100s: %s%s", at->file, at->path, at->path[0] ? ": " : "");
+}
+
+void *dem_allocate(size_t count, size_t size) {
+    char *memory = NULL;
+    dem_grow(&memory, count, size);
+    memset(memory, 0, count * size);
+    return memory;
+}
+
+json_names dem_materials(const dem *d) {
+    return (json_names){d->materials, d->material_count, sizeof *d->materials, "is not a material"};
+}
+
 /* ------------------------------------------------------------------------------------------------ shapes */
 
 /* NAME/1, NAME/2 ... are the parts of NAME, where their origins tell, if there is no shape of that name. */
@@ -159,7 +174,7 @@ static void read_wall(const json_value *item, dem *d) {
     double size = 1, width, height, radius = 0;
     if (plate + box + shape != 1 && cJSON_IsObject(item->item))
         json_fail(item, "is not one of plate, box and shape");
-    json_key of_plate[] = {{"point", MUST | PAIR, &wall.place}, {"normal", MUST | PAIR, &wall.normal}, {NULL}};
+    json_key of_plate[] = {{"point", MUST | PAIR, &wall.position}, {"normal", MUST | PAIR, &wall.normal}, {NULL}};
     json_key of_box[] = {{"width", MUST | POSITIVE, &width},
                          {"height", MUST | POSITIVE, &height},
                          {"radius", NUMBER, &radius, 0, 1e300},
@@ -170,7 +185,7 @@ static void read_wall(const json_value *item, dem *d) {
                                  {"box", OBJECT, of_box},
                                  {"shape", ONE_OF, &wall.shape, .names = &shapes},
                                  {"size", MUST | POSITIVE, &size, .no = no_size},
-                                 {"at", MUST | PAIR, &wall.place, .no = no},
+                                 {"at", MUST | PAIR, &wall.position, .no = no},
                                  {"angle", NUMBER, &wall.angle, -1e6, 1e6, .no = no},
                                  {"pivot", PAIR, &wall.pivot, .no = no},
                                  {"velocity", ANY},
@@ -194,7 +209,7 @@ static void read_wall(const json_value *item, dem *d) {
     if (shape)
         wall.scale = size / d->shapes[wall.shape].extent;
     if (!plate && !json_has(item, "pivot"))
-        wall.pivot = wall.place;
+        wall.pivot = wall.position;
     dem_go_to(d, item);
     dem_add_wall(d, wall);
 }
@@ -286,7 +301,7 @@ static void read_grain(const json_value *item, dem *d) {
     double size;
     json_read(item, (json_key[]){{"shape", MUST | ONE_OF, &grain.shape, .names = &shapes},
                                  {"material", MUST | ONE_OF, &grain.material, .names = &materials},
-                                 {"at", MUST | PAIR, &grain.place},
+                                 {"at", MUST | PAIR, &grain.position},
                                  {"size", MUST | POSITIVE, &size},
                                  {"angle", NUMBER, &grain.angle, -1e6, 1e6},
                                  {"velocity", PAIR, &grain.velocity},

@@ -112,7 +112,7 @@ INLINE vec find_way(const dem *d, const dem_pair *pair, const dem_body *a, const
         const vec n = d->walls[b - d->bodies - (ptrdiff_t)d->grain_count].normal; /* 0 of a box */
         shift = minus(shift, times(dot(shift, n), n));
     }
-    return plus(minus(b->place, a->place), shift);
+    return plus(minus(b->position, a->position), shift);
 }
 
 /* The normal and the point of two ends are their means, by what each bears. */
@@ -286,10 +286,6 @@ INLINE dem_block apply_laws(dem *d, size_t first, size_t end, bool hertz, bool r
     for (size_t k = first; k < end; k++)
         block.count += apply_law(d, &d->found[k], &d->contacts[first + block.count], hertz, rolls, &block);
     return block;
-}
-
-const char *dem_explain_depth(const dem *d) {
-    return d->step == 0 ? "They are placed so: the run has not begun" : "Use a shorter time step, or stiffer contacts";
 }
 
 __attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {

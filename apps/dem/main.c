@@ -40,7 +40,7 @@ static void watch_signals(void) {
 typedef struct run {
     dem world;
     dem_input input;
-    dem_place place;
+    dem_progress progress;
     FILE *csv;
     uint64_t total_steps, first_step;
     double began, shown; /* seconds */
@@ -50,7 +50,7 @@ typedef struct run {
 static void write_restart(run *r) {
     const dem_output *o = &r->input.output;
     if (o->restart[0])
-        dem_write_restart(&r->world, &r->place, o->restart);
+        dem_write_restart(&r->world, &r->progress, o->restart);
 }
 
 static void write_frame(run *r) {
@@ -62,15 +62,15 @@ static void write_frame(run *r) {
         dem_measure(d, &o->region, &measures);
         if (!dem_write_csv(r->csv, d, &measures))
             dem_quit("%s: it cannot be written: %s", o->csv, strerror(errno));
-        r->place.csv_position = (uint64_t)ftell(r->csv);
+        r->progress.csv_position = (uint64_t)ftell(r->csv);
     }
     if (o->vtk[0])
-        dem_write_vtk(d, o->vtk, r->place.frame);
+        dem_write_vtk(d, o->vtk, r->progress.frame);
     if (o->grains[0]) { /* "out/pile.csv" and 12 make "out/pile-000012.csv" */
-        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->place.frame);
+        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->progress.frame);
         dem_write_grains(d, name);
     }
-    r->place.frame++;
+    r->progress.frame++;
 }
 
 /* Twice a second on a terminal: how far it is, and how long it will take. */
@@ -101,41 +101,41 @@ static _Noreturn void stop(run *r) {
 static void run_stage(run *r, const dem_stage *stage) {
     const dem_output *o = &r->input.output;
     dem *d = &r->world;
-    if (r->place.stage_step == 0)
+    if (r->progress.stage_step == 0)
         dem_enter_stage(d, stage);
-    while (r->place.stage_step < stage->steps) {
+    while (r->progress.stage_step < stage->steps) {
         if (caught)
             stop(r);
         dem_step(d);
-        r->place.stage_step++;
+        r->progress.stage_step++;
         if (d->step % o->every == 0)
             write_frame(r);
         if (d->step % o->restart_every == 0)
             write_restart(r);
         show_run(r, stage);
     }
-    r->place.stage++;
-    r->place.stage_step = 0;
+    r->progress.stage++;
+    r->progress.stage_step = 0;
 }
 
 static void begin(run *r, const char *restart) {
     const dem_output *o = &r->input.output;
-    r->place.input = r->input.hash;
+    r->progress.input = r->input.hash;
     if (restart)
-        dem_read_restart(&r->world, &r->place, restart);
-    const uint64_t stage = r->place.stage;
+        dem_read_restart(&r->world, &r->progress, restart);
+    const uint64_t stage = r->progress.stage;
     if (restart && stage > r->input.stage_count)
         dem_quit("%s: it is at stage %" PRIu64 ", the input has %zu", restart, stage, r->input.stage_count);
-    if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
+    if (restart && stage < r->input.stage_count && r->progress.stage_step > r->input.stages[stage].steps)
         dem_quit("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
-                 r->place.stage_step, stage, r->input.stages[stage].steps);
+                 r->progress.stage_step, stage, r->input.stages[stage].steps);
     if (o->csv[0])
-        r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position);
+        r->csv = dem_open_csv(&r->world, o->csv, &r->progress.csv_position);
     if (!restart)
         write_frame(r);
     r->first_step = r->total_steps = r->world.step;
-    for (size_t i = (size_t)r->place.stage; i < r->input.stage_count; i++)
-        r->total_steps += r->input.stages[i].steps - (i == r->place.stage ? r->place.stage_step : 0);
+    for (size_t i = (size_t)r->progress.stage; i < r->input.stage_count; i++)
+        r->total_steps += r->input.stages[i].steps - (i == r->progress.stage ? r->progress.stage_step : 0);
     r->terminal = isatty(STDERR_FILENO);
     r->began = r->shown = find_seconds();
 }
@@ -197,8 +197,8 @@ int main(int argc, char **argv) {
                 argv[optind], time_step, shortest);
     watch_signals(); /* before that a signal ends the program at once: a filling may take long */
     begin(r, restart);
-    while (r->place.stage < r->input.stage_count)
-        run_stage(r, &r->input.stages[r->place.stage]);
+    while (r->progress.stage < r->input.stage_count)
+        run_stage(r, &r->input.stages[r->progress.stage]);
     write_restart(r);
     if (r->csv && fclose(r->csv) != 0)
         dem_quit("%s: it cannot be written", r->input.output.csv);

@@ -21,7 +21,7 @@ static dem_energies measure_energies(const dem *d, double *out_fastest) {
         const vec cells = {d->settings.periodic_x ? b->cell_x * size.x : 0,
                            d->settings.periodic_y ? b->cell_y * size.y : 0};
         e.kinetic += 0.5 * (b->mass * speed + b->inertia * b->spin * b->spin);
-        e.potential -= b->mass * dot(d->settings.gravity, plus(b->place, cells)); /* as if there were no border */
+        e.potential -= b->mass * dot(d->settings.gravity, plus(b->position, cells)); /* as if there were no border */
         fastest = fmax(fastest, speed);
     }
     for (size_t w = 0; w < d->wall_count; w++)
@@ -47,7 +47,7 @@ static bool is_inside(const dem *d, const dem_region *r, vec point) {
 /* The area that stresses refer to: the region's, else the periodic cell's, else that of the box around all grains'
  * centres, a reach larger. */
 static double find_area(const dem *d, const dem_region *r) {
-    const dem_region all = dem_bound_grains(d);
+    const dem_region all = dem_bound(d, false);
     const vec given = minus(r->high, r->low), cell = dem_cell_size(d), box = minus(all.high, all.low);
     if (r->given)
         return given.x * given.y;
@@ -72,8 +72,8 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
         m.deepest = fmax(m.deepest, c->depth / (is_wall ? a->extent : fmin(a->extent, b->extent)));
         /* From the centre of A to that of B; of a wall, to the contact. */
         const vec shift = dem_find_shift(d, pair);
-        if (is_inside(d, r, plus(a->place, c->point)))
-            add_stress(&m.stress, c->on.force, is_wall ? c->point : plus(minus(b->place, a->place), shift));
+        if (is_inside(d, r, plus(a->position, c->point)))
+            add_stress(&m.stress, c->on.force, is_wall ? c->point : plus(minus(b->position, a->position), shift));
     }
     const double volume = find_area(d, r) * d->settings.thickness;
     m.coordination = ends / (double)d->grain_count;
@@ -125,7 +125,7 @@ dem_load *dem_find_loads(const dem *d) {
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
         const vec shift = dem_find_shift(d, pair);
         add_load(d, loads, a, times(-1, c->on.force), c->point);
-        add_load(d, loads, b, c->on.force, plus(c->point, minus(minus(a->place, b->place), shift)));
+        add_load(d, loads, b, c->on.force, plus(c->point, minus(minus(a->position, b->position), shift)));
     }
     find_bearing(d, loads);
     return loads;

@@ -116,7 +116,7 @@ static void add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *pl
     const vec n = plate->normal;
     for (uint32_t part = 0; part < d->bodies[d->grain_count].first_part; part++) { /* those of grains */
         const dem_body *b = &d->bodies[d->parts[part].body];
-        const vec way = minus(b->place, block->place);
+        const vec way = minus(b->position, block->position);
         const double height = dot(way, n) - plate->half, along = cross(n, way);
         const dem_pair pair = {part, block->first_part, (float)(-n.y * along), (float)(n.x * along), 0};
         if (height < -plate->half)
@@ -228,7 +228,7 @@ void dem_renew_lists(dem *d) {
     d->list = d->other_list;
     d->other_list = last;
     for (size_t k = 0; k < d->body_count; k++) { /* from where bodies move */
-        d->bodies[k].list_place = d->bodies[k].place;
+        d->bodies[k].list_position = d->bodies[k].position;
         d->bodies[k].list_turn = d->bodies[k].turn;
     }
     d->list_builds++;

@@ -3,7 +3,7 @@
  * restart.c - the state in a binary file, from which a run goes on bit for bit.
  *
  *     "narc-dem" | version | byte order mark | size of what follows the header | its checksum | input hash
- *     counts, sums, place in the run, laws
+ *     counts, sums, progress of the run, laws
  *     walls, bodies, the pair list with its hints and histories, the contacts with their forces
  *
  * Shapes, materials and settings are not there: the input has them, and the input's hash says that it is the same. What
@@ -70,8 +70,8 @@ static void pass_body(stream *s, dem_body *b) {
     *b = s->ok ? now : *b;
 }
 
-static void pass_all(stream *s, dem *d, dem_place *place) {
-    PASS(*place);
+static void pass_all(stream *s, dem *d, dem_progress *progress) {
+    PASS(*progress);
     PASS(d->step);
     PASS(d->time);
     PASS(d->list_builds);
@@ -92,14 +92,14 @@ static void pass_all(stream *s, dem *d, dem_place *place) {
     PASS_ALL(d->contacts, d->contact_count); /* a run that has no more steps is asked for them */
 }
 
-void dem_write_restart(dem *d, const dem_place *place, const char *path) {
+void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
     counts n = {d->body_count, d->wall_count, d->list.count, d->contact_count, d->extra_count};
-    dem_place where = *place;
-    header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = place->input};
+    dem_progress where = *progress;
+    header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = progress->input};
     dem_file file = dem_open_file(d, path);
     stream out = {.file = file.file, .checksum = DEM_HASH_START, .ok = true};
     memcpy(head.magic, MAGIC, sizeof head.magic);
-    fwrite(&head, 1, sizeof head, file.file); /* its place */
+    fwrite(&head, 1, sizeof head, file.file); /* room for it */
     pass(&out, &n, sizeof n);
     pass_all(&out, d, &where);
     head.size = out.used;
@@ -142,10 +142,10 @@ static bool check_indices(const dem *d) {
     return ok;
 }
 
-void dem_read_restart(dem *d, dem_place *place, const char *path) {
+void dem_read_restart(dem *d, dem_progress *progress, const char *path) {
     size_t size;
     char *bytes = dem_read_file(path, &size), problem[128] = "its bodies do not fit the input";
-    bool ok = check_header(bytes, size, place->input, problem, sizeof problem);
+    bool ok = check_header(bytes, size, progress->input, problem, sizeof problem);
     if (ok) {
         stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
         counts n = {0};
@@ -158,7 +158,7 @@ void dem_read_restart(dem *d, dem_place *place, const char *path) {
         dem_grow(&d->list.pairs, d->list.count, sizeof *d->list.pairs);
         dem_grow(&d->list.memory, d->list.count, sizeof *d->list.memory);
         dem_grow(&d->contacts, d->contact_count, sizeof *d->contacts);
-        pass_all(&in, d, place);
+        pass_all(&in, d, progress);
         ok = ok && in.ok && in.used == in.size && check_indices(d);
     }
     dem_release(bytes);

@@ -30,18 +30,18 @@ json_value json_read_file(const char *path) {
 }
 
 void json_fail(const json_value *value, const char *problem) {
-    const char *colon = value->place[0] ? ": " : "", *text = cJSON_PrintUnformatted(value->item);
+    const char *colon = value->path[0] ? ": " : "", *text = cJSON_PrintUnformatted(value->item);
     if (text)
-        dem_quit("%s: %s%s%s '%.*s%s'", value->file, value->place, colon, problem, LONGEST, text,
+        dem_quit("%s: %s%s%s '%.*s%s'", value->file, value->path, colon, problem, LONGEST, text,
                  strlen(text) > LONGEST ? "..." : "");
-    dem_quit("%s: %s%s%s", value->file, value->place, colon, problem);
+    dem_quit("%s: %s%s%s", value->file, value->path, colon, problem);
 }
 
 /* ------------------------------------------------------------------------------------------------ members, items */
 
 static json_value name_member(const json_value *object, const char *key, const cJSON *item) {
     json_value member = {.file = object->file, .item = item};
-    snprintf(member.place, sizeof member.place, "%.80s%s%.36s", object->place, object->place[0] ? "." : "", key);
+    snprintf(member.path, sizeof member.path, "%.80s%s%.36s", object->path, object->path[0] ? "." : "", key);
     return member;
 }
 
@@ -64,7 +64,7 @@ bool json_next(const json_value *list, json_value *item) {
     if (next && next->string)
         *item = name_member(list, next->string, next);
     else
-        snprintf(item->place, sizeof item->place, "%.80s[%zu]", list->place, index);
+        snprintf(item->path, sizeof item->path, "%.80s[%zu]", list->path, index);
     item->index = index;
     return next != NULL;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * schema.h - what the user gives, checked: objects of a JSON file by tables of their keys.
- * Whatever is wrong ends the program with a message that names file, place and value:
+ * Whatever is wrong ends the program with a message that names file, path and value:
  * "dem: pile.json: stages[1].duration: is not above 0 '-1'".
  */
 #ifndef DEM_SCHEMA_H
@@ -17,7 +17,7 @@
 typedef struct json_value {
     const char *file;
     const cJSON *item; /* NULL: not there */
-    char place[120];   /* "stages[1].duration"; empty: the file's value */
+    char path[120];    /* "stages[1].duration"; empty: the file's value */
     size_t index;      /* of an item of a list */
 } json_value;
 
@@ -65,7 +65,7 @@ void json_read(const json_value *object, const json_key *keys);
 void json_read_some(const json_value *object, const json_key *keys); /* whatever else there is */
 void json_take(const json_value *value, json_key key);               /* of one value */
 
-/* "dem: file: place: problem 'value'"; of a member, if it is there. */
+/* "dem: file: path: problem 'value'"; of a member, if it is there. */
 _Noreturn void json_fail(const json_value *value, const char *problem);
 void json_refuse(const json_value *object, const char *key, const char *problem);
 

@@ -16,7 +16,7 @@
  * times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below the
  * limit so has not moved. A NaN has moved. */
 static inline bool has_moved(const dem_body *b, double limit) {
-    const vec way = minus(b->place, b->list_place), turn = minus(b->turn, b->list_turn);
+    const vec way = minus(b->position, b->list_position), turn = minus(b->turn, b->list_turn);
     const double p = dot(way, way), q = b->reach * b->reach * dot(turn, turn);
     return !(2 * (p + q) <= limit * limit) && !(sqrt(p) + sqrt(q) <= limit);
 }
@@ -36,7 +36,7 @@ static bool begin_step(dem *d) {
     for (size_t k = 0; k < d->grain_count; k++) {
         dem_body *b = &d->bodies[k];
         kick(b, 0.5 * dt, d->settings.gravity);
-        b->place = plus(b->place, times(dt, b->velocity));
+        b->position = plus(b->position, times(dt, b->velocity));
         b->turn = dem_turn(b->turn, dem_find_turn(dt * b->spin));
         moved |= has_moved(b, limit);
     }

@@ -59,7 +59,7 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
             d->time, e->kinetic, e->potential, e->elastic, e->damping, e->friction, e->walls, s->xx, s->xy, s->yx,
             s->yy, m->contacts, m->coordination, m->deepest, m->fastest);
     for (const dem_body *b = d->bodies + d->grain_count; b < d->bodies + d->body_count; b++)
-        fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", b->place.x, b->place.y, b->force.x, b->force.y);
+        fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", b->position.x, b->position.y, b->force.x, b->force.y);
     fprintf(csv, "\n");
     return fflush(csv) == 0 && !ferror(csv);
 }
@@ -73,8 +73,9 @@ void dem_write_grains(dem *d, const char *path) {
         const dem_load *l = &loads[k];
         const double angle = atan2(b->turn.y, b->turn.x), pressure = 0.5 * (l->stress.xx + l->stress.yy);
         fprintf(out.file, "%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u,%.9g,%.9g,%d,%d\n",
-                d->shapes[b->shape].name, b->place.x, b->place.y, angle, (double)b->scale, b->extent, b->velocity.x,
-                b->velocity.y, b->spin, l->contacts, l->bearing, pressure, b->mass, (int)b->cell_x, (int)b->cell_y);
+                d->shapes[b->shape].name, b->position.x, b->position.y, angle, (double)b->scale, b->extent,
+                b->velocity.x, b->velocity.y, b->spin, l->contacts, l->bearing, pressure, b->mass, (int)b->cell_x,
+                (int)b->cell_y);
     }
     dem_release(loads);
     dem_close_file(d, &out);

@@ -119,7 +119,7 @@ static size_t put_outline(const dem *d, const dem_part *part, vec *points) {
     narc_compute_mass(arcs, count, &mass);
     const size_t corners = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / DEM_PI), points);
     for (size_t i = 0; i < corners; i++)
-        points[i] = plus(b->place, rotate(times((double)b->scale, b->turn), points[i]));
+        points[i] = plus(b->position, rotate(times((double)b->scale, b->turn), points[i]));
     return corners;
 }
 
@@ -154,7 +154,7 @@ static void put_polygons(const dem *d, frame *f) {
     for (size_t i = 0, first = 0; i < d->part_count; first += f->corners[i++]) {
         const size_t k = d->parts[i].body;
         if (find_plate(d, k))
-            put_plate(d, find_plate(d, k), d->bodies[k].place, low, high, f->points + first);
+            put_plate(d, find_plate(d, k), d->bodies[k].position, low, high, f->points + first);
     }
 }
 
@@ -179,7 +179,7 @@ static void make_bodies(const dem *d, frame *f) {
         const double row[WIDEST] = {
             (double)k, k >= d->grain_count, b->shape, b->material, loads[k].contacts, loads[k].bearing,
             hypot(b->velocity.x, b->velocity.y), b->spin, b->extent, 0.5 * (s->xx + s->yy),
-            b->velocity.x, b->velocity.y, 0, b->place.x, b->place.y, 0, s->xx, s->xy, 0, s->yx, s->yy};
+            b->velocity.x, b->velocity.y, 0, b->position.x, b->position.y, 0, s->xx, s->xy, 0, s->yx, s->yy};
         /* clang-format on */
         memcpy(f->rows[part], row, sizeof row);
     }
@@ -219,7 +219,7 @@ static void make_contacts(const dem *d, frame *f) {
                                     most > 0 ? fmin(fabs(drag) / most, 1) : 0,
                                     c->depth};
         memcpy(f->rows[k], row, sizeof row);
-        f->points[k] = plus(a->place, c->point);
+        f->points[k] = plus(a->position, c->point);
         f->corners[k] = 1;
     }
 }

@@ -14,7 +14,7 @@ vec dem_wall_force(const dem *d, size_t wall) { return d->bodies[d->grain_count 
 static double find_distance(const dem *d, int first, int second) {
     const dem_wall *a = &d->walls[first], *b = &d->walls[second];
     const dem_body *walls = d->bodies + d->grain_count;
-    const vec between = minus(walls[second].place, walls[first].place);
+    const vec between = minus(walls[second].position, walls[first].position);
     if (a->kind != DEM_PLATE || b->kind != DEM_PLATE)
         return sqrt(dot(between, between));
     return fabs(dot(plus(between, times(a->half, minus(b->normal, a->normal))), a->normal));
@@ -59,17 +59,17 @@ void dem_move_walls(dem *d) {
         b->velocity = wall->velocity;
         b->spin = wall->spin;
         if (wall->kind == DEM_PLATE) {
-            b->place = plus(b->place, times(dt * dot(wall->velocity, wall->normal), wall->normal));
+            b->position = plus(b->position, times(dt * dot(wall->velocity, wall->normal), wall->normal));
             continue;
         }
         const vec way = times(dt, wall->velocity), turn = dem_find_turn(dt * wall->spin);
-        b->place = plus(b->place, way);
+        b->position = plus(b->position, way);
         wall->pivot = plus(wall->pivot, way);
         if (wall->spin == 0)
             continue;
-        const vec arm = rotate(turn, minus(b->place, wall->pivot));
+        const vec arm = rotate(turn, minus(b->position, wall->pivot));
         b->turn = dem_turn(b->turn, turn);
-        b->place = plus(wall->pivot, arm);
+        b->position = plus(wall->pivot, arm);
         b->velocity = (vec){b->velocity.x - wall->spin * arm.y, b->velocity.y + wall->spin * arm.x};
     }
 }

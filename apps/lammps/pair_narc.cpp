@@ -337,7 +337,6 @@ void PairNarc::compute(int energy, int virial_kind) {
         if (next == touching.size() || touching[next] != pair)
             springs[pair] = {0, 0, 0};
     }
-    contact_count = touching.size();
 }
 
 /* ---------------------------------------------------------------------------- restart */
@@ -371,14 +370,6 @@ void PairNarc::read_restart_settings(FILE *file) {
     if (comm->me == 0)
         utils::sfread(FLERR, &law, sizeof law, 1, file, nullptr, error);
     MPI_Bcast(&law, sizeof law, MPI_BYTE, 0, world);
-}
-
-/* Numbers that tests and measurements ask for. */
-void *PairNarc::extract(const char *name, int &dimension) {
-    dimension = 0;
-    if (!std::strcmp(name, "contact_count"))
-        return &contact_count;
-    return nullptr;
 }
 
 double PairNarc::memory_usage() {

@@ -35,7 +35,6 @@ class PairNarc : public Pair {
     void read_restart(FILE *file) override;
     void write_restart_settings(FILE *file) override;
     void read_restart_settings(FILE *file) override;
-    void *extract(const char *name, int &dimension) override;
     double memory_usage() override;
 
     /* Called by fix narc/shapes when there is a new neighbour list, and when it ends. */
@@ -74,7 +73,7 @@ class PairNarc : public Pair {
     std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
     std::vector<uint32_t> before;       /* and in the one before it */
     std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair of others */
-    size_t found_count = 0, contact_count = 0;
+    size_t found_count = 0;
 };
 
 class PairNarcHooke : public PairNarc {

@@ -13,22 +13,6 @@
 namespace narc_lammps {
 namespace {
 
-/* Distance of the furthest point of an outline from the origin. There the normal points away from the origin, so the
- * arc's centre is on the same line: the point is the support in that direction, or in the opposite one if the arc is
- * flatter. */
-double find_reach(const std::vector<narc_arc> &arcs) {
-    double reach = 0;
-    for (const narc_arc &arc : arcs)
-        for (const double sign : {1.0, -1.0}) {
-            const bool central = arc.center_x == 0 && arc.center_y == 0;
-            narc_point p = {0, 0};
-            narc_find_support(arcs.data(), arcs.size(), central ? 1 : sign * arc.center_x, sign * arc.center_y, &p,
-                              nullptr);
-            reach = std::fmax(reach, std::hypot(p.x, p.y));
-        }
-    return reach;
-}
-
 /* Of parts in one frame. Throws std::runtime_error with the library's message. */
 Form make_form(const std::string &name, const std::vector<narc_arc> &arcs, const std::vector<size_t> &counts) {
     Form form = {name, {}, 0, 0, false, 0};
@@ -46,7 +30,7 @@ Form make_form(const std::string &name, const std::vector<narc_arc> &arcs, const
         if (narc_move_arcs(next, count, -mass.centroid_x, -mass.centroid_y, 0, 1, part.arcs.data(), &error) != NARC_OK)
             throw std::runtime_error(error.message);
         make_touch_sides(part.arcs.data(), count, part.sides.data());
-        form.reach = std::fmax(form.reach, find_reach(part.arcs));
+        form.reach = std::fmax(form.reach, find_outline_reach(part.arcs.data(), count));
         form.parts.push_back(part);
         next += count;
     }

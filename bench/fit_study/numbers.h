@@ -5,11 +5,12 @@
 #ifndef NARC_STUDY_NUMBERS_H
 #define NARC_STUDY_NUMBERS_H
 
-#include "study.h"
+#include <stdio.h>
 
+enum { MOST_NUMBERS = 4096 };
 typedef struct numbers {
     size_t count;
-    double values[MOST_SUBJECTS];
+    double values[MOST_NUMBERS];
 } numbers;
 
 /* NAN is left out. */
@@ -20,8 +21,5 @@ double find_quantile(numbers *of, double part);
 
 /* " median (least to largest)". */
 void print_range(numbers *of, int decimals, FILE *out);
-
-/* Spearman's: the correlation of ranks. */
-double correlate_ranks(const numbers *x, const numbers *y);
 
 #endif

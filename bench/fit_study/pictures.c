@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * pictures.c - pictures in the form of the paper's figures 6 to 9, one with the other outlines, one with grains.
+ * pictures.c - pictures in the form of the paper's figures 2 and 6 to 9, one with the other outlines, one with grains.
  */
 #include "pictures.h"
 
+#include <stdlib.h>
+
 #include "draw_fit.h"
+#include "fail.h"
 #include "output.h"
-#include "study.h"
 
 static const color OUTLINE_FILL = {0.867, 0.867, 0.867, 1}, OUTLINE_LINE = {0.667, 0.667, 0.667, 1};
 enum { LAST = SIZES - 1 };
@@ -32,7 +34,7 @@ static void draw_over(canvas *page, const subject *of, const narc_fit_result *ma
     draw_fit(page, where, made, &look->shape);
 }
 
-void open_picture(canvas *page, const char *path, double width, double height) {
+static void open_picture(canvas *page, const char *path, double width, double height) {
     open_canvas(page, path, open_output(path), width, height);
     cairo_select_font_face(page->pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
 }
@@ -48,7 +50,7 @@ static void thin_shades(cairo_surface_t *image) {
     cairo_surface_mark_dirty(image);
 }
 
-void finish_picture(canvas *page) {
+static void finish_picture(canvas *page) {
     thin_shades(page->surface);
     finish_canvas(page);
     finish_outputs();
@@ -105,82 +107,85 @@ void draw_subject(const subject *of, const char *path) {
     finish_picture(&page);
 }
 
-/* ---------------------------------------------------------------------------- the others */
+/* ---------------------------------------------------------------------------- figure 2 */
 
-/* An 8-arc and arcs with edges side by side, the name and both areas below. */
-static void draw_pair(canvas *page, const subject *of, double left, double top, double cell) {
-    static const family pair[] = {N_ARC, ARCS_AND_EDGES};
-    static const style look = {.shape = {.line = 1.8, .dot = 2.2, .shortest = 0.9}, .text = 13};
-    const double margin = 0.06 * cell;
+void draw_bounds(const subject *of, const char *path) {
+    const double cell = 230, margin = 18, caption = 44, text = 18;
+    const bounds found = find_bounds(of);
+    const narc_fit_result *fits[BOUNDS] = {[CIRCLE] = &found.circle, [POLYGON] = &of->fits[N_GON][LAST].made};
     const narc_aabb box =
-        join_boxes(bound_fit(&of->fits[N_ARC][LAST].made), bound_fit(&of->fits[ARCS_AND_EDGES][LAST].made));
-    for (size_t k = 0; k < 2; k++) {
-        const narc_fit_result *made = &of->fits[pair[k]][LAST].made;
-        const double x = left + (double)k * cell;
-        const placement where = place_box(box, x + margin, top + margin, cell - 2 * margin, cell - 2 * margin);
-        draw_over(page, of, made, &where, &look);
-        char text[32];
-        snprintf(text, sizeof text, "%.4f", made->area / made->hull_area);
-        draw_text(page, text, x + cell / 2, top + cell + look.text, look.text, cell);
-    }
-    draw_text(page, of->name, left + cell, top + cell + 2.3 * look.text, look.text, 2 * cell);
-}
-
-static bool is_other(const subject *of) { return of->of != PAPER && of->of != GRAINS && of->of != IMAGE; }
-
-size_t count_others(const study *all) {
-    size_t count = 0;
-    for (size_t i = 0; i < all->count; i++)
-        count += is_other(&all->subjects[i]);
-    return count;
-}
-
-void draw_others(const study *all, const char *path) {
-    enum { PAIRS_IN_ROW = 5 };
-    const double cell = 102, gap = 22, row = cell + 44;
-    const size_t rows = (count_others(all) + PAIRS_IN_ROW - 1) / PAIRS_IN_ROW;
+        join_boxes(join_boxes(bound_fit(fits[CIRCLE]), bound_fit(fits[POLYGON])), bound_points(found.boxes[OBB], 4));
     canvas page;
-    open_picture(&page, path, PAIRS_IN_ROW * (2 * cell + gap), row * (double)rows);
-    size_t drawn = 0;
-    for (size_t i = 0; i < all->count; i++) {
-        if (is_other(&all->subjects[i])) {
-            draw_pair(&page, &all->subjects[i], gap / 2 + (2 * cell + gap) * (double)(drawn % PAIRS_IN_ROW),
-                      row * (double)(drawn / PAIRS_IN_ROW), cell);
-            drawn++;
+    open_picture(&page, path, BOUNDS * (cell + 2 * margin), cell + 2 * margin + caption);
+    for (int which = CIRCLE; which < BOUNDS; which++) {
+        const double left = which * (cell + 2 * margin) + margin;
+        const placement where = place_box(box, left, margin, cell, cell);
+        char label[64];
+        trace_contours(&page, &where, &of->contours);
+        set_color(&page, OUTLINE_FILL);
+        cairo_fill(page.pen);
+        if (fits[which]) {
+            const narc_point origin = place_point(&where, fits[which]->origin);
+            const placement there = {origin.x, origin.y, where.cosine, where.sine};
+            trace_arcs(&page, &there, fits[which]->arcs, fits[which]->arc_count);
+            cairo_close_path(page.pen);
+        } else {
+            trace_points(&page, &where, found.boxes[which], 4);
         }
+        stroke_path(&page, ARC_TONES[0], 3);
+        snprintf(label, sizeof label, "%s: %.3f", bound_names[which], found.areas[which]);
+        draw_text(&page, label, left + cell / 2, margin + cell + 1.7 * text, text, cell);
     }
     finish_picture(&page);
 }
 
-/* ---------------------------------------------------------------------------- grains */
+/* ---------------------------------------------------------------------------- many outlines */
 
-/* An 8-arc over a grain, name and area below. */
-static void draw_grain(canvas *page, const subject *of, double left, double top, double cell) {
-    static const style look = {.shape = {.line = 2.2, .dot = 3, .shortest = 1.1}, .thin_line = 0.8, .text = 14};
+/* The fits of an outline side by side, their areas below, and its name. */
+static void draw_fits(canvas *page, const subject *of, const family *shown, size_t count, const style *look,
+                      narc_point corner, double cell) {
     const double margin = 0.06 * cell;
-    const narc_fit_result *made = &of->fits[N_ARC][LAST].made;
-    const placement where =
-        place_box(bound_fit(made), left + margin, top + margin, cell - 2 * margin, cell - 2 * margin);
-    draw_over(page, of, made, &where, &look);
-    char text[64];
-    snprintf(text, sizeof text, "%s: %.4f", of->name, made->area / made->hull_area);
-    draw_text(page, text, left + cell / 2, top + cell + look.text, look.text, cell);
+    narc_aabb box = EMPTY_BOX;
+    for (size_t k = 0; k < count; k++)
+        box = join_boxes(box, bound_fit(&of->fits[shown[k]][LAST].made));
+    for (size_t k = 0; k < count; k++) {
+        const double x = corner.x + (double)k * cell;
+        const placement where = place_box(box, x + margin, corner.y + margin, cell - 2 * margin, cell - 2 * margin);
+        char text[64];
+        draw_over(page, of, &of->fits[shown[k]][LAST].made, &where, look);
+        snprintf(text, sizeof text, "%s%s%.4f", count > 1 ? "" : of->name, count > 1 ? "" : ": ",
+                 value_of(of, shown[k], LAST, AREA));
+        draw_text(page, text, x + cell / 2, corner.y + cell + look->text, look->text, cell);
+    }
+    if (count > 1)
+        draw_text(page, of->name, corner.x + (double)count * cell / 2, corner.y + cell + 2.3 * look->text, look->text,
+                  (double)count * cell);
 }
 
-void draw_grains(const study *all, const char *path) {
-    const double cell = 190, row = cell + 30;
-    size_t shown = 0;
-    for (size_t i = 0; i < all->count; i++)
-        shown += all->subjects[i].of == GRAINS && all->subjects[i].number <= SHOWN_GRAINS;
-    canvas page;
-    open_picture(&page, path, SHOWN_GRAINS * cell, row * (double)((shown + SHOWN_GRAINS - 1) / SHOWN_GRAINS));
-    size_t drawn = 0;
+/* 8-arcs of grains, the first of each sand; or 8-arcs and arcs with edges of all others but the paper's. */
+void draw_many(const study *all, bool grains, const char *path) {
+    static const family pair[] = {N_ARC, ARCS_AND_EDGES};
+    static const style looks[] = {
+        {.shape = {.line = 1.8, .dot = 2.2, .shortest = 0.9}, .text = 13},
+        {.shape = {.line = 2.2, .dot = 3, .shortest = 1.1}, .thin_line = 0.8, .text = 14},
+    };
+    const double cell = grains ? 190 : 102, gap = grains ? 0 : 22, row = cell + (grains ? 30 : 44);
+    const size_t shown = grains ? 1 : 2, in_row = grains ? SHOWN_GRAINS : 5;
+    const subject **some = allocate(all->count, sizeof *some);
+    size_t count = 0;
     for (size_t i = 0; i < all->count; i++) {
         const subject *of = &all->subjects[i];
-        if (of->of == GRAINS && of->number <= SHOWN_GRAINS) {
-            draw_grain(&page, of, cell * (double)(drawn % SHOWN_GRAINS), row * (double)(drawn / SHOWN_GRAINS), cell);
-            drawn++;
-        }
+        if (grains ? of->of == GRAINS && of->number <= SHOWN_GRAINS : of->of != PAPER && of->of != GRAINS)
+            some[count++] = of;
     }
-    finish_picture(&page);
+    if (count > 0) {
+        const double width = (double)shown * cell + gap;
+        canvas page;
+        open_picture(&page, path, (double)in_row * width, row * (double)((count + in_row - 1) / in_row));
+        for (size_t k = 0; k < count; k++)
+            draw_fits(&page, some[k], pair, shown, &looks[grains],
+                      (narc_point){gap / 2 + width * (double)(k % in_row), row * (double)(k / in_row)}, cell);
+        finish_picture(&page);
+    }
+    free(some);
 }

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * pictures.h - a picture from its first line to its file.
+ * pictures.h - the study's pictures, each a file.
  */
 #ifndef NARC_STUDY_PICTURES_H
 #define NARC_STUDY_PICTURES_H
 
-#include "canvas.h"
+#include "study.h"
 
-void open_picture(canvas *page, const char *path, double width, double height);
+/* The paper's figures 6 to 9, and figure 2. */
+void draw_subject(const subject *of, const char *path);
+void draw_bounds(const subject *of, const char *path);
 
-/* Writes it, with fewer shades. */
-void finish_picture(canvas *page);
+/* The other outlines, or grains: none if there are none. */
+void draw_many(const study *all, bool grains, const char *path);
 
 #endif

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * subjects.c - the outlines of the study: which they are, and how they are read.
+ * subjects.c - the outlines of the study: which they are, how they are read, what their hulls are like.
  */
-#include <cairo.h>
-#include <math.h>
+#include "study.h"
+
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw_fit.h"
 #include "fail.h"
-#include "study.h"
 #include "text.h"
 
 const size_t sizes[SIZES] = {4, 6, 8};
 const char *const family_names[FAMILIES] = {"n-arc", "arcs + edges", "n-gon", "paper's route"};
-const narc_fit_family family_requests[FAMILIES] = {NARC_FIT_N_ARC, NARC_FIT_EDGES, NARC_FIT_POLYGON, NARC_FIT_PAPER};
-const char *const kind_names[KINDS] = {"the paper's four",   "letters and digits", "animals",     "plants and fruit",
-                                       "tools and vehicles", "plain signs",        "sand grains", "pixels"};
+const char *const kind_names[KINDS] = {"the paper's four",   "letters and digits", "animals",    "plants and fruit",
+                                       "tools and vehicles", "plain signs",        "sand grains"};
 
 static const subject chosen[] = {
     {.name = "ghost", .of = PAPER, .character = 0x1f47b},
@@ -52,13 +51,141 @@ static const subject chosen[] = {
     {.name = "heart", .of = SIGNS, .character = 0x2665},
     {.name = "triangle", .of = SIGNS, .character = 0x25b2},
     {.name = "pentagon", .of = SIGNS, .character = 0x2b20},
-    {.name = "pear, as an image", .of = IMAGE, .image = "pear"},
 };
-enum { CHOSEN = sizeof chosen / sizeof chosen[0] };
 
-double area_of(const subject *of, family which, size_t size) {
-    const fit *made = &of->fits[which][size];
-    return made->found ? made->made.area / made->made.hull_area : NAN;
+static const char *const sands[] = {"river", "sea"};
+
+/* A long side of a hull, as a part of the perimeter. */
+static const double LONG_SIDE = 0.05;
+
+/* ---------------------------------------------------------------------------- readers */
+
+narc_path *make_path(void) {
+    narc_path *path;
+    if (narc_create_path(&path) != NARC_OK)
+        fail("not enough memory for an outline");
+    return path;
+}
+
+/* The bytes of a file in a folder, NULL if there is none. */
+static char *read_from(const char *folder, const char *name, size_t *out_size) {
+    enum { LONGEST = 4096 };
+    char file[LONGEST];
+    if (snprintf(file, sizeof file, "%s/%s", folder, name) >= LONGEST)
+        fail("%s: the name is too long", folder);
+    FILE *there = fopen(file, "rb");
+    if (!there)
+        return NULL;
+    fclose(there);
+    return read_bytes(file, out_size);
+}
+
+/* Takes a subject whose path was read, with its hull. */
+static void add_subject(study *all, const subject *from) {
+    if (all->count == MOST_SUBJECTS)
+        fail("too many outlines");
+    subject *of = &all->subjects[all->count++];
+    narc_error error;
+    *of = *from;
+    of->name = from->name ? from->name : of->label;
+    if (narc_flatten_path(of->path, 0, &of->contours, &error) != NARC_OK)
+        fail("%s: %s", of->name, error.message);
+    of->corners = allocate(of->contours.point_count, sizeof *of->corners);
+    if (narc_compute_hull(of->contours.points, of->contours.point_count, of->corners, &of->corner_count, &error))
+        fail("%s: %s", of->name, error.message);
+    for (size_t k = 0; k < of->corner_count; k++) {
+        const narc_point p = of->corners[k], q = of->corners[(k + 1) % of->corner_count], o = of->corners[0];
+        of->perimeter += hypot(q.x - p.x, q.y - p.y);
+        of->hull_area += 0.5 * ((p.x - o.x) * (q.y - p.y) - (p.y - o.y) * (q.x - p.x));
+    }
+    for (size_t k = 0; k < of->corner_count; k++) {
+        const narc_point p = of->corners[k], q = of->corners[(k + 1) % of->corner_count];
+        const double part = hypot(q.x - p.x, q.y - p.y) / of->perimeter;
+        of->straight_share += part >= LONG_SIDE ? part : 0;
+    }
+    const narc_aabb box = bound_points(of->corners, of->corner_count);
+    of->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+}
+
+/* A glyph or drawing. */
+static void read_chosen(study *all, const subject *from, narc_font *font, const char *drawings) {
+    subject of = *from;
+    narc_error error;
+    of.path = make_path();
+    if (of.file) {
+        size_t size;
+        char *bytes = read_from(drawings, of.file, &size);
+        if (!bytes)
+            fail("%s/%s is missing; it belongs to the package openclipart-svg of Debian 12", drawings, of.file);
+        if (narc_read_svg(bytes, size, NULL, of.path, &error) != NARC_OK)
+            fail("%s/%s: %s", drawings, of.file, error.message);
+        free(bytes);
+    } else if (narc_read_glyph(font, of.character, of.path, &error) != NARC_OK) {
+        fail("%s: %s", of.name, error.message);
+    }
+    add_subject(all, &of);
+}
+
+/* river-01.csv, river-02.csv ... and sea-01.csv ... of a folder. */
+static void read_grains(study *all, const char *folder) {
+    for (size_t k = 0; k < sizeof sands / sizeof *sands; k++)
+        for (unsigned number = 1;; number++) {
+            char file[32];
+            size_t size;
+            narc_error error;
+            snprintf(file, sizeof file, "%s-%02u.csv", sands[k], number);
+            char *bytes = read_from(folder, file, &size);
+            if (!bytes && number == 1)
+                fail("%s holds no %s; grains.R of the study writes the grains", folder, file);
+            if (!bytes)
+                break;
+            subject of = {.of = GRAINS, .number = number, .path = make_path()};
+            snprintf(of.label, sizeof of.label, "%s %u", sands[k], number);
+            if (narc_read_csv(bytes, size, of.path, &error) != NARC_OK)
+                fail("%s/%s: %s", folder, file, error.message);
+            free(bytes);
+            add_subject(all, &of);
+        }
+}
+
+study load_subjects(const char *font, const char *drawings, const char *grains) {
+    study all = {.subjects = allocate(MOST_SUBJECTS, sizeof *all.subjects)};
+    size_t size;
+    char *bytes = read_bytes(font, &size);
+    narc_font *opened;
+    narc_error error;
+    if (narc_open_font(bytes, size, &opened, &error) != NARC_OK)
+        fail("%s: %s", font, error.message);
+    for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
+        if (drawings || chosen[i].of == PAPER)
+            read_chosen(&all, &chosen[i], opened, drawings);
+    narc_close_font(opened);
+    free(bytes);
+    if (grains)
+        read_grains(&all, grains);
+    return all;
+}
+
+void free_subjects(study *all) {
+    for (size_t i = 0; i < all->count; i++) {
+        narc_destroy_path(all->subjects[i].path);
+        narc_release_contours(&all->subjects[i].contours);
+        free(all->subjects[i].corners);
+    }
+    free(all->subjects);
+    *all = (study){0};
+}
+
+/* ---------------------------------------------------------------------------- what is asked of them */
+
+size_t pick(const study *all, kind which, const subject **out_some) {
+    size_t count = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        const subject *of = &all->subjects[i];
+        if (which == KINDS ? of->of != GRAINS : of->of == which)
+            out_some[count++] = of;
+    }
+    return count;
 }
 
 double value_of(const subject *of, family which, size_t size, quantity what) {
@@ -72,158 +199,44 @@ double ratio_of(const subject *of, size_t size) {
     return of->fits[N_ARC][size].made.area / of->fits[N_GON][size].made.area;
 }
 
-/* ---------------------------------------------------------------------------- readers */
+/* ---------------------------------------------------------------------------- simple shapes around them */
 
-char *read_from(const char *folder, const char *name, size_t *out_size) {
-    enum { LONGEST = 4096 };
-    char file[LONGEST];
-    if (snprintf(file, sizeof file, "%s/%s", folder, name) >= LONGEST)
-        fail("%s: the name is too long", folder);
-    FILE *there = fopen(file, "rb");
-    if (!there)
-        return NULL;
-    fclose(there);
-    return read_bytes(file, out_size);
-}
+const char *const bound_names[BOUNDS] = {"circle", "AABB", "OBB", "8-gon"};
 
-static void read_drawing(const subject *of, const char *folder) {
-    size_t size;
-    char *bytes = read_from(folder, of->file, &size);
-    if (!bytes)
-        fail("%s/%s is missing; it belongs to the package openclipart-svg of Debian 12", folder, of->file);
-    narc_error error;
-    if (narc_read_svg(bytes, size, NULL, of->path, &error) != NARC_OK)
-        fail("%s/%s: %s", folder, of->file, error.message);
-    free(bytes);
-}
-
-typedef struct memory {
-    unsigned char *bytes;
-    size_t size, capacity;
-} memory;
-
-static cairo_status_t append(void *context, const unsigned char *bytes, unsigned count) {
-    memory *to = context;
-    to->bytes = grow(to->bytes, &to->capacity, to->size + count, 1);
-    memcpy(to->bytes + to->size, bytes, count);
-    to->size += count;
-    return CAIRO_STATUS_SUCCESS;
-}
-
-/* A PNG image of another subject's outline, filled, with this many pixels along its larger side and an empty frame. */
-static memory draw_pixels(const subject *from) {
-    enum { PIXELS = 256, FRAME = 2 };
-    double left = INFINITY, low = INFINITY;
-    for (size_t k = 0; k < from->around.count; k++) {
-        left = fmin(left, from->around.corners[k].x);
-        low = fmin(low, from->around.corners[k].y);
-    }
-    const double scale = PIXELS / from->extent, side = PIXELS + 2 * FRAME;
-    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, (int)side, (int)side);
-    cairo_t *pen = cairo_create(surface);
-    size_t start = 0;
-    for (size_t k = 0; k < from->contours.count; start = from->contours.ends[k++]) {
-        for (size_t i = start; i < from->contours.ends[k]; i++) {
-            const narc_point p = from->contours.points[i];
-            cairo_line_to(pen, FRAME + scale * (p.x - left), side - FRAME - scale * (p.y - low));
-        }
-        cairo_close_path(pen);
-        cairo_new_sub_path(pen);
-    }
-    cairo_fill(pen);
-    memory png = {0};
-    const cairo_status_t status = cairo_surface_write_to_png_stream(surface, append, &png);
-    cairo_destroy(pen);
-    cairo_surface_destroy(surface);
-    if (status != CAIRO_STATUS_SUCCESS)
-        fail("%s: %s", from->name, cairo_status_to_string(status));
-    return png;
-}
-
-static const subject *find_subject(const study *all, const char *name) {
-    for (size_t i = 0; i < all->count; i++)
-        if (strcmp(all->subjects[i].name, name) == 0)
-            return &all->subjects[i];
-    fail("no subject is called %s", name);
-}
-
-static void read_pixels(const study *all, const subject *of) {
-    memory png = draw_pixels(find_subject(all, of->image));
-    narc_error error;
-    if (narc_read_png(png.bytes, png.size, NULL, of->path, &error) != NARC_OK)
-        fail("%s: %s", of->name, error.message);
-    free(png.bytes);
-}
-
-/* ---------------------------------------------------------------------------- all */
-
-narc_path *make_path(void) {
-    narc_path *path;
-    if (narc_create_path(&path) != NARC_OK)
-        fail("not enough memory for an outline");
-    return path;
-}
-
-static void find_extent(subject *of) {
+/* The rectangle around a hull with a side along `x`, a unit vector, counter-clockwise; its area is returned. */
+static double find_box(const subject *of, narc_point x, narc_point out_corners[4]) {
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < of->around.count; k++) {
-        const narc_point p = of->around.corners[k];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
+    for (size_t k = 0; k < of->corner_count; k++) {
+        const narc_point p = of->corners[k];
+        const double u = p.x * x.x + p.y * x.y, v = p.y * x.x - p.x * x.y;
+        box = (narc_aabb){fmin(box.min_x, u), fmin(box.min_y, v), fmax(box.max_x, u), fmax(box.max_y, v)};
     }
-    of->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+    for (int k = 0; k < 4; k++) {
+        const double u = k == 1 || k == 2 ? box.max_x : box.min_x, v = k >= 2 ? box.max_y : box.min_y;
+        out_corners[k] = (narc_point){u * x.x - v * x.y, u * x.y + v * x.x};
+    }
+    return (box.max_x - box.min_x) * (box.max_y - box.min_y);
 }
 
-void measure_subject(subject *of) {
+/* The least rectangle around a polygon has a side along one of its sides (Freeman and Shapira 1975). */
+bounds find_bounds(const subject *of) {
+    const narc_fit_request disc = {.arc_count = 1, .family = NARC_FIT_N_ARC, .goal = NARC_FIT_BOUND_AREA};
+    bounds found = {.areas = {[OBB] = INFINITY}};
     narc_error error;
-    if (narc_flatten_path(of->path, 0, &of->contours, &error) != NARC_OK)
+    if (narc_fit_path(of->path, &disc, &found.circle, &error) != NARC_OK)
         fail("%s: %s", of->name, error.message);
-    of->around = make_hull(of->name, of->contours.points, of->contours.point_count);
-    find_extent(of);
-    measure_corners(of);
-    for (size_t size = 0; size < SIZES; size++)
-        of->greedy[size] = find_greedy_area(&of->around, sizes[size]);
-}
-
-static void add_subject(study *all, const subject *from, const char *file, narc_font *font, const char *drawings) {
-    subject *of = &all->subjects[all->count];
-    *of = *from;
-    of->path = make_path();
-    narc_error error;
-    if (of->file)
-        read_drawing(of, drawings);
-    else if (of->image)
-        read_pixels(all, of);
-    else if (narc_read_glyph(font, of->character, of->path, &error) != NARC_OK)
-        fail("%s: %s", file, error.message);
-    measure_subject(of);
-    all->count++;
-}
-
-study load_subjects(const char *font, const char *drawings, const char *grains) {
-    _Static_assert((int)CHOSEN <= (int)MOST_SUBJECTS, "there is room for the chosen");
-    study all = {.subjects = allocate(MOST_SUBJECTS, sizeof *all.subjects)};
-    size_t size;
-    char *bytes = read_bytes(font, &size);
-    narc_font *opened;
-    narc_error error;
-    if (narc_open_font(bytes, size, &opened, &error) != NARC_OK)
-        fail("%s: %s", font, error.message);
-    for (size_t i = 0; i < CHOSEN; i++)
-        if (drawings || chosen[i].of == PAPER)
-            add_subject(&all, &chosen[i], font, opened, drawings);
-    narc_close_font(opened);
-    free(bytes);
-    if (grains)
-        add_grains(&all, grains);
-    return all;
-}
-
-void free_subjects(study *all) {
-    for (size_t i = 0; i < all->count; i++) {
-        narc_destroy_path(all->subjects[i].path);
-        narc_release_contours(&all->subjects[i].contours);
-        free_hull(&all->subjects[i].around);
+    found.areas[CIRCLE] = found.circle.area / found.circle.hull_area;
+    found.areas[AABB] = find_box(of, (narc_point){1, 0}, found.boxes[AABB]) / of->hull_area;
+    for (size_t k = 0; k < of->corner_count; k++) {
+        const narc_point p = of->corners[k], q = of->corners[(k + 1) % of->corner_count];
+        const double size = hypot(q.x - p.x, q.y - p.y);
+        narc_point corners[4];
+        const double area = find_box(of, (narc_point){(q.x - p.x) / size, (q.y - p.y) / size}, corners) / of->hull_area;
+        if (area < found.areas[OBB]) {
+            found.areas[OBB] = area;
+            memcpy(found.boxes[OBB], corners, sizeof corners);
+        }
     }
-    free(all->subjects);
-    *all = (study){0};
+    found.areas[POLYGON] = value_of(of, N_GON, SIZES - 1, AREA);
+    return found;
 }

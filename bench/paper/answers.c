@@ -3,13 +3,12 @@
  * answers.c - how often the methods are wrong: random pairs of several families of shapes, against the exact answer
  * (method sat).
  *
- * The second body of a pair is anywhere where the axis-aligned boxes of both overlap, all places equally likely: what a
- * broad phase hands on.
+ * The second body of a pair is anywhere where the axis-aligned boxes of both overlap, all equally likely: what a broad
+ * phase hands on.
  */
 #include <math.h>
 #include <stdlib.h>
 
-#include "families.h"
 #include "paper.h"
 #include "random.h"
 #include "store.h"
@@ -18,33 +17,22 @@ enum { SHAPES = 512, METHODS = 3 };
 
 static const narc_method methods[METHODS] = {NARC_METHOD_SAT_FIRST, NARC_METHOD_GJK, NARC_METHOD_POLYGON_SAT};
 
-/* A separation further than this from the exact one, in parts of the sum of both bounding radii, is wrong. */
+/* A separation farther than this from the exact one, in parts of the sum of both bounding radii, is wrong. */
 static const double much = 1e-3;
 
-/* A normal further than this from the exact one, in radians, is another one. */
+/* A normal farther than this from the exact one, in radians, is another one. */
 static const double another_normal = 0.1;
 
-struct tally {
-    size_t false_hits, missed;
-    size_t outcomes[4];                 /* of overlaps */
-    size_t distance_wrong, depth_wrong; /* by more than `much` */
-    double distance_worst, depth_worst; /* the largest error */
-    size_t normal_wrong;                /* of pairs that collide, and for the method too */
-    size_t contact_outcomes[4], broken; /* answers that are not what narc_methods.h promises */
+/* Of a family and a method. Pairs so near to touching that rounding decides are not counted. */
+struct count {
+    size_t apart, colliding;
+    size_t false_hits, missed, distance_wrong, depth_wrong; /* by more than `much` */
+    size_t normal_wrong;                                    /* of pairs that collide, and for the method too */
+    double worst;                                           /* the largest error of a separation */
+    size_t outcomes[4], broken;                             /* answers that are not what narc_methods.h promises */
 };
 
-struct counts {
-    size_t pairs, apart, colliding, near;
-    struct tally tallies[METHODS];
-};
-
-struct family_shapes {
-    narc_shapes *shapes;
-    narc_methods *methods;
-    struct bound bounds[SHAPES];
-};
-
-/* A chunk of pairs and all that is known of it. */
+/* Pairs, and all that is known of them. */
 struct chunk {
     size_t count;
     struct body *bodies;
@@ -53,71 +41,10 @@ struct chunk {
     narc_contact *exact, *found;
 };
 
-/* ------------------------------------------------------------------------------------------------ pairs */
-
-static struct family_shapes make_shapes(enum family family, uint64_t *random) {
-    struct family_shapes made = {NULL, NULL, {{0, 0, 0, 0}}};
-    if (narc_create_shapes(NULL, &made.shapes) != NARC_OK)
-        fail("out of memory");
-    narc_error error;
-    for (size_t k = 0; k < SHAPES; k++) {
-        narc_arc arcs[NARC_MAX_ARCS];
-        const size_t count = make_shape(family, random, arcs);
-        must(narc_add_shape_at(made.shapes, (uint32_t)k, arcs, count, &error), &error);
-        made.bounds[k] = bound_of(arcs, count);
-    }
-    must(narc_create_methods(made.shapes, NULL, &made.methods, &error), &error);
-    return made;
-}
-
-static void place_pairs(const struct family_shapes *made, struct chunk *chunk, uint64_t *random) {
-    for (size_t k = 0; k < chunk->count; k++) {
-        struct body *pair = &chunk->bodies[2 * k];
-        pair[0] = random_body(random, random_below(random, SHAPES), 0);
-        pair[1] = random_body(random, random_below(random, SHAPES), 0);
-        put_in_boxes(made->shapes, &pair[0], &pair[1], random);
-    }
-}
-
-static struct chunk make_chunk(size_t count) {
-    return (struct chunk){.count = count,
-                          .bodies = allocate(2 * count, sizeof(struct body)),
-                          .bits = allocate(NARC_BIT_WORDS(count), sizeof(uint64_t)),
-                          .outcomes = allocate(count, 1),
-                          .exact = allocate(count, sizeof(narc_contact)),
-                          .found = allocate(count, sizeof(narc_contact))};
-}
-
-static void free_chunk(struct chunk *chunk) {
-    free(chunk->bodies);
-    free(chunk->bits);
-    free(chunk->outcomes);
-    free(chunk->exact);
-    free(chunk->found);
-}
-
-/* ------------------------------------------------------------------------------------------------ counting */
-
 /* What rounding may change of a separation, the unit of errors, and what the store adds to that. */
 struct scales {
     double rounding, size, slack;
 };
-
-static struct scales scales_of(const struct family_shapes *made, const struct body *pair) {
-    const struct bound *a = &made->bounds[pair[0].shape], *b = &made->bounds[pair[1].shape];
-    return (struct scales){rounding_of(made->bounds, pair), size_of(made->bounds, pair),
-                           NARC_ROUNDING_ROOM * (a->extent + b->extent)};
-}
-
-static void tally_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct tally *tally) {
-    const double separation = chunk->exact[k].separation;
-    const bool hit = chunk->bits[k / 64] >> k % 64 & 1;
-    tally->outcomes[chunk->outcomes[k]]++;
-    if (fabs(separation) <= scales->rounding)
-        return;
-    tally->false_hits += hit && separation > 0;
-    tally->missed += !hit && separation < 0;
-}
 
 /* Is the separation told what narc_methods.h says of it? GJK: the gap along the normal, so at most the exact one, and
  * if it ended well at least that less the tolerance; the library's bounding radii have their slack on top. Polygons'
@@ -136,31 +63,33 @@ static bool is_as_promised(narc_method method, double exact, double told, uint8_
     }
 }
 
-/* The separation of a pair, and the normal if both answers are that it collides. */
-static void tally_contact(const struct chunk *chunk, size_t k, narc_method method, const struct scales *scales,
-                          struct tally *tally) {
-    const double exact = chunk->exact[k].separation, told = chunk->found[k].separation;
-    const double error = fabs(told - exact) / scales->size;
-    const uint8_t outcome = chunk->outcomes[k];
-    tally->contact_outcomes[outcome]++;
-    tally->broken += !is_as_promised(method, exact, told, outcome, scales);
+static void count_pair(const struct shapes *made, const struct chunk *chunk, size_t k, narc_method method,
+                       struct count *count) {
+    const struct body *pair = &chunk->bodies[2 * k];
+    const struct bound *a = &made->bounds[pair[0].shape], *b = &made->bounds[pair[1].shape];
+    const struct scales scales = {rounding_of(made->bounds, pair), size_of(made->bounds, pair),
+                                  NARC_ROUNDING_ROOM * (a->extent + b->extent)};
+    const narc_contact *exact = &chunk->exact[k], *found = &chunk->found[k];
+    const double separation = exact->separation, told = found->separation,
+                 error = fabs(told - separation) / scales.size;
+    const bool hit = chunk->bits[k / 64] >> k % 64 & 1, near = fabs(separation) <= scales.rounding;
+    count->apart += !near && separation > 0;
+    count->colliding += !near && separation < 0;
+    count->false_hits += !near && hit && separation > 0;
+    count->missed += !near && !hit && separation < 0;
+    count->outcomes[chunk->outcomes[k]]++;
+    count->broken += !is_as_promised(method, separation, told, chunk->outcomes[k], &scales);
     if (isinf(told)) /* no answer: counted as such */
         return;
-    if (exact > 0) {
-        tally->distance_wrong += error > much;
-        tally->distance_worst = fmax(tally->distance_worst, error);
-        return;
-    }
-    tally->depth_wrong += error > much;
-    tally->depth_worst = fmax(tally->depth_worst, error);
-    if (told >= 0)
-        return;
-    const narc_contact *a = &chunk->exact[k], *b = &chunk->found[k];
-    const double dot = (double)a->normal_x * b->normal_x + (double)a->normal_y * b->normal_y;
-    tally->normal_wrong += dot < cos(another_normal);
+    count->distance_wrong += separation > 0 && error > much;
+    count->depth_wrong += separation <= 0 && error > much;
+    count->worst = fmax(count->worst, error);
+    count->normal_wrong +=
+        separation <= 0 && told < 0 &&
+        (double)exact->normal_x * found->normal_x + (double)exact->normal_y * found->normal_y < cos(another_normal);
 }
 
-static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
+static void ask_method(const struct shapes *made, struct chunk *chunk, narc_method method, struct count *count) {
     const narc_bodies bodies = bodies_of(chunk->bodies, 2 * chunk->count);
     const narc_pairs pairs = neighbours(chunk->count);
     const narc_method_options options = {.method = method, .out_outcomes = chunk->outcomes};
@@ -168,17 +97,11 @@ static void ask_method(const struct family_shapes *made, struct chunk *chunk, na
     size_t found;
     narc_error error;
     must(narc_find_overlaps_by(made->methods, &bodies, &pairs, &options, &query, chunk->bits, &error), &error);
-    for (size_t k = 0; k < chunk->count; k++) {
-        const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
-        tally_overlap(chunk, k, &scales, tally);
-    }
     must(narc_find_contacts_by(made->methods, &bodies, &pairs, &options, &query, chunk->found, chunk->count, &found,
                                &error),
          &error);
-    for (size_t k = 0; k < chunk->count; k++) {
-        const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
-        tally_contact(chunk, k, method, &scales, tally);
-    }
+    for (size_t k = 0; k < chunk->count; k++)
+        count_pair(made, chunk, k, method, count);
 }
 
 /* Straight edges have no arcs for sat-first; polygon-sat takes nothing else. */
@@ -186,33 +109,31 @@ static bool takes(narc_method method, enum family family) {
     return method == NARC_METHOD_GJK || (method == NARC_METHOD_POLYGON_SAT) == (family == FAMILY_POLYGON);
 }
 
-static struct counts count_family(const struct settings *settings, enum family family, uint64_t *random) {
-    struct family_shapes made = make_shapes(family, random);
-    struct counts counts = {0};
-    for (size_t left = settings->answer_pairs; left > 0;) {
-        struct chunk chunk = make_chunk(left < settings->chunk ? left : settings->chunk);
-        place_pairs(&made, &chunk, random);
-        separate(made.shapes, chunk.bodies, chunk.count, chunk.exact);
-        for (size_t k = 0; k < chunk.count; k++) {
-            const struct scales scales = scales_of(&made, &chunk.bodies[2 * k]);
-            const bool near = fabs((double)chunk.exact[k].separation) <= scales.rounding;
-            counts.near += near;
-            counts.colliding += !near && chunk.exact[k].separation < 0;
-            counts.apart += !near && chunk.exact[k].separation > 0;
+static void count_family(const struct settings *settings, enum family family, struct chunk *chunk, uint64_t *random,
+                         struct count counts[METHODS]) {
+    struct shapes made = make_store(SHAPES);
+    for (size_t k = 0; k < SHAPES; k++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        const size_t count = make_shape(family, random, arcs);
+        add_arcs(&made, arcs, count);
+    }
+    finish_store(&made);
+    for (size_t left = settings->answer_pairs; left > 0; left -= chunk->count) {
+        chunk->count = left < settings->chunk ? left : settings->chunk;
+        for (size_t k = 0; k < chunk->count; k++) {
+            struct body *pair = &chunk->bodies[2 * k];
+            pair[0] = random_body(random, random_below(random, SHAPES), 0);
+            pair[1] = random_body(random, random_below(random, SHAPES), 0);
+            put_in_boxes(made.shapes, &pair[0], &pair[1], random);
         }
+        separate(made.shapes, chunk->bodies, chunk->count, chunk->exact);
         for (size_t method = 0; method < METHODS; method++)
             if (takes(methods[method], family))
-                ask_method(&made, &chunk, methods[method], &counts.tallies[method]);
-        counts.pairs += chunk.count;
-        left -= chunk.count;
-        free_chunk(&chunk);
+                ask_method(&made, chunk, methods[method], &counts[method]);
     }
     narc_destroy_methods(made.methods);
     narc_destroy_shapes(made.shapes);
-    return counts;
 }
-
-/* ------------------------------------------------------------------------------------------------ tables */
 
 static void print_part(FILE *out, size_t count, size_t of) {
     fprintf(out, " %zu", count);
@@ -221,61 +142,46 @@ static void print_part(FILE *out, size_t count, size_t of) {
     fprintf(out, " |");
 }
 
-static void print_overlaps(const struct counts *counts, FILE *out) {
-    fprintf(out,
-            "\n### Wrong booleans\n\n| family | pairs | apart | colliding | not counted | method | false collisions | "
-            "missed collisions | NONE | LIMIT | ROUNDING |\n"
-            "| --- | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n");
-    for (enum family family = 0; family < FAMILIES; family++)
-        for (size_t method = 0; method < METHODS; method++) {
-            const struct counts *c = &counts[family];
-            const struct tally *tally = &c->tallies[method];
-            if (!takes(methods[method], family))
-                continue;
-            fprintf(out, "| %s | %zu | %zu | %zu | %zu | %s |", family_name(family), c->pairs, c->apart, c->colliding,
-                    c->near, narc_method_name(methods[method]));
-            print_part(out, tally->false_hits, c->apart);
-            print_part(out, tally->missed, c->colliding);
-            fprintf(out, " %zu | %zu | %zu |\n", tally->outcomes[NARC_OUTCOME_NONE],
-                    tally->outcomes[NARC_OUTCOME_LIMIT], tally->outcomes[NARC_OUTCOME_ROUNDING]);
-        }
-}
-
-static void print_contacts(const struct counts *counts, FILE *out) {
-    fprintf(out, "\n### Wrong separations and normals; errors in parts of the sum of both bounding radii\n\n"
-                 "| family | method | distance wrong | largest error | depth wrong | largest error | another normal | "
-                 "NONE | LIMIT | ROUNDING |\n"
-                 "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (enum family family = 0; family < FAMILIES; family++)
-        for (size_t method = 0; method < METHODS; method++) {
-            const struct counts *c = &counts[family];
-            const struct tally *tally = &c->tallies[method];
-            if (!takes(methods[method], family))
-                continue;
-            fprintf(out, "| %s | %s |", family_name(family), narc_method_name(methods[method]));
-            print_part(out, tally->distance_wrong, c->apart);
-            fprintf(out, " %.2g |", tally->distance_worst);
-            print_part(out, tally->depth_wrong, c->colliding);
-            fprintf(out, " %.2g |", tally->depth_worst);
-            print_part(out, tally->normal_wrong, c->colliding);
-            fprintf(out, " %zu | %zu | %zu |\n", tally->contact_outcomes[NARC_OUTCOME_NONE],
-                    tally->contact_outcomes[NARC_OUTCOME_LIMIT], tally->contact_outcomes[NARC_OUTCOME_ROUNDING]);
-        }
-}
-
 size_t print_answers(const struct settings *settings, uint64_t *random, FILE *out) {
-    struct counts counts[FAMILIES];
+    const size_t most = settings->chunk;
+    struct chunk chunk = {0,
+                          allocate(2 * most, sizeof(struct body)),
+                          allocate(NARC_BIT_WORDS(most), sizeof(uint64_t)),
+                          allocate(most, 1),
+                          allocate(most, sizeof(narc_contact)),
+                          allocate(most, sizeof(narc_contact))};
     size_t broken = 0;
+    fprintf(out,
+            "\n### Wrong answers of %zu pairs; errors in parts of the sum of both bounding radii\n\n"
+            "| family | method | false collisions | missed collisions | distance wrong | depth wrong | largest error | "
+            "another normal | no answer, LIMIT, ROUNDING |\n"
+            "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+            settings->answer_pairs);
     for (enum family family = 0; family < FAMILIES; family++) {
-        char what[64];
-        snprintf(what, sizeof what, "wrong answers: %s", family_name(family));
-        begin_step(what);
-        counts[family] = count_family(settings, family, random);
-        for (size_t method = 0; method < METHODS; method++)
-            broken += counts[family].tallies[method].broken;
+        struct count counts[METHODS] = {{0}};
+        begin_step(family_names[family]);
+        count_family(settings, family, &chunk, random, counts);
+        for (size_t method = 0; method < METHODS; method++) {
+            const struct count *c = &counts[method];
+            if (!takes(methods[method], family))
+                continue;
+            fprintf(out, "| %s | %s |", family_names[family], narc_method_name(methods[method]));
+            print_part(out, c->false_hits, c->apart);
+            print_part(out, c->missed, c->colliding);
+            print_part(out, c->distance_wrong, c->apart);
+            print_part(out, c->depth_wrong, c->colliding);
+            fprintf(out, " %.2g |", c->worst);
+            print_part(out, c->normal_wrong, c->colliding);
+            fprintf(out, " %zu, %zu, %zu |\n", c->outcomes[NARC_OUTCOME_NONE], c->outcomes[NARC_OUTCOME_LIMIT],
+                    c->outcomes[NARC_OUTCOME_ROUNDING]);
+            broken += c->broken;
+        }
     }
-    print_overlaps(counts, out);
-    print_contacts(counts, out);
+    free(chunk.bodies);
+    free(chunk.bits);
+    free(chunk.outcomes);
+    free(chunk.exact);
+    free(chunk.found);
     fprintf(out, "\nAnswers that break what `narc_methods.h` promises of gjk and polygon-sat: %zu\n", broken);
     return broken;
 }

@@ -1,19 +1,77 @@
 /* SPDX-License-Identifier: MIT
  *
- * paper.h - the parts of the evaluation, and what they share.
- *
- * Each part first adds its rows to one list, all of which are then timed together, and afterwards prints its tables and
- * writes the data of its plots.
+ * paper.h - the parts of the evaluation: scenes, rows that are timed together, and one list of all that was measured, by
+ * names from which tables, plots and statements take it.
  */
 #ifndef NARC_PAPER_H
 #define NARC_PAPER_H
 
-#include "rows.h"
+#include <stdbool.h>
 
-enum { MAX_SIZES = 16 };
+#include "bodies.h"
+#include "common.h"
 
-/* The two columns of most tables. */
-enum isa { SCALAR, BEST, ISAS };
+enum { MAX_SIZES = 16, MAX_REPETITIONS = 16, FRAMES = 8 /* of moving pairs */, THRESHOLDS = 6, MOTIONS = 7 };
+
+/* ------------------------------------------------------------------------------------------------ shapes, scenes */
+
+/* What stands for an outline. */
+enum kind { KIND_ARC, KIND_GON, KINDS };
+extern const char *const kind_names[KINDS];
+
+/* Two lists of `count` arcs of a random smooth convex outline: the n-arc and the n-gon that stand for it. */
+void make_twins(uint64_t *random, size_t count, narc_arc *out_arcs, narc_arc *out_gon);
+
+/* Random shapes, easy and hard ones, for counting wrong answers. */
+enum family { FAMILY_ROUND, FAMILY_THIN, FAMILY_LENS, FAMILY_UNEQUAL, FAMILY_POLYGON, FAMILIES };
+extern const char *const family_names[FAMILIES];
+
+/* A shape with a bounding radius from 0.5 to 2 around its centroid; the number of its arcs is returned. */
+size_t make_shape(enum family family, uint64_t *random, narc_arc *out_arcs);
+
+/* Shapes in a store, with their bounding radii, and the extents that narc.h's error bound speaks of. */
+struct shapes {
+    size_t count;
+    narc_shapes *shapes;
+    narc_methods *methods;
+    struct bound {
+        double x, y, radius, extent;
+    } * bounds;
+};
+
+struct shapes make_store(size_t capacity);
+void add_arcs(struct shapes *shapes, const narc_arc *arcs, size_t count);
+void finish_store(struct shapes *shapes);
+
+/* Outline k is shape k of either store: there an n-arc, here an n-gon. */
+struct templates {
+    size_t n;
+    struct shapes kinds[KINDS];
+};
+
+/* Pairs that never collide, pairs that always do. */
+enum situation { APART, COLLIDING, SITUATIONS };
+extern const char *const situation_names[SITUATIONS];
+
+/* Pair k is of the bodies 2 k and 2 k + 1, so that what a pair reads lies together. */
+struct scene {
+    const struct templates *templates;
+    enum situation situation;
+    size_t pair_count;
+    struct body *bodies;
+};
+
+struct templates make_templates(size_t n, size_t count, uint64_t *random);
+struct scene make_scene(const struct templates *templates, enum situation situation, size_t pair_count,
+                        uint64_t *random);
+
+/* How far rounding may move the separation of a pair (narc.h): one closer to 0 than that may have either answer. */
+double rounding_of(const struct bound *bounds, const struct body *pair);
+
+/* The sum of both bounding radii: the unit of GJK's tolerance. */
+double size_of(const struct bound *bounds, const struct body *pair);
+
+/* ------------------------------------------------------------------------------------------------ what is measured */
 
 struct settings {
     const char *folder;
@@ -29,157 +87,46 @@ struct settings {
 
 struct paper {
     struct settings settings;
-    const char *isas[ISAS];
+    const char *best; /* instruction set */
     struct templates templates[MAX_SIZES];
     struct scene scenes[MAX_SIZES][SITUATIONS];
-    struct rows rows;
 };
 
-/* ------------------------------------------------------------------------------------------------ figures 4 and 5 */
+extern const char *const thresholds[THRESHOLDS]; /* of EPA */
+extern const char *const motions[MOTIONS];       /* of moving pairs, in a frame */
 
-enum algorithm { ARC_SAT, ARC_FIRST, ARC_GJK, GON_SAT, GON_GJK, READING, ALGORITHMS };
+/* A number by its name, such as "apart/gjk/avx2/8", ns of a check. NaN: it was not measured. */
+void put_value(double value, const char *format, ...) __attribute__((format(printf, 2, 3)));
+double value_of(const char *name);
 
-/* What is asked in which scene. */
-enum test { APART_OVERLAP, COLLIDING_CONTACT, COLLIDING_OVERLAP, TESTS };
+/* The same with "COL", "ISA" and "N" replaced. */
+double value_at(const char *pattern, const char *column, const char *isa, size_t n);
 
-struct figures {
-    size_t rows[ISAS][TESTS][ALGORITHMS][MAX_SIZES];
-};
+enum question { QUESTION_OVERLAP, QUESTION_CONTACT, QUESTIONS };
 
-void add_figures(struct paper *paper, struct figures *figures);
+/* Figures 4 and 5 on the best instruction set and on one lane, n = 8 on all; EPA by threshold; moving pairs, with hints and
+ * without. Then all are timed, one thread: repetition after repetition goes through all rows, each time in another random
+ * order. Returns the wrong booleans of methods that must have none; prints how far repetitions differ. */
+void add_rows(const struct paper *paper, uint64_t *random);
+size_t time_rows(const struct settings *settings, uint64_t *random, FILE *out);
 
-/* ns per check; the number of a size is its index. */
-double time_of(const struct paper *paper, const struct figures *figures, enum isa isa, enum test test,
-               enum algorithm algorithm, size_t size);
-/* A title and the head of a table with a column for each n, behind those of `labels` and before `last`, which may be
- * "". */
-void print_sizes_head(const struct paper *paper, const char *title, const char *labels, const char *last, FILE *out);
+/* Depths of EPA against exact ones; support points; polygon SAT with computed perpendiculars; bytes of a shape. */
+void measure_depths(const struct paper *paper);
+void count_points(const struct paper *paper);
+void time_perpendiculars(const struct paper *paper);
+void count_bytes(const struct paper *paper);
 
-void print_figures(const struct paper *paper, const struct figures *figures, FILE *out);
-void write_figures(const struct paper *paper, const struct figures *figures);
+/* The number of the step and what it is, on stderr. */
+void begin_step(const char *what);
 
-/* The exponent of a power law: the slope of the least-squares line through the logarithms, n from 8 on. NaN for fewer
- * than two sizes. */
-double slope_of(const struct paper *paper, const double *times);
+/* ------------------------------------------------------------------------------------------------ what is written */
 
-/* ------------------------------------------------------------------------------------------------ EPA's threshold */
-
-enum { THRESHOLDS = 6 };
-
-struct depth_error {
-    double median, high, most; /* relative to the sum of both bounding radii; high: 99 % are below */
-    size_t limit, rounding;    /* outcomes other than DONE */
-};
-
-struct epa {
-    size_t rows[ISAS][KINDS][THRESHOLDS][MAX_SIZES];
-    struct depth_error errors[KINDS][THRESHOLDS][MAX_SIZES];
-};
-
-double threshold_of(size_t index);
-void add_epa(struct paper *paper, struct epa *epa);
-void print_epa(const struct paper *paper, const struct epa *epa, FILE *out);
-void write_epa(const struct paper *paper, const struct epa *epa);
-
-/* ------------------------------------------------------------------------------------------------ steps */
-
-/* Support points (of each body) that GJK asks for, of a scene's pairs; for contacts in the longer of its two phases. */
-struct step_count {
-    double mean;
-    size_t most;
-};
-
-struct steps {
-    struct step_count overlap[SITUATIONS][KINDS][MAX_SIZES];
-    struct step_count contact[KINDS][THRESHOLDS][MAX_SIZES]; /* colliding pairs */
-};
-
-void count_steps(const struct paper *paper, struct steps *steps);
-void print_steps(const struct paper *paper, const struct steps *steps, FILE *out);
-
-/* ------------------------------------------------------------------------------------------------ perpendiculars */
-
-/* Polygon SAT in plain C, one pair after the other, with a side's unit normal stored, or computed for each pair: for a
- * yes or no its length does not matter, for a depth it is made 1. */
-enum perpendicular { STORED_YES_NO, COMPUTED_YES_NO, STORED_DEPTH, NORMALISED_DEPTH, PERPENDICULARS };
-
-struct perpendiculars {
-    double ns[PERPENDICULARS][MAX_SIZES]; /* of one check, collision scene */
-};
-
-void time_perpendiculars(const struct paper *paper, struct perpendiculars *times);
-void print_perpendiculars(const struct paper *paper, const struct perpendiculars *times, FILE *out);
-
-/* ------------------------------------------------------------------------------------------------ warm starts */
-
-enum { MOTIONS = 7, VERY_SLOW_MOTION = 1, SLOW_MOTION = 3 };
-
-/* How a scene of moving pairs is answered. */
-enum start { GJK_COLD, GJK_WARM, SAT_COLD, SAT_HINTED, STARTS };
-
-struct frames {
-    size_t rows[ISAS][QUESTIONS][STARTS][MOTIONS];        /* of moving_size */
-    size_t size_rows[ISAS][QUESTIONS][STARTS][MAX_SIZES]; /* of SLOW_MOTION; GJK only */
-    size_t moving_size;                                   /* index of n = 8, or what is there */
-    size_t wrong[2][MOTIONS], checks;                     /* GJK's wrong booleans, cold and warm, of so many */
-};
-
-double motion_of(size_t index);
-void add_frames(struct paper *paper, struct frames *frames, uint64_t *random);
-void print_frames(const struct paper *paper, const struct frames *frames, FILE *out);
-void write_frames(const struct paper *paper, const struct frames *frames);
-
-/* ------------------------------------------------------------------------------------------------ vectors */
-
-enum lane_row {
-    LANE_ARC_SAT,
-    LANE_ARC_FIRST,
-    LANE_ARC_GJK,
-    LANE_GON_SAT,
-    LANE_GON_GJK,
-    LANE_CIRCLE,
-    LANE_AABB,
-    LANE_OBB,
-    LANE_ROWS
-};
-enum { MAX_LANE_ISAS = 4 };
-
-struct lanes {
-    size_t size; /* index of n = 8 */
-    const char *isas[MAX_LANE_ISAS];
-    size_t isa_count;
-    size_t rows[QUESTIONS][LANE_ROWS][MAX_LANE_ISAS];
-};
-
-/* ns of a yes or no without collision. */
-double lane_time(const struct paper *paper, const struct lanes *lanes, enum isa isa, enum lane_row row);
-void add_lanes(struct paper *paper, struct lanes *lanes);
-void print_lanes(const struct paper *paper, const struct lanes *lanes, FILE *out);
-
-/* ------------------------------------------------------------------------------------------------ wrong answers */
+void print_claims(const struct paper *paper, FILE *out);
+void print_tables(const struct paper *paper, FILE *out);
+void write_plots(const struct paper *paper);
 
 /* Asks all methods about random pairs of several families of shapes, and prints the tables. Returns the number of
  * answers that break what narc_methods.h promises. */
 size_t print_answers(const struct settings *settings, uint64_t *random, FILE *out);
-
-/* ------------------------------------------------------------------------------------------------ claims, storage */
-
-/* All that was measured. */
-struct results {
-    const struct paper *paper;
-    const struct figures *figures;
-    const struct epa *epa;
-    const struct steps *steps;
-    const struct perpendiculars *perpendiculars;
-    const struct lanes *lanes;
-    const struct frames *frames;
-};
-
-void print_claims(const struct results *results, FILE *out);
-
-/* Bytes of single precision that the paper's algorithms read of a shape. */
-size_t arc_bytes(size_t n);
-size_t gon_bytes(size_t n);
-void print_storage(const struct paper *paper, FILE *out);
 
 #endif

@@ -176,41 +176,41 @@ static narc_workers choose_workers(const narc_workers *workers, size_t count) {
 
 /* ------------------------------------------------------------------------------------------------ few boxes */
 
-/* Lists strays as they lie in the columns, both kinds together in the order of min_x, so that they hardly need sorting
- * the next time. */
-static void merge_strays(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
+/* Lists unsorted bodies as they lie in the columns, both kinds together in the order of min_x, so that they hardly need
+ * sorting the next time. */
+static void merge_unsorted(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
     const narc_box_columns *const boxes = &broad->boxes;
-    uint32_t *to = broad->strays, i = old->first, k = fresh->first;
+    uint32_t *to = broad->unsorted, i = old->first, k = fresh->first;
     while (i < old->end || k < fresh->end) {
         const bool take_old = k == fresh->end || (i < old->end && boxes->min_x[i] <= boxes->min_x[k]);
         *to++ = boxes->body[take_old ? i++ : k++];
     }
-    broad->stray_count = (size_t)(to - broad->strays);
+    broad->unsorted_count = (size_t)(to - broad->unsorted);
 }
 
-/* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they
- * were strips. There is room for all. */
-static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_strip strays[2]) {
+/* Unsorted boxes lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if
+ * they were strips. There is room for all. */
+static void write_unsorted(narc_broad_phase *broad, const narc_box *boxes, narc_strip unsorted[2]) {
     uint32_t end = (uint32_t)broad->sorted_count;
     for (uint8_t fresh = 0; fresh < 2; fresh++) {
-        strays[fresh] = (narc_strip){.first = end};
-        for (size_t k = 0; k < broad->stray_count; k++) {
-            const uint32_t body = broad->strays[k];
+        unsorted[fresh] = (narc_strip){.first = end};
+        for (size_t k = 0; k < broad->unsorted_count; k++) {
+            const uint32_t body = broad->unsorted[k];
             if (!narc_is_box(&boxes[body]))
                 broad->place[body] = NARC_NO_PLACE;
             else if (broad->fresh[body] == fresh)
                 broad->entries[end++] = (narc_box_entry){.min_x = boxes[body].min_x, .body = body};
         }
-        strays[fresh].end = end;
-        narc_fill_strip(broad, &strays[fresh], boxes);
+        unsorted[fresh].end = end;
+        narc_fill_strip(broad, &unsorted[fresh], boxes);
     }
     narc_end_columns(&broad->boxes, end);
-    merge_strays(broad, &strays[0], &strays[1]);
+    merge_unsorted(broad, &unsorted[0], &unsorted[1]);
 }
 
 /* Takes fresh bodies out of the strips. */
-static void list_strays(narc_broad_phase *broad, size_t count) {
-    if (broad->stray_count == 0) {
+static void list_unsorted(narc_broad_phase *broad, size_t count) {
+    if (broad->unsorted_count == 0) {
         for (size_t k = 0; k < count; k++)
             broad->place[k] = NARC_NO_PLACE;
         for (uint32_t k = 0; k < broad->sorted_count; k++)
@@ -218,12 +218,12 @@ static void list_strays(narc_broad_phase *broad, size_t count) {
     }
     for (size_t body = 0; (body = narc_find_flag(broad->fresh, body, count)) < count; body++) {
         const uint32_t place = broad->place[body];
-        if (place == NARC_STRAY)
+        if (place == NARC_UNSORTED)
             continue;
         if (place != NARC_NO_PLACE)
             broad->boxes.min_y[place] = INFINITY; /* nothing overlaps it; min_x stays, for the order */
-        broad->place[body] = NARC_STRAY;
-        broad->strays[broad->stray_count++] = (uint32_t)body;
+        broad->place[body] = NARC_UNSORTED;
+        broad->unsorted[broad->unsorted_count++] = (uint32_t)body;
     }
 }
 
@@ -231,15 +231,16 @@ static void list_strays(narc_broad_phase *broad, size_t count) {
  * swept before it is asked how long that took. */
 enum { STEPS_FOR_BOX = 4, FRESH_AT_A_TIME = 16 };
 
-/* Sweeps fresh boxes with each other, with the other strays, and one by one with the strips. False: it took long. */
-static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
-                         size_t count, const narc_strip strays[2], size_t *out_count) {
+/* Sweeps fresh boxes with each other, with the other unsorted ones, and one by one with the strips. False: it took
+ * long. */
+static bool sweep_unsorted(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
+                           size_t count, const narc_strip unsorted[2], size_t *out_count) {
     const narc_box_columns *const boxes = &broad->boxes;
     const uint64_t most_steps = STEPS_FOR_BOX * (uint64_t)count;
     sweep job = {.broad = broad, .kernels = kernels, .filter = filter, .tasks = 1};
     uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
     own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, &job, 0, 0, a, b};
-    narc_strip few = strays[1], behind = strays[1];
+    narc_strip few = unsorted[1], behind = unsorted[1];
     atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
     begin_block(&own);
     for (; behind.first < behind.end && own.pairs.steps < most_steps; few.first = few.end) {
@@ -247,7 +248,7 @@ static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kerne
         behind.first = few.end;
         kernels->sweep(boxes, few.first, few.end, few.first, few.end, few.width, &own.pairs);
         sweep_both(broad, kernels, &few, &behind, &own.pairs);
-        sweep_both(broad, kernels, &few, &strays[0], &own.pairs);
+        sweep_both(broad, kernels, &few, &unsorted[0], &own.pairs);
         for (uint32_t k = few.first; k < few.end; k++) {
             const narc_strip one = {.first = k, .end = k + 1, .min_y = boxes->min_y[k], .max_y = boxes->max_y[k]};
             sweep_levels(broad, kernels, &one, &broad->levels[broad->level_count], &own.pairs);
@@ -261,17 +262,17 @@ static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kerne
 
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
                       const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count) {
-    narc_strip strays[2];
+    narc_strip unsorted[2];
     narc_status status;
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
     const narc_workers chosen = choose_workers(workers, count);
-    if (!kernels || fresh_count > narc_most_strays(count) / 2)
+    if (!kernels || fresh_count > narc_most_unsorted(count) / 2)
         return false;
-    if (broad->stray_count + fresh_count > narc_most_strays(count))
+    if (broad->unsorted_count + fresh_count > narc_most_unsorted(count))
         narc_make_strips(broad, boxes, count, &chosen);
-    list_strays(broad, count);
-    sort_strays(broad, boxes, strays);
-    return sweep_strays(broad, kernels, filter, count, strays, out_count);
+    list_unsorted(broad, count);
+    write_unsorted(broad, boxes, unsorted);
+    return sweep_unsorted(broad, kernels, filter, count, unsorted, out_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ the call */

@@ -288,7 +288,7 @@ void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t cou
     list_strips(&p, listed);
     list_levels(&p);
     broad->sorted_count = listed;
-    broad->stray_count = 0;
+    broad->unsorted_count = 0;
     narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, fill_strips, &p);
     narc_end_columns(&broad->boxes, listed);
 }

@@ -38,7 +38,7 @@ static narc_box turn_box(const struct job *job, size_t k) {
     const double x = narc_position_at(job->movers->x, k), y = narc_position_at(job->movers->y, k);
     const double bound_x = (double)header->bound_x, bound_y = (double)header->bound_y;
     const double scale = (double)narc_float_or(job->movers->scale, k, 1);
-    const double bound = (double)header->bound_radius, tolerance = (double)job->casts.tolerance;
+    const double bound = (double)header->bound_radius, tolerance = (double)job->casts.batch.tolerance;
     const double radius =
         scale * (bound + sqrt(bound_x * bound_x + bound_y * bound_y)) +
         (tolerance > 0 ? tolerance : NARC_TURNING_TOLERANCE * scale * bound); /* as far as a hit may be */
@@ -48,7 +48,7 @@ static narc_box turn_box(const struct job *job, size_t k) {
 
 /* The box of a mover all the way, with its target. */
 static narc_box sweep_box(const struct job *job, size_t k, narc_box still, float motion_x, float motion_y) {
-    const double target = (double)narc_float_or(job->casts.targets, k, job->casts.target),
+    const double target = (double)narc_float_or(job->casts.batch.targets, k, job->casts.batch.target),
                  room = target > 0 ? target * (1 + 0x1p-20) : 0, x = (double)motion_x, y = (double)motion_y;
     return (narc_box){round_down((double)still.min_x + (x < 0 ? x : 0) - room),
                       round_down((double)still.min_y + (y < 0 ? y : 0) - room),
@@ -60,7 +60,7 @@ static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
     const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     struct job *const job = argument;
     narc_box *const boxes = job->index->sweeps;
-    const narc_motions *const motions = &job->casts.motions[0];
+    const narc_motions *const motions = &job->casts.batch.motions[0];
     size_t skipped = job->casts.kernels->box(&job->boxes, NULL, first, end - first, boxes);
     (void)part;
     for (size_t k = first; k < end; k++) {
@@ -84,7 +84,7 @@ static void cast_movers(void *argument, size_t part, size_t first, size_t end) {
     struct job *const job = argument;
     (void)part;
     for (size_t k = first; k < end; k++)
-        job->casts.rows[k] = (narc_impact){.pair = (uint32_t)k};
+        job->casts.batch.out[k] = (narc_impact){.pair = (uint32_t)k};
     if (job->pair_count == 0)
         return;
     const narc_region *const regions = job->index->regions, last = regions[end - 1];
@@ -144,9 +144,9 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
     if (status != NARC_OK)
         return status;
     job.pair_count = pairs.count;
-    job.casts.batch = &batch;
-    job.casts.rows = out_rows;
-    job.casts.nearest = true;
+    job.casts.batch.batch = &batch;
+    job.casts.batch.out = out_rows;
+    job.casts.batch.nearest = true;
     narc_run_ranges(q->workers, movers->count, PART, cast_movers, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.casts.skipped, memory_order_relaxed);

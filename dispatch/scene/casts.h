@@ -5,23 +5,15 @@
 #ifndef NARC_CASTS_H
 #define NARC_CASTS_H
 
-#include <stdbool.h>
-
 #include <stdatomic.h>
 
 #include "dispatch.h"
 #include "narc_scene.h"
 
-/* What a call works on. Its pairs may be any; of `nearest` those of a mover follow each other, its row is the one with
- * the number of A, and says whom it hits first; all such rows are misses before. */
+/* What a call works on. */
 typedef struct narc_cast_job {
-    const narc_batch *batch;
+    narc_cast_batch batch;
     const narc_kernel_table *kernels;
-    narc_motions motions[2]; /* of A's bodies, and of B's */
-    float target, tolerance;
-    narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A */
-    bool nearest, front_only;
-    narc_impact *rows;
     atomic_size_t skipped;
 } narc_cast_job;
 

@@ -2,7 +2,6 @@
  *
  * box2d_workers.h - narc's tasks through the hooks that an engine has for Box2D's (versions 3.0 and 3.1).
  */
-/* code: begin */
 #include <box2d/box2d.h>
 #include <narc.h>
 
@@ -30,4 +29,3 @@ static inline narc_workers box2d_workers(b2WorldDef *hooks) { /* it must last as
     narc_workers workers = {hooks, (unsigned)hooks->workerCount, run_by_hooks};
     return workers;
 }
-/* code: end */

@@ -2,7 +2,6 @@
  *
  * enkits_workers.h - narc's tasks in enkiTS.
  */
-/* code: begin */
 #include <TaskScheduler.h>
 #include <narc.h>
 
@@ -19,4 +18,3 @@ static void run_in_enkits(void *context, unsigned task_count, void (*task)(void 
 inline narc_workers enkits_workers(enki::TaskScheduler &scheduler) {
     return {&scheduler, scheduler.GetNumTaskThreads(), run_in_enkits};
 }
-/* code: end */

@@ -2,7 +2,6 @@
  *
  * thread_workers.h - narc's tasks in threads of the C++ library.
  */
-/* code: begin */
 #include <narc.h>
 
 #include <thread>
@@ -18,4 +17,3 @@ static void run_in_threads(void *, unsigned task_count, void (*task)(void *, uns
 }
 
 inline narc_workers thread_workers() { return {nullptr, std::thread::hardware_concurrency(), run_in_threads}; }
-/* code: end */

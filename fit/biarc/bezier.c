@@ -8,7 +8,7 @@
 
 #include "biarc/biarc.h"
 #include "error.h"
-#include "narc_fit.h"
+#include "outline/path.h"
 
 /* Least tolerance, relative to the extent. */
 static const double LEAST_TOLERANCE = 1e-9;
@@ -153,53 +153,70 @@ static narc_status fit_best(const narc_cubic *curve, double tolerance, double ro
     return status;
 }
 
-static narc_curve_arc describe_arc(const struct frame *frame, const narc_spline_arc *arc) {
-    narc_curve_arc out = {.start = from_frame(frame, arc->start), .end = from_frame(frame, arc->end)};
-    if (arc->curvature == 0) {
-        out.center = out.start;
-        out.radius = INFINITY;
-        return out;
+narc_curve_arc narc_describe_arc(const narc_spline_arc *arc) {
+    narc_curve_arc out = {.start = arc->start, .end = arc->end, .center = arc->start, .radius = INFINITY};
+    if (arc->curvature != 0) {
+        out.center = along(arc->start, 1 / arc->curvature, turned(arc->start_tangent));
+        out.radius = fabs(1 / arc->curvature);
+        out.turn = arc->turn;
     }
-    const double radius = 1 / arc->curvature;
-    out.center = from_frame(frame, along(arc->start, radius, turned(arc->start_tangent)));
-    out.radius = ldexp(fabs(radius), frame->exponent);
-    out.turn = arc->turn;
     return out;
 }
 
-static narc_status write_arcs(const struct frame *frame, const narc_spline *spline, narc_point first, narc_point last,
-                              narc_curve_arc *out_arcs, size_t capacity, narc_error *error) {
-    for (size_t k = 0; k < spline->count && k < capacity; k++) {
-        out_arcs[k] = describe_arc(frame, &spline->arcs[k]);
-        if (k == 0)
-            out_arcs[k].start = first;
-        if (k + 1 == spline->count)
-            out_arcs[k].end = last;
-    }
-    if (out_arcs && capacity < spline->count) {
-        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)spline->count, "room for %zu arcs, but there are %zu",
-                         capacity, spline->count);
-    }
+/* The checks of a curve, and its frame. */
+static narc_status prepare(const narc_point *controls, size_t degree, double tolerance, struct frame *out_frame,
+                           narc_error *error) {
+    const narc_status status = check_controls(controls, degree, tolerance, error);
+    if (status)
+        return status;
+    *out_frame = find_frame(controls, degree);
+    const double extent = ldexp(out_frame->extent, -out_frame->exponent);
+    const double least = ldexp(fmax(LEAST_TOLERANCE * extent, 16 * out_frame->rounding), out_frame->exponent);
+    if (extent > 0 && tolerance < least)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, at least %g is needed for this curve",
+                         tolerance, least);
     return NARC_OK;
 }
 
-static narc_status fit_curve(const narc_point *controls, size_t degree, double tolerance, const struct frame *frame,
-                             narc_spline *spline, narc_error *error) {
-    const double in_frame = ldexp(tolerance, -frame->exponent), extent = ldexp(frame->extent, -frame->exponent);
-    const double least = fmax(LEAST_TOLERANCE * extent, 16 * frame->rounding);
-    if (in_frame < least) {
-        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, at least %g is needed for this curve",
-                         tolerance, ldexp(least, frame->exponent));
-    }
+narc_status narc_check_curve(const narc_point *controls, size_t degree, double tolerance, narc_error *error) {
+    struct frame frame;
+    return prepare(controls, degree, tolerance, &frame, error);
+}
+
+narc_status narc_add_curve(const narc_point *controls, size_t degree, double tolerance, narc_arc_list *to,
+                           narc_error *error) {
+    struct frame frame;
+    narc_spline spline = {0};
+    narc_status status = prepare(controls, degree, tolerance, &frame, error);
+    if (status || frame.extent == 0)
+        return status;
     narc_point local[4];
     for (size_t k = 0; k <= degree; k++)
-        local[k] = to_frame(frame, controls[k]);
+        local[k] = to_frame(&frame, controls[k]);
     const narc_cubic curve = raise_degree(local, degree);
     /* A tolerance of many times the curve means no more than that of a few times. */
-    const double limit = fmin(in_frame, 16 * extent) - 2 * frame->rounding;
-    const narc_status status = fit_best(&curve, limit, frame->rounding, spline, error);
-    /* The sum of what was subtracted above may be a rounding more. */
-    spline->distance = fmin(ldexp(spline->distance + 2 * frame->rounding, frame->exponent), tolerance);
+    const double most = 16 * ldexp(frame.extent, -frame.exponent);
+    const double limit = fmin(ldexp(tolerance, -frame.exponent), most) - 2 * frame.rounding;
+    status = fit_best(&curve, limit, frame.rounding, &spline, error);
+    narc_curve_arc *arcs = status ? NULL : narc_grow(to->arcs, &to->capacity, to->count + spline.count, sizeof *arcs);
+    if (!status && !arcs)
+        status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
+    for (size_t k = 0; k < spline.count && !status; k++) {
+        narc_curve_arc arc = narc_describe_arc(&spline.arcs[k]);
+        arc.start = k ? from_frame(&frame, arc.start) : controls[0];
+        arc.end = k + 1 < spline.count ? from_frame(&frame, arc.end) : controls[degree];
+        arc.center = from_frame(&frame, arc.center);
+        arc.radius = ldexp(arc.radius, frame.exponent);
+        arcs[to->count + k] = arc;
+    }
+    if (!status) {
+        /* The sum of what was subtracted above may be a rounding more. */
+        const double distance = fmin(ldexp(spline.distance + 2 * frame.rounding, frame.exponent), tolerance);
+        to->arcs = arcs;
+        to->count += spline.count;
+        to->distance = fmax(to->distance, distance);
+    }
+    free(spline.arcs);
     return status;
 }
 
@@ -214,19 +231,18 @@ narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double to
     }
     if (degree < 1 || degree > 3)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)degree, "degree is %zu, it must be 1 to 3", degree);
-    narc_status status = check_controls(controls, degree, tolerance, error);
-    if (status != NARC_OK)
-        return status;
-    const struct frame frame = find_frame(controls, degree);
-    narc_spline spline = {0};
-    if (frame.extent > 0)
-        status = fit_curve(controls, degree, tolerance, &frame, &spline, error);
-    if (status == NARC_OK) {
-        status = write_arcs(&frame, &spline, controls[0], controls[degree], out_arcs, capacity, error);
-        *out_count = spline.count;
+    narc_arc_list list = {0};
+    narc_status status = narc_add_curve(controls, degree, tolerance, &list, error);
+    for (size_t k = 0; k < list.count && k < capacity; k++)
+        out_arcs[k] = list.arcs[k];
+    if (!status) {
+        *out_count = list.count;
+        if (out_arcs && capacity < list.count)
+            status = narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)list.count,
+                               "room for %zu arcs, but there are %zu", capacity, list.count);
+        else
+            *out_distance = list.distance;
     }
-    if (status == NARC_OK)
-        *out_distance = spline.distance;
-    free(spline.arcs);
+    free(list.arcs);
     return status;
 }

@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "narc_fit.h"
 #include "outline/vector.h"
 
 /* A cubic's control points. */
@@ -85,5 +86,31 @@ typedef struct narc_spline {
  * NARC_ERROR_MEMORY, NARC_ERROR_NO_SOLUTION. On error the list may have some of the arcs. */
 narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double rounding, narc_spline *spline,
                             narc_error *error);
+
+/* What comes of curves and chains of lines: arcs in the form of the interface, from malloc(), and their distance. */
+typedef struct narc_arc_list {
+    narc_curve_arc *arcs;
+    size_t count, capacity;
+    double distance;
+} narc_arc_list;
+
+narc_curve_arc narc_describe_arc(const narc_spline_arc *arc);
+
+/* Lines from each of `points[0 .. count-1]` to the next; if `closed` the last is the first. No two successive ones are
+ * the same. `slack` is how far the points may be from what they were traced in. */
+typedef struct narc_polyline {
+    const narc_point *points;
+    size_t count;
+    bool closed;
+    double slack;
+} narc_polyline;
+
+/* Each adds the arcs for a curve, or for lines: arcs and lines from the first point to the last, which join with a common
+ * tangent but at corners, and no point of either further than `tolerance` from the other. Errors are those of
+ * narc_fit_bezier(); on error the list is as before. The check is of all but memory and solutions. */
+narc_status narc_check_curve(const narc_point *controls, size_t degree, double tolerance, narc_error *error);
+narc_status narc_add_curve(const narc_point *controls, size_t degree, double tolerance, narc_arc_list *to,
+                           narc_error *error);
+narc_status narc_add_polyline(const narc_polyline *line, double tolerance, narc_arc_list *to, narc_error *error);
 
 #endif

@@ -65,11 +65,6 @@ void narc_expand_circle(const narc_cubic *curve, narc_point origin, narc_point n
     memcpy(out_coefficients, sums, sizeof sums);
 }
 
-static narc_point normalised(narc_point v) {
-    const double size = length(v);
-    return (narc_point){v.x / size, v.y / size};
-}
-
 static void find_end_tangents(const narc_cubic *curve, double rounding, narc_point out_ends[2]) {
     const narc_point *c = curve->c;
     narc_point start = minus(c[3], c[0]), end = start;
@@ -78,8 +73,8 @@ static void find_end_tangents(const narc_cubic *curve, double rounding, narc_poi
         start = length(leaving) > rounding ? leaving : start;
         end = length(arriving) > rounding ? arriving : end;
     }
-    out_ends[0] = normalised(start);
-    out_ends[1] = normalised(end);
+    out_ends[0] = unit(start);
+    out_ends[1] = unit(end);
 }
 
 /* Coefficients of B'.B'', a cubic in t: half the derivative of the squared speed. */
@@ -119,7 +114,7 @@ static bool describe_cusp(const narc_cubic *curve, double t, narc_cusp *out_cusp
         return false;
     /* If the second derivative vanishes as well the curve goes on the way it came. */
     const bool turns = bend > 1e-4 * length(d.third);
-    const narc_point out = normalised(turns ? d.second : d.third);
+    const narc_point out = unit(turns ? d.second : d.third);
     *out_cusp = (narc_cusp){t, turns ? (narc_point){-out.x, -out.y} : out, out};
     return true;
 }

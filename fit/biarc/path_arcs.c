@@ -1,24 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * path_arcs.c - the contours of a path as chains of arcs: narc_fit_bezier() for each line and curve, and
- * narc_fit_polyline() for lines one after the other. What comes out is shown to the store first.
+ * path_arcs.c - the contours of a path as chains of arcs: each curve, and lines one after the other. What comes out is shown to the store first.
  */
 #include <math.h>
 #include <stdlib.h>
 
-#include "biarc/polyline.h"
+#include "biarc/biarc.h"
 #include "error.h"
 #include "narc_chains.h"
 #include "outline/crossings.h"
 #include "outline/path.h"
 
-struct builder {
-    narc_arc_chains chains;
-    size_t arc_capacity, end_capacity;
+/* How near a contour is fitted, and whether by lines alone; whether it has a chain, and that met another one. */
+struct effort {
     double tolerance;
+    bool lines, drawn, meets;
+};
+
+struct builder {
+    narc_arc_list list; /* of chain k the arcs ends[k - 1] .. ends[k] - 1 */
+    size_t *ends;
+    size_t count, end_capacity;
+    double tolerance; /* of the contour that is fitted */
     bool open;
-    narc_contours drawn; /* flattened */
-    narc_aabb *boxes;    /* of its contours */
+    struct effort *efforts; /* of contours */
+    narc_contours drawn;    /* flattened */
+    narc_aabb *boxes;       /* of its contours */
     narc_crossings crossings;
     narc_shapes *store; /* that is asked what it takes */
     narc_error *error;
@@ -26,73 +33,8 @@ struct builder {
 
 static narc_status fail_memory(const struct builder *builder) {
     return narc_fail(builder->error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %zu arcs",
-                     builder->chains.arc_count + 1);
+                     builder->list.count + 1);
 }
-
-/* Adds a line or curve: once to count its arcs, once to have them. */
-static narc_status add_curve(struct builder *builder, const narc_point *controls, size_t degree) {
-    size_t count;
-    double distance;
-    narc_status status =
-        narc_fit_bezier(controls, degree, builder->tolerance, NULL, 0, &count, &distance, builder->error);
-    if (status || count == 0)
-        return status;
-    narc_arc_chains *chains = &builder->chains;
-    narc_curve_arc *arcs = narc_grow(chains->arcs, &builder->arc_capacity, chains->arc_count + count, sizeof *arcs);
-    if (!arcs)
-        return fail_memory(builder);
-    chains->arcs = arcs;
-    status = narc_fit_bezier(controls, degree, builder->tolerance, arcs + chains->arc_count, count, &count, &distance,
-                             builder->error);
-    chains->arc_count += count;
-    chains->distance = fmax(chains->distance, distance);
-    return status;
-}
-
-static narc_curve_arc describe_arc(const narc_spline_arc *arc) {
-    narc_curve_arc out = {.start = arc->start, .end = arc->end, .center = arc->start, .radius = INFINITY};
-    if (arc->curvature != 0) {
-        out.center = along(arc->start, 1 / arc->curvature, turned(arc->start_tangent));
-        out.radius = fabs(1 / arc->curvature);
-        out.turn = arc->turn;
-    }
-    return out;
-}
-
-/* A tolerance must be what narc_fit_bezier() takes for each of the lines. */
-static narc_status check_tolerance(const struct builder *builder, const narc_point *points, size_t count) {
-    narc_status status = NARC_OK;
-    for (size_t k = 0; k + 1 < count && !status; k++) {
-        size_t arcs;
-        double distance;
-        status = narc_fit_bezier(points + k, 1, builder->tolerance, NULL, 0, &arcs, &distance, builder->error);
-    }
-    return status;
-}
-
-/* Adds lines from each point to the next, `count` points of which no two successive ones are the same. */
-static narc_status add_polyline(struct builder *builder, const narc_point *points, size_t count, bool closed,
-                                double slack) {
-    const narc_polyline line = {points, count, closed, slack};
-    narc_arc_chains *chains = &builder->chains;
-    narc_spline spline = {0};
-    narc_status status = check_tolerance(builder, points, count);
-    if (!status)
-        status = narc_fit_polyline(&line, builder->tolerance, &spline, builder->error);
-    narc_curve_arc *arcs =
-        status ? NULL : narc_grow(chains->arcs, &builder->arc_capacity, chains->arc_count + spline.count, sizeof *arcs);
-    if (arcs) {
-        for (size_t k = 0; k < spline.count; k++)
-            arcs[chains->arc_count + k] = describe_arc(&spline.arcs[k]);
-        chains->arcs = arcs;
-        chains->arc_count += spline.count;
-        chains->distance = fmax(chains->distance, spline.distance);
-    }
-    free(spline.arcs);
-    return status || arcs ? status : fail_memory(builder);
-}
-
-static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
 
 /* Adds the lines from `points[0]` on, and one to `start` unless that is NULL; `closed` if they are a whole contour. */
 static narc_status add_lines(struct builder *builder, const narc_point *points, size_t lines, const narc_point *start,
@@ -108,10 +50,11 @@ static narc_status add_lines(struct builder *builder, const narc_point *points, 
     if (start && !is_same(*start, kept[count - 1]))
         kept[count++] = *start;
     narc_status status = NARC_OK;
+    const narc_polyline line = {kept, count, closed, slack};
     if (count > 2)
-        status = add_polyline(builder, kept, count, closed, slack);
+        status = narc_add_polyline(&line, builder->tolerance, &builder->list, builder->error);
     else if (count == 2)
-        status = add_curve(builder, kept, 1);
+        status = narc_add_curve(kept, 1, builder->tolerance, &builder->list, builder->error);
     free(kept);
     return status;
 }
@@ -132,11 +75,31 @@ static narc_status add_contour(struct builder *builder, const unsigned char *deg
             points += lines;
             k += lines + closing;
         } else {
-            status = add_curve(builder, points, degrees[k]); /* the pen's place stands before the move's points */
+            status = narc_add_curve(points, degrees[k], builder->tolerance, &builder->list,
+                                    builder->error); /* the pen's place stands before the move's points */
             points += degrees[k++];
         }
     }
     return status;
+}
+
+/* A contour's own lines, or the chords of its curves. */
+static narc_status add_chords(struct builder *builder, size_t contour, double flatness) {
+    const narc_contours *drawn = &builder->drawn;
+    narc_arc_list *list = &builder->list;
+    const size_t begin = begin_of(drawn->ends, contour), end = drawn->ends[contour];
+    narc_curve_arc *arcs = narc_grow(list->arcs, &list->capacity, list->count + end - begin, sizeof *arcs);
+    if (!arcs)
+        return fail_memory(builder);
+    list->arcs = arcs;
+    for (size_t i = begin; i < end; i++) {
+        const bool is_last = i + 1 == end;
+        const narc_point p = drawn->points[i], q = drawn->points[is_last ? begin : i + 1];
+        if (!is_same(p, q) && !(is_last && builder->open))
+            arcs[list->count++] = (narc_curve_arc){.start = p, .end = q, .center = p, .radius = INFINITY};
+    }
+    list->distance = fmax(list->distance, flatness);
+    return NARC_OK;
 }
 
 /* ---------------------------------------------------------------------------- directions */
@@ -148,48 +111,42 @@ static narc_point find_middle(const narc_curve_arc *piece) {
 }
 
 /* The area inside the pieces from `begin` on. */
-static double measure_chain(const narc_arc_chains *chains, size_t begin) {
+static double measure_chain(const narc_arc_list *list, size_t begin) {
     double twice = 0;
-    const narc_point base = chains->arcs[begin].start;
-    for (size_t i = begin; i < chains->arc_count; i++) {
-        const narc_curve_arc *piece = &chains->arcs[i];
+    const narc_point base = list->arcs[begin].start;
+    for (size_t i = begin; i < list->count; i++) {
+        const narc_curve_arc *piece = &list->arcs[i];
         const narc_point middle = minus(find_middle(piece), base);
         twice += cross(minus(piece->start, base), middle) + cross(middle, minus(piece->end, base));
     }
     return 0.5 * twice;
 }
 
-static void reverse_chain(narc_arc_chains *chains, size_t begin) {
-    for (size_t i = begin; i < chains->arc_count; i++) {
-        narc_curve_arc *piece = &chains->arcs[i];
+static void reverse_chain(narc_arc_list *list, size_t begin) {
+    for (size_t i = begin; i < list->count; i++) {
+        narc_curve_arc *piece = &list->arcs[i];
         const narc_point end = piece->end;
         piece->end = piece->start;
         piece->start = end;
         piece->turn = -piece->turn;
     }
-    for (size_t i = begin, j = chains->arc_count - 1; i < j; i++, j--) {
-        const narc_curve_arc piece = chains->arcs[i];
-        chains->arcs[i] = chains->arcs[j];
-        chains->arcs[j] = piece;
+    for (size_t i = begin, j = list->count - 1; i < j; i++, j--) {
+        const narc_curve_arc piece = list->arcs[i];
+        list->arcs[i] = list->arcs[j];
+        list->arcs[j] = piece;
     }
 }
-
-static size_t begin_of(const narc_contours *drawn, size_t contour) { return contour ? drawn->ends[contour - 1] : 0; }
 
 /* Is a contour inside an odd number of others? */
 static bool is_hole(const struct builder *builder, size_t contour) {
     const narc_contours *drawn = &builder->drawn;
-    const narc_point p = drawn->points[begin_of(drawn, contour)];
+    const narc_point p = drawn->points[begin_of(drawn->ends, contour)];
     bool inside = false;
-    for (size_t k = 0, begin = 0; k < drawn->count; begin = drawn->ends[k++]) {
+    for (size_t k = 0; k < drawn->count; k++) {
         const narc_aabb *box = &builder->boxes[k];
-        if (k == contour || p.x < box->min_x || p.x > box->max_x || p.y < box->min_y || p.y > box->max_y)
-            continue;
-        for (size_t i = begin; i < drawn->ends[k]; i++) {
-            const narc_point a = drawn->points[i], b = drawn->points[i + 1 < drawn->ends[k] ? i + 1 : begin];
-            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-                inside = !inside;
-        }
+        const size_t begin = begin_of(drawn->ends, k);
+        if (k != contour && p.x >= box->min_x && p.x <= box->max_x && p.y >= box->min_y && p.y <= box->max_y)
+            inside ^= is_around(drawn->points + begin, drawn->ends[k] - begin, p);
     }
     return inside;
 }
@@ -203,7 +160,8 @@ static const double FLAT = 100, FLATTER = 0.25;
 /* Of the tolerance, what arcs get if flat ones become lines, and what must be left for these. */
 static const double SHARE_OF_ARCS = 0.75, LEAST_SHARE = 1.0 / 8;
 
-/* So often a contour is fitted anew: nearer, where its arcs meet and it does not, or with more lines. */
+/* So often a contour is fitted anew: nearer, where its arcs meet and it does not, or with more lines; at last with lines
+ * alone. */
 enum { MOST_TRIES = 10 };
 
 /* How many chords serve an arc within `room`; 0: it may stay. */
@@ -218,18 +176,18 @@ static size_t count_chords(const narc_curve_arc *arc, double flat, double room, 
 
 /* Puts chords in the place of flat arcs from piece `begin` on. */
 static narc_status cut_flat_arcs(struct builder *builder, size_t begin, double flat, double room) {
-    narc_arc_chains *chains = &builder->chains;
+    narc_arc_list *list = &builder->list;
     double distance = 0;
-    size_t count = chains->arc_count;
-    for (size_t i = begin; i < chains->arc_count; i++) {
-        const size_t chords = count_chords(&chains->arcs[i], flat, room, &distance);
+    size_t count = list->count;
+    for (size_t i = begin; i < list->count; i++) {
+        const size_t chords = count_chords(&list->arcs[i], flat, room, &distance);
         count += chords ? chords - 1 : 0;
     }
-    narc_curve_arc *arcs = narc_grow(chains->arcs, &builder->arc_capacity, count, sizeof *arcs);
+    narc_curve_arc *arcs = narc_grow(list->arcs, &list->capacity, count, sizeof *arcs);
     if (!arcs)
         return fail_memory(builder);
-    chains->arcs = arcs;
-    for (size_t i = chains->arc_count, to = count; i-- > begin;) {
+    list->arcs = arcs;
+    for (size_t i = list->count, to = count; i-- > begin;) {
         const narc_curve_arc arc = arcs[i];
         const size_t chords = count_chords(&arc, flat, room, &distance);
         narc_point end = arc.end;
@@ -246,21 +204,20 @@ static narc_status cut_flat_arcs(struct builder *builder, size_t begin, double f
         if (!chords)
             arcs[--to] = arc;
     }
-    chains->arc_count = count;
-    chains->distance += distance;
+    list->count = count;
+    list->distance += distance;
     return NARC_OK;
 }
 
 static narc_status ask_store(const struct builder *builder, size_t begin) {
-    const narc_arc_chains *chains = &builder->chains;
-    const size_t pieces = chains->arc_count - begin;
+    const narc_arc_list *list = &builder->list;
+    const size_t pieces = list->count - begin;
     const narc_chain_options options = {.closed = !builder->open};
     narc_arc *arcs = malloc((3 * pieces + 1) * sizeof *arcs);
     size_t count;
     if (!arcs)
         return fail_memory(builder);
-    narc_status status =
-        narc_describe_chain(chains->arcs + begin, pieces, !builder->open, arcs, &count, builder->error);
+    narc_status status = narc_describe_chain(list->arcs + begin, pieces, !builder->open, arcs, &count, builder->error);
     if (!status)
         status = narc_add_chain(builder->store, arcs, count, &options, NULL, 0, &count, builder->error);
     free(arcs);
@@ -285,7 +242,7 @@ static narc_status fail_crossing(const struct builder *builder, const narc_path 
     for (int k = 0; k < 2; k++) {
         const size_t point = k ? at->other : at->line;
         contours[k] = narc_find_contour(drawn->ends, drawn->count, point);
-        lines[k] = narc_find_drawn_line(path, drawn, contours[k], point - begin_of(drawn, contours[k]));
+        lines[k] = narc_find_drawn_line(path, drawn, contours[k], point - begin_of(drawn->ends, contours[k]));
     }
     return narc_fail(builder->error, NARC_ERROR_NOT_SIMPLE, contours[0], (double)lines[0],
                      "contour %zu: line %zu %s line %zu of contour %zu at (%.6g, %.6g)", contours[0], lines[0],
@@ -294,7 +251,7 @@ static narc_status fail_crossing(const struct builder *builder, const narc_path 
 
 /* What is wrong with a contour whatever arcs are fitted to it. */
 static narc_status check_contour(const struct builder *builder, const narc_path *path, size_t contour) {
-    const size_t begin = begin_of(&builder->drawn, contour), last = builder->drawn.ends[contour] - 1;
+    const size_t begin = begin_of(builder->drawn.ends, contour), last = builder->drawn.ends[contour] - 1;
     const narc_point *points = builder->drawn.points;
     const narc_crossing *crossing = find_crossing(builder, contour, false);
     double size = 0;
@@ -309,9 +266,11 @@ static narc_status check_contour(const struct builder *builder, const narc_path 
 /* Fits a contour, which begins with `points[0]`, and asks the store; no arcs come of a point. */
 static narc_status fit_contour(struct builder *builder, const narc_path *path, size_t contour,
                                const unsigned char *degrees, size_t count, const narc_point *points) {
-    narc_arc_chains *chains = &builder->chains;
-    const size_t begin = chains->arc_count;
-    const double whole = builder->tolerance, before = chains->distance;
+    narc_arc_list *list = &builder->list;
+    struct effort *effort = &builder->efforts[contour];
+    const size_t begin = list->count;
+    const double whole = builder->tolerance, before = list->distance;
+    const double flatness = fmax(0, builder->drawn.flatness - path->slack);
     const bool hole = !builder->open && is_hole(builder, contour);
     double flat = FLAT;
     narc_status status = check_contour(builder, path, contour);
@@ -321,20 +280,23 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     if (status)
         return status;
     builder->error = &reason;
+    builder->tolerance = effort->tolerance;
     for (int tries = 0; tries < MOST_TRIES; tries++) {
-        chains->arc_count = begin;
-        chains->distance = 0;
-        status = add_contour(builder, degrees, count, points, path->slack);
-        if (status || chains->arc_count == begin)
+        const bool lines = flatness <= whole && (effort->lines || tries + 1 == MOST_TRIES);
+        list->count = begin;
+        list->distance = 0;
+        status =
+            lines ? add_chords(builder, contour, flatness) : add_contour(builder, degrees, count, points, path->slack);
+        if (status || list->count == begin)
             break;
-        if (!builder->open && (hole ? measure_chain(chains, begin) > 0 : measure_chain(chains, begin) < 0))
-            reverse_chain(chains, begin);
-        const double room = whole - chains->distance;
+        if (!builder->open && (hole ? measure_chain(list, begin) > 0 : measure_chain(list, begin) < 0))
+            reverse_chain(list, begin);
+        const double room = whole - list->distance;
         bool any = false;
-        for (size_t i = begin; i < chains->arc_count; i++)
-            any = any || count_chords(&chains->arcs[i], flat, whole, &(double){0});
+        for (size_t i = begin; i < list->count; i++)
+            any = any || count_chords(&list->arcs[i], flat, whole, &(double){0});
         if (any && room < LEAST_SHARE * whole) {
-            builder->tolerance = SHARE_OF_ARCS * whole;
+            builder->tolerance = fmin(builder->tolerance, SHARE_OF_ARCS * whole);
             continue;
         }
         status = any ? cut_flat_arcs(builder, begin, flat, room) : NARC_OK;
@@ -350,18 +312,19 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     }
     builder->error = error;
     builder->tolerance = whole;
-    chains->distance = fmax(chains->distance, before);
-    if (status == NARC_OK && chains->arc_count > begin) {
-        size_t *ends = narc_grow(chains->ends, &builder->end_capacity, chains->count + 1, sizeof *ends);
+    list->distance = fmax(list->distance, before);
+    if (status == NARC_OK && list->count > begin) {
+        size_t *ends = narc_grow(builder->ends, &builder->end_capacity, builder->count + 1, sizeof *ends);
         if (!ends)
             return fail_memory(builder);
-        chains->ends = ends;
-        ends[chains->count++] = chains->arc_count;
+        builder->ends = ends;
+        ends[builder->count++] = list->count;
+        effort->drawn = true;
     }
     if (crossing)
         return fail_crossing(builder, path, crossing);
     const bool is_round = status == NARC_ERROR_NOT_SIMPLE && builder->open &&
-                          is_same(chains->arcs[begin].start, chains->arcs[chains->arc_count - 1].end);
+                          is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
     if (status && status != NARC_ERROR_MEMORY && meets && !is_round)
         return narc_fail(error, status, contour, whole,
                          "contour %zu: it is too thin for the tolerance %g: its sides meet", contour, whole);
@@ -385,6 +348,139 @@ static narc_status add_moves(struct builder *builder, const narc_path *path) {
     return status;
 }
 
+/* ---------------------------------------------------------------------------- chains that cross each other */
+
+static bool holds(const narc_curve_arc *on, narc_point p) {
+    if (on->turn == 0)
+        return dot(minus(p, on->start), minus(on->end, p)) >= 0;
+    const narc_point u = minus(on->start, on->center), v = minus(p, on->center);
+    const double angle = narc_atan2(copysign(1, on->turn) * cross(u, v), dot(u, v));
+    return (angle < 0 ? angle + 2 * PI : angle) <= fabs(on->turn);
+}
+
+/* Two that have an end in common, but for this part of their lengths, do not meet there. */
+static const double AT_ENDS = 1e-6;
+
+static double find_end(const narc_curve_arc *of, narc_point p) {
+    return fmin(length(minus(p, of->start)), length(minus(p, of->end)));
+}
+
+static bool is_common(const narc_curve_arc *a, const narc_curve_arc *b, narc_point p) {
+    const double near = AT_ENDS * (length(minus(a->end, a->start)) + length(minus(b->end, b->start)));
+    return holds(a, p) && holds(b, p) && fmax(find_end(a, p), find_end(b, p)) > near;
+}
+
+/* Does a line or arc meet another one? */
+static bool do_meet(const narc_curve_arc *a, const narc_curve_arc *b) {
+    if (a->turn == 0 && b->turn != 0)
+        return do_meet(b, a);
+    const narc_point d = b->turn == 0 ? minus(b->end, b->start) : minus(b->center, a->center);
+    const double size = length(d);
+    if (a->turn == 0) {
+        const narc_point e = minus(a->end, a->start);
+        const double across = cross(e, d), t = cross(minus(b->start, a->start), d) / across;
+        return across != 0 && is_common(a, b, along(a->start, t, e));
+    }
+    /* The points of both circles, or of circle and line, are on both sides of one that is so far from the centre. */
+    const narc_point way = {d.x / size, d.y / size}, out = b->turn == 0 ? turned(way) : way;
+    const double far = b->turn == 0 ? dot(minus(b->start, a->center), out)
+                                    : (size * size + (a->radius - b->radius) * (a->radius + b->radius)) / (2 * size);
+    const double half = sqrt((a->radius - far) * (a->radius + far));
+    const narc_point foot = along(a->center, far, out), across = turned(out);
+    return half >= 0 && (is_common(a, b, along(foot, half, across)) || is_common(a, b, along(foot, -half, across)));
+}
+
+/* A piece of a chain, and a box around it. */
+struct swept {
+    const narc_curve_arc *arc;
+    size_t contour;
+    narc_aabb box;
+};
+
+static int compare_swept(const void *left, const void *right) {
+    const struct swept *a = left, *b = right;
+    return a->box.min_x != b->box.min_x ? (a->box.min_x > b->box.min_x) - (a->box.min_x < b->box.min_x)
+                                        : (a->arc > b->arc) - (a->arc < b->arc);
+}
+
+static struct swept bound_arc(const narc_curve_arc *arc, size_t contour) {
+    const narc_point p = arc->start, q = arc->end, c = arc->center;
+    const double out = arc->turn == 0 ? 0 : length(minus(q, p)) * fabs(tangent(arc->turn / 4)) / 2, r = arc->radius;
+    const narc_aabb box = {fmin(p.x, q.x) - out, fmin(p.y, q.y) - out, fmax(p.x, q.x) + out, fmax(p.y, q.y) + out};
+    return (struct swept){arc, contour, fabs(arc->turn) > PI ? (narc_aabb){c.x - r, c.y - r, c.x + r, c.y + r} : box};
+}
+
+/* Does a contour, as it is drawn, touch another one? */
+static bool does_touch(const struct builder *builder, size_t contour, size_t other) {
+    const narc_contours *drawn = &builder->drawn;
+    const narc_crossing *items = builder->crossings.items;
+    size_t k = 0;
+    for (size_t high = builder->crossings.count; k < high;) { /* crossings are sorted by lines */
+        const size_t middle = (k + high) / 2;
+        if (items[middle].line < begin_of(drawn->ends, contour))
+            k = middle + 1;
+        else
+            high = middle;
+    }
+    for (; k < builder->crossings.count && items[k].line < drawn->ends[contour]; k++)
+        if (narc_find_contour(drawn->ends, drawn->count, items[k].other) == other)
+            return true;
+    return false;
+}
+
+/* Notes contours whose chains meet although they themselves do not. */
+static narc_status compare_chains(struct builder *builder, bool *out_any) {
+    const narc_arc_list *list = &builder->list;
+    struct swept *swept = malloc(list->count * sizeof *swept);
+    *out_any = false;
+    if (!swept)
+        return fail_memory(builder);
+    for (size_t k = 0, i = 0, contour = 0; k < builder->count; k++, contour++) {
+        while (!builder->efforts[contour].drawn)
+            contour++;
+        for (; i < builder->ends[k]; i++)
+            swept[i] = bound_arc(&list->arcs[i], contour);
+    }
+    qsort(swept, list->count, sizeof *swept, compare_swept);
+    for (size_t i = 0; i < list->count; i++)
+        for (size_t j = i + 1; j < list->count && swept[j].box.min_x <= swept[i].box.max_x; j++) {
+            const struct swept *p = &swept[i], *q = &swept[j];
+            const size_t a = p->contour, b = q->contour;
+            if (a != b && q->box.min_y <= p->box.max_y && q->box.max_y >= p->box.min_y && do_meet(p->arc, q->arc) &&
+                !does_touch(builder, a, b) && !does_touch(builder, b, a))
+                builder->efforts[a].meets = builder->efforts[b].meets = *out_any = true;
+        }
+    free(swept);
+    return NARC_OK;
+}
+
+/* Fits all contours, and those again, nearer, whose chains cross. */
+static narc_status fit_contours(struct builder *builder, const narc_path *path) {
+    const double whole = builder->tolerance;
+    bool any = true;
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k < builder->drawn.count; k++)
+        builder->efforts[k] = (struct effort){.tolerance = whole};
+    for (int tries = 1; any && !status; tries++) {
+        builder->list.count = builder->count = 0;
+        builder->list.distance = 0;
+        status = add_moves(builder, path);
+        if (status || builder->count < 2)
+            break;
+        status = compare_chains(builder, &any);
+        for (size_t k = 0; k < builder->drawn.count && any && !status; k++) {
+            struct effort *effort = &builder->efforts[k];
+            if (effort->meets && tries > MOST_TRIES)
+                return narc_fail(builder->error, NARC_ERROR_NOT_SIMPLE, k, whole,
+                                 "contour %zu: it is too near another one for the tolerance %g: they cross", k, whole);
+            effort->tolerance *= effort->meets ? 0.5 : 1;
+            effort->lines = effort->lines || (effort->meets && tries == MOST_TRIES);
+            effort->meets = effort->drawn = false;
+        }
+    }
+    return status;
+}
+
 /* Contours that cross by so little, in parts of the largest coordinate, or by half of the tolerance, only touch. */
 static const double CROSSING = 1e-6;
 
@@ -392,18 +488,15 @@ static const double CROSSING = 1e-6;
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
     const narc_contours *drawn = &builder->drawn;
-    double largest = 0;
+    const narc_aabb box = bound_points(drawn->points, drawn->point_count);
+    const double largest = drawn->point_count ? fmax(fmax(-box.min_x, box.max_x), fmax(-box.min_y, box.max_y)) : 0;
     builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
-    for (size_t k = 0, i = 0; builder->boxes && k < drawn->count; k++) {
-        narc_aabb *box = &builder->boxes[k];
-        for (*box = (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY}; i < drawn->ends[k]; i++) {
-            const narc_point p = drawn->points[i];
-            *box =
-                (narc_aabb){fmin(box->min_x, p.x), fmin(box->min_y, p.y), fmax(box->max_x, p.x), fmax(box->max_y, p.y)};
-            largest = fmax(largest, fmax(fabs(p.x), fabs(p.y)));
-        }
+    builder->efforts = malloc((drawn->count + 1) * sizeof *builder->efforts);
+    for (size_t k = 0; builder->boxes && k < drawn->count; k++) {
+        const size_t begin = begin_of(drawn->ends, k);
+        builder->boxes[k] = bound_points(drawn->points + begin, drawn->ends[k] - begin);
     }
-    if (!status && !builder->boxes)
+    if (!status && !(builder->boxes && builder->efforts))
         status = fail_memory(builder);
     if (!status)
         status = narc_find_crossings(&builder->drawn, !builder->open, fmin(builder->tolerance / 2, CROSSING * largest),
@@ -420,17 +513,20 @@ narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, 
     struct builder builder = {.tolerance = tolerance, .open = open, .error = error};
     narc_status status = prepare(&builder, path);
     if (!status)
-        status = add_moves(&builder, path);
-    if (!status && builder.chains.count == 0)
+        status = fit_contours(&builder, path);
+    if (!status && builder.count == 0)
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
     narc_release_contours(&builder.drawn);
     free(builder.crossings.items);
     free(builder.boxes);
+    free(builder.efforts);
     narc_destroy_shapes(builder.store);
+    narc_arc_chains chains = {builder.list.arcs, builder.list.count, builder.ends, builder.count,
+                              builder.list.distance};
     if (status)
-        narc_release_chains(&builder.chains);
+        narc_release_chains(&chains);
     else
-        *out_chains = builder.chains;
+        *out_chains = chains;
     return status;
 }
 

@@ -10,7 +10,7 @@
  * far either is from the other. On a line that distance is largest at an end, at the foot of the perpendicular from the
  * centre, or where the line passes from one arc to the other.
  */
-#include "biarc/polyline.h"
+#include "biarc/biarc.h"
 
 #include <stdlib.h>
 
@@ -65,11 +65,6 @@ static double turn_at(const struct chain *chain, size_t k, double window) {
     const narc_point p = chain->line->points[k];
     const narc_point in = minus(p, look(chain, k, -window)), out = minus(look(chain, k, window), p);
     return fabs(narc_atan2(cross(in, out), dot(in, out)));
-}
-
-static narc_point unit(narc_point v) {
-    const double size = length(v);
-    return (narc_point){v.x / size, v.y / size};
 }
 
 /* Is the chain between two lengths near its chord? */
@@ -239,30 +234,30 @@ static size_t reach(const struct chain *chain, size_t first, size_t last, size_t
     return good;
 }
 
-static narc_status fit_section(const struct chain *chain, size_t first, size_t last, narc_spline *spline,
+static narc_status fit_section(const struct chain *chain, size_t first, size_t last, narc_arc_list *to,
                                narc_error *error) {
     for (size_t i = first; i < last;) {
         narc_spline_arc arcs[2];
         double distance = 0;
         size_t count;
         i = reach(chain, first, last, i, arcs, &distance, &count);
-        narc_spline_arc *all = narc_grow(spline->arcs, &spline->capacity, spline->count + count, sizeof *all);
+        narc_curve_arc *all = narc_grow(to->arcs, &to->capacity, to->count + count, sizeof *all);
         if (!all)
             return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
-        spline->arcs = all;
+        to->arcs = all;
         for (size_t k = 0; k < count; k++)
-            all[spline->count++] = arcs[k];
-        spline->distance = fmax(spline->distance, distance);
+            all[to->count++] = narc_describe_arc(&arcs[k]);
+        to->distance = fmax(to->distance, distance);
     }
     return NARC_OK;
 }
 
-static narc_status fit_sections(const struct chain *chain, narc_spline *spline, narc_error *error) {
+static narc_status fit_sections(const struct chain *chain, narc_arc_list *to, narc_error *error) {
     narc_status status = NARC_OK;
     for (size_t first = 0, k = 1; k < chain->line->count && !status; k++) {
         if (k + 1 < chain->line->count && !chain->corner[k])
             continue;
-        status = fit_section(chain, first, k, spline, error);
+        status = fit_section(chain, first, k, to, error);
         first = k;
     }
     return status;
@@ -288,7 +283,8 @@ static void measure_chain(struct chain *chain) {
     mark_corners(chain);
 }
 
-narc_status narc_fit_polyline(const narc_polyline *line, double tolerance, narc_spline *spline, narc_error *error) {
+narc_status narc_add_polyline(const narc_polyline *line, double tolerance, narc_arc_list *to, narc_error *error) {
+    const size_t before = to->count;
     narc_polyline ring = *line;
     narc_point *points = malloc(line->count * sizeof *points);
     struct chain chain = {.line = line,
@@ -297,17 +293,20 @@ narc_status narc_fit_polyline(const narc_polyline *line, double tolerance, narc_
                           .window = fmax(WINDOW_TOLERANCES * tolerance, WINDOW_SLACKS * line->slack),
                           .tolerance = tolerance};
     narc_status status = NARC_OK;
-    if (points && chain.along && chain.corner) {
+    for (size_t k = 0; k + 1 < line->count && !status; k++)
+        status = narc_check_curve(line->points + k, 1, tolerance, error);
+    if (!status && points && chain.along && chain.corner) {
         measure_chain(&chain);
         if (turn_ring(&chain, points)) {
             ring.points = points;
             chain.line = &ring;
             measure_chain(&chain);
         }
-        status = fit_sections(&chain, spline, error);
-    } else {
+        status = fit_sections(&chain, to, error);
+    } else if (!status) {
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for a chain of %zu lines", line->count);
     }
+    to->count = status ? before : to->count;
     free(points);
     free(chain.along);
     free(chain.corner);

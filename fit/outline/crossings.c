@@ -56,8 +56,6 @@ static void note(sweep *s, const line *on, const line *other, double part, narc_
     items[found->count++] = (narc_crossing){on->number, other->number, part, at, crosses};
 }
 
-static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
-
 /* Notes an end of another line that lies on this one, between its ends. */
 static bool note_touch(sweep *s, const line *on, const line *other, narc_point p) {
     const narc_point side = minus(on->to, on->from), from = minus(p, on->from);

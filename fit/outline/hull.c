@@ -18,11 +18,6 @@ static const double STRAIGHT = 1e-12;
  * the side between two corners further apart keeps its direction, to 1e-6 radians, wherever the hull is moved. */
 static const double COINCIDENT = 1e-10;
 
-static int compare_points(const void *left, const void *right) {
-    const narc_point *a = left, *b = right;
-    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->y > b->y) - (a->y < b->y);
-}
-
 static bool turns_left(narc_point a, narc_point b, narc_point c) {
     const narc_point incoming = minus(b, a), outgoing = minus(c, b);
     const bool turns_back = dot(incoming, outgoing) < 0; /* a reversal is no straight line, its sine is as small */

@@ -6,6 +6,8 @@
 #define NARC_FIT_VECTOR_H
 
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 #include "elementary.h"
 #include "narc_shapes.h"
@@ -27,7 +29,44 @@ static inline narc_point unit_at(double angle) {
 }
 static inline double tangent(double angle) { return narc_sin(angle) / narc_cos(angle); }
 
+static inline bool is_same(narc_point a, narc_point b) { return a.x == b.x && a.y == b.y; }
+static inline narc_point unit(narc_point a) {
+    const double size = length(a);
+    return (narc_point){a.x / size, a.y / size};
+}
+
 /* A quarter turn counter-clockwise: from an outward normal to the direction in which the outline runs there. */
 static inline narc_point turned(narc_point a) { return (narc_point){-a.y, a.x}; }
+
+/* By x, then by y: for qsort(). */
+static inline int compare_points(const void *left, const void *right) {
+    const narc_point *a = (const narc_point *)left, *b = (const narc_point *)right;
+    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->y > b->y) - (a->y < b->y);
+}
+
+/* ---------------------------------------------------------------------------- contours */
+
+/* Contour k begins where the one before it ends. */
+static inline size_t begin_of(const size_t *ends, size_t k) { return k ? ends[k - 1] : 0; }
+
+static inline narc_aabb bound_points(const narc_point *points, size_t count) {
+    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t k = 0; k < count; k++) {
+        const narc_point p = points[k];
+        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
+    }
+    return box;
+}
+
+/* Is a point inside a closed contour: by how often a line from it to the right meets it. */
+static inline bool is_around(const narc_point *points, size_t count, narc_point p) {
+    bool inside = false;
+    for (size_t k = 0; k < count; k++) {
+        const narc_point a = points[k], b = points[k + 1 < count ? k + 1 : 0];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+            inside = !inside;
+    }
+    return inside;
+}
 
 #endif

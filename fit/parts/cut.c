@@ -28,6 +28,9 @@ enum { MOST_ENDS = 256 };
 /* A point that turns right by less than this, as the sine of the angle, is no bay. */
 static const double STRAIGHT = 0.02;
 
+/* What is walked there and back has less area than this, in parts of the extent's square. */
+static const double NOTHING = 1e-14;
+
 /* A length of cuts, in parts of the extent, that weighs as much as a cell whose distance is a cell's size: of cuts that
  * are equally good the shortest is taken. */
 static const double CUT_WEIGHT = 0.1;
@@ -48,21 +51,22 @@ typedef struct ring_list {
     size_t count, capacity;
 } ring_list;
 
+/* A ring's node by its place. */
+typedef struct placed {
+    narc_point at;
+    size_t node;
+} placed;
+
 /* Room for a ring's work, as large as the largest ring can be. */
 typedef struct work {
     const narc_region *region;
     ring_list rings; /* those that are not cut yet */
     double *depths;
-    uint32_t *order; /* of a ring's nodes, by place */
+    placed *order; /* a ring's nodes */
     narc_point *points, *corners;
 } work;
 
 /* ---------------------------------------------------------------------------- hulls */
-
-static int compare_points(const void *left, const void *right) {
-    const narc_point *a = left, *b = right;
-    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->y > b->y) - (a->y < b->y);
-}
 
 static size_t extend(narc_point *chain, size_t count, size_t keep, narc_point p) {
     while (count > keep && cross(minus(chain[count - 1], chain[count - 2]), minus(p, chain[count - 1])) <= 0)
@@ -108,8 +112,6 @@ static bool add_ring(work *w, ring added) {
     items[w->rings.count++] = added;
     return true;
 }
-
-static size_t begin_of(const size_t *ends, size_t k) { return k ? ends[k - 1] : 0; }
 
 /* The nodes of one contour, from its node `first` on. */
 static void copy_contour(const narc_region *region, size_t contour, size_t first, node *out_nodes) {
@@ -206,10 +208,21 @@ static bool add_contour(work *w, size_t contour) {
 
 /* ---------------------------------------------------------------------------- the best cut */
 
+/* The ways to a node and on from it, past others in its place: bridges may have no length. */
+static void find_ways(const work *w, const ring *of, size_t k, narc_point *out_in, narc_point *out_on) {
+    const size_t n = of->count;
+    const narc_point p = place(w, of->nodes[k]);
+    *out_in = *out_on = (narc_point){0, 0};
+    for (size_t i = 1; i < n && out_in->x == 0 && out_in->y == 0; i++)
+        *out_in = minus(p, place(w, of->nodes[(k + n - i) % n]));
+    for (size_t i = 1; i < n && out_on->x == 0 && out_on->y == 0; i++)
+        *out_on = minus(place(w, of->nodes[(k + i) % n]), p);
+}
+
 /* Does a direction go from the ring's node to its inside? */
 static bool goes_inside(const work *w, const ring *of, size_t k, narc_point direction) {
-    const narc_point p = place(w, of->nodes[k]), before = place(w, of->nodes[(k ? k : of->count) - 1]);
-    const narc_point in = minus(p, before), out = minus(place(w, of->nodes[(k + 1) % of->count]), p);
+    narc_point in, out;
+    find_ways(w, of, k, &in, &out);
     const bool left_of_in = cross(in, direction) > 0, left_of_out = cross(out, direction) > 0;
     return cross(in, out) >= 0 ? left_of_in && left_of_out : left_of_in || left_of_out;
 }
@@ -235,51 +248,32 @@ static bool is_open(const work *w, const ring *of, size_t i, size_t j) {
 static double measure_side(const work *w, const ring *of, size_t i, size_t j) {
     size_t count = 0;
     for (size_t k = 0; k < of->count; k++) {
-        const size_t n = w->order[k];
+        const size_t n = w->order[k].node;
         if (i < j ? n >= i && n <= j : n >= i || n <= j)
-            w->points[count++] = place(w, of->nodes[n]);
+            w->points[count++] = w->order[k].at;
     }
     return narc_measure_emptiness(w->region, w->corners, wrap_sorted(w->points, count, w->corners));
 }
 
+static int compare_places(const void *left, const void *right) {
+    const placed *a = left, *b = right;
+    const int order = compare_points(&a->at, &b->at);
+    return order ? order : (a->node > b->node) - (a->node < b->node);
+}
+
 static void sort_nodes(const work *w, const ring *of) {
-    /* Heap sort of places, since qsort() takes no context. */
-    uint32_t *order = w->order;
     for (size_t k = 0; k < of->count; k++)
-        order[k] = (uint32_t)k;
-    for (size_t end = of->count, start = of->count / 2; end > 1;) {
-        if (start > 0) {
-            start--;
-        } else {
-            const uint32_t last = order[--end];
-            order[end] = order[0];
-            order[0] = last;
-        }
-        for (size_t root = start; 2 * root + 1 < end;) {
-            size_t child = 2 * root + 1;
-            narc_point p = place(w, of->nodes[order[child]]);
-            if (child + 1 < end) {
-                const narc_point q = place(w, of->nodes[order[child + 1]]);
-                child += compare_points(&p, &q) < 0;
-                p = compare_points(&p, &q) < 0 ? q : p;
-            }
-            const narc_point top = place(w, of->nodes[order[root]]);
-            if (compare_points(&top, &p) >= 0)
-                break;
-            const uint32_t moved = order[root];
-            order[root] = order[child];
-            order[child] = moved;
-            root = child;
-        }
-    }
+        w->order[k] = (placed){place(w, of->nodes[k]), k};
+    qsort(w->order, of->count, sizeof *w->order, compare_places);
 }
 
 /* How deep each node lies in the hull, if the ring turns right there; else 0. */
 static void find_depths(const work *w, const ring *of) {
     const size_t count = wrap_nodes(w, of);
     for (size_t k = 0; k < of->count; k++) {
-        const narc_point p = place(w, of->nodes[k]), in = minus(p, place(w, of->nodes[(k ? k : of->count) - 1]));
-        const narc_point out = minus(place(w, of->nodes[(k + 1) % of->count]), p);
+        const narc_point p = place(w, of->nodes[k]);
+        narc_point in, out;
+        find_ways(w, of, k, &in, &out);
         double depth = INFINITY;
         if (cross(in, out) >= -STRAIGHT * length(in) * length(out) && !(cross(in, out) == 0 && dot(in, out) < 0))
             depth = 0;
@@ -330,13 +324,42 @@ static double try_start(const work *w, const ring *of, size_t start, size_t stri
     return least;
 }
 
+/* Twice the area of the side from node i to node j. */
+static double measure_ring(const work *w, const ring *of, size_t i, size_t j) {
+    const narc_point base = place(w, of->nodes[i]);
+    double twice = 0;
+    for (size_t k = i + 1; k < j; k++)
+        twice += cross(minus(place(w, of->nodes[k]), base), minus(place(w, of->nodes[k + 1]), base));
+    return twice;
+}
+
+/* A ring that comes to a place twice, with its inside on the left of both ways round, is two that touch there. The nodes
+ * are in order. */
+static bool find_pinch(const work *w, const ring *of, size_t *out_i, size_t *out_j) {
+    const double nothing = NOTHING * w->region->extent * w->region->extent;
+    for (size_t k = 0; k < of->count; k++)
+        for (size_t next = k + 1; next < of->count && is_same(w->order[k].at, w->order[next].at); next++) {
+            const size_t i = w->order[k].node, j = w->order[next].node;
+            const double side = measure_ring(w, of, i, j), other = measure_ring(w, of, 0, of->count - 1) - side;
+            const bool is_spike = j - i > 2 && fabs(side) <= nothing;
+            if ((side > 0 || is_spike) && other > 0) {
+                *out_i = i;
+                *out_j = j;
+                return true;
+            }
+        }
+    return false;
+}
+
 /* Where to cut a ring of four nodes or more: from its deepest bays to some ends, or to any, or else from any node. If no cut
  * is open, anywhere: both halves are smaller. */
 static void find_cut(const work *w, const ring *of, size_t *out_i, size_t *out_j) {
     size_t starts[STARTS], end = 0;
+    sort_nodes(w, of);
+    if (find_pinch(w, of, out_i, out_j))
+        return;
     find_depths(w, of);
     const size_t count = choose_starts(w, of, starts);
-    sort_nodes(w, of);
     *out_i = 0;
     *out_j = of->count / 2;
     double least = INFINITY;

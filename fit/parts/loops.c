@@ -14,36 +14,37 @@
 #include "outline/vector.h"
 #include "parts/region.h"
 
-/* A point of a contour, or one where it crosses itself, and which follows. */
+/* A point of a contour, or one where its group crosses itself, and which follows. */
 typedef struct step {
     narc_point at;
-    size_t contour, next;
+    size_t group, next;
     bool crosses, taken;
 } step;
 
-static bool is_own(const narc_contours *contours, const narc_crossing *at) {
-    return narc_find_contour(contours->ends, contours->count, at->line) ==
-           narc_find_contour(contours->ends, contours->count, at->other);
+/* The number of a contour, or of the group that it is in. */
+static size_t find_group(const narc_contours *contours, const size_t *groups, size_t point) {
+    const size_t contour = narc_find_contour(contours->ends, contours->count, point);
+    return groups ? groups[contour] : contour;
 }
 
-static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
-
-static size_t add_step(step *steps, size_t count, narc_point at, size_t contour, bool crosses) {
-    steps[count] = (step){at, contour, count + 1, crosses, false};
+static size_t add_step(step *steps, size_t count, narc_point at, size_t group, bool crosses) {
+    steps[count] = (step){at, group, count + 1, crosses, false};
     return count + 1;
 }
 
-static size_t list_steps(const narc_contours *contours, const narc_crossings *crossings, step *out) {
+static size_t list_steps(const narc_contours *contours, const size_t *groups, const narc_crossings *crossings,
+                         step *out) {
     size_t count = 0;
     for (size_t k = 0, i = 0, next = 0; k < contours->count; k++) {
-        const size_t begin = count;
+        const size_t begin = count, group = groups ? groups[k] : k;
         for (; i < contours->ends[k]; i++) {
             if (count == begin || !is_same(contours->points[i], out[count - 1].at))
-                count = add_step(out, count, contours->points[i], k, false);
+                count = add_step(out, count, contours->points[i], group, false);
             for (; next < crossings->count && crossings->items[next].line == i; next++) {
                 const narc_crossing *at = &crossings->items[next];
-                if (at->part > 0 && is_own(contours, at) && !is_same(at->at, out[count - 1].at))
-                    count = add_step(out, count, at->at, k, at->crosses);
+                if (at->part > 0 && find_group(contours, groups, at->other) == group &&
+                    !is_same(at->at, out[count - 1].at))
+                    count = add_step(out, count, at->at, group, at->crosses);
             }
         }
         out[count - 1].next = begin;
@@ -72,7 +73,7 @@ static void link_steps(step *steps, size_t count, step **sorted) {
     qsort(sorted, count, sizeof *sorted, compare_steps);
     for (size_t k = 1; k < count; k++) {
         step *a = sorted[k - 1], *b = sorted[k];
-        if (is_same(a->at, b->at) && a->contour == b->contour &&
+        if (is_same(a->at, b->at) && a->group == b->group &&
             ((a->crosses && b->crosses) || is_in_loop(steps, (size_t)(a - steps), (size_t)(b - steps)))) {
             const size_t next = a->next;
             a->next = b->next;
@@ -92,33 +93,71 @@ static void take_loops(step *steps, size_t count, narc_contours *out) {
     }
 }
 
-narc_status narc_split_contours(const narc_contours *contours, narc_contours *out_loops, bool *out_crosses,
-                                narc_error *error) {
-    narc_crossings crossings;
-    const narc_status status = narc_find_crossings(contours, true, 0, &crossings, error);
-    if (status)
-        return status;
-    const size_t most = contours->point_count + crossings.count + 1;
+static narc_status split_groups(const narc_contours *contours, const size_t *groups, const narc_crossings *crossings,
+                                narc_contours *out_loops, narc_error *error) {
+    const size_t most = contours->point_count + crossings->count + 1;
     step *steps = malloc(most * sizeof *steps), **sorted = malloc(most * sizeof *sorted);
     narc_contours loops = {.points = malloc(most * sizeof *loops.points),
                            .ends = malloc(most * sizeof *loops.ends),
                            .flatness = contours->flatness};
     const bool done = steps && sorted && loops.points && loops.ends;
     if (done) {
-        const size_t count = list_steps(contours, &crossings, steps);
+        const size_t count = list_steps(contours, groups, crossings, steps);
         link_steps(steps, count, sorted);
         take_loops(steps, count, &loops);
-        *out_crosses = crossings.count > 0;
         *out_loops = loops;
     } else {
         narc_release_contours(&loops);
     }
-    free(crossings.items);
     free(steps);
     free(sorted);
     return done ? NARC_OK
                 : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for an outline of %zu points",
                             contours->point_count);
+}
+
+narc_status narc_split_contours(const narc_contours *contours, narc_contours *out_loops, bool *out_crosses,
+                                narc_error *error) {
+    narc_crossings crossings;
+    narc_status status = narc_find_crossings(contours, true, 0, &crossings, error);
+    if (status)
+        return status;
+    status = split_groups(contours, NULL, &crossings, out_loops, error);
+    *out_crosses = crossings.count > 0;
+    free(crossings.items);
+    return status;
+}
+
+/* Holes that cross get the number of the first of them. */
+static bool join_holes(const narc_region *region, const narc_crossings *crossings, size_t *groups) {
+    bool any = false;
+    for (size_t k = 0; k < region->count; k++)
+        groups[k] = k;
+    for (size_t i = 0; i < crossings->count; i++) {
+        const size_t a = narc_find_contour(region->ends, region->count, crossings->items[i].line);
+        const size_t b = narc_find_contour(region->ends, region->count, crossings->items[i].other);
+        const size_t low = groups[a] < groups[b] ? groups[a] : groups[b], high = groups[a] + groups[b] - low;
+        if (a == b || !crossings->items[i].crosses || region->parents[a] == SIZE_MAX || region->parents[b] == SIZE_MAX)
+            continue;
+        any = true;
+        for (size_t k = 0; k < region->count; k++)
+            groups[k] = groups[k] == high ? low : groups[k];
+    }
+    return any;
+}
+
+narc_status narc_split_holes(const narc_region *region, narc_contours *out_loops, narc_error *error) {
+    const narc_contours contours = {region->points, region->point_count, region->ends, region->count, 0};
+    narc_crossings crossings = {0};
+    size_t *groups = malloc(region->count * sizeof *groups);
+    narc_status status = groups ? narc_find_crossings(&contours, true, 0, &crossings, error)
+                                : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for the holes");
+    *out_loops = (narc_contours){0};
+    if (!status && join_holes(region, &crossings, groups))
+        status = split_groups(&contours, groups, &crossings, out_loops, error);
+    free(crossings.items);
+    free(groups);
+    return status;
 }
 
 /* ---------------------------------------------------------------------------- the area of what crosses */

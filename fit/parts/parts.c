@@ -259,22 +259,27 @@ static narc_status cut_contours(const narc_contours *contours, bool crosses, con
                                 narc_parts *out_parts, narc_error *error) {
     narc_region region = {0};
     narc_pieces pieces = {0};
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < contours->point_count; k++) {
-        const narc_point p = contours->points[k];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
-    }
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
     const double extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
     const double lap = NARC_LAP_REACH * request->lap, tolerance = request->tolerance - contours->flatness - lap;
     const double least = contours->flatness + lap + LEAST_TOLERANCE * extent;
     if (request->tolerance > 0 && !(tolerance >= LEAST_TOLERANCE * extent))
         return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, least,
                          "the tolerance %g is too small for parts, at least %g is possible", request->tolerance, least);
-    const double slack = LARGEST_SLACK * extent;
-    narc_status status =
-        narc_make_region(contours, request->tolerance > 0 ? fmin(slack, SLACK * tolerance) : slack, &region, error);
-    if (status)
+    const double most = LARGEST_SLACK * extent, slack = request->tolerance > 0 ? fmin(most, SLACK * tolerance) : most;
+    narc_contours loops = {0};
+    narc_status status = narc_make_region(contours, slack, &region, error);
+    if (!status && crosses)
+        status = narc_split_holes(&region, &loops, error);
+    if (!status && loops.count) {
+        narc_release_region(&region);
+        status = narc_make_region(&loops, slack, &region, error);
+    }
+    narc_release_contours(&loops);
+    if (status) {
+        narc_release_region(&region);
         return status;
+    }
     status = find_pieces(&region, request, request->tolerance > 0 ? tolerance : 0, &pieces, error);
     /* The hulls are those of the outline's own points, which may be further out than the simpler ones by the slack. */
     if (!status && request->tolerance > 0)

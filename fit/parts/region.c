@@ -15,16 +15,10 @@
 /* Lines longer than this part of the extent are divided, so that cuts can end on them. */
 static const double LONGEST_LINE = 1.0 / 32;
 
-static size_t begin_of(const size_t *ends, size_t k) { return k ? ends[k - 1] : 0; }
-
 /* ---------------------------------------------------------------------------- contours */
 
 static void find_extent(narc_region *region, const narc_contours *contours) {
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < contours->point_count; k++) {
-        const narc_point p = contours->points[k];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
-    }
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
     region->corner = (narc_point){box.min_x, box.min_y};
     region->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
 }
@@ -149,23 +143,8 @@ static bool simplify_contours(narc_region *region) {
 
 /* By the contour itself: simpler ones may cross where two are near each other. */
 static bool is_inside(const narc_region *region, size_t k, narc_point p) {
-    const size_t begin = begin_of(region->ends, k), end = region->ends[k];
-    bool inside = false;
-    for (size_t i = begin; i < end; i++) {
-        const narc_point a = region->points[i], b = region->points[i + 1 < end ? i + 1 : begin];
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-            inside = !inside;
-    }
-    return inside;
-}
-
-static narc_aabb bound_contour(const narc_region *region, size_t k) {
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = begin_of(region->ends, k); i < region->ends[k]; i++) {
-        const narc_point p = region->points[i];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
-    }
-    return box;
+    const size_t begin = begin_of(region->ends, k);
+    return is_around(region->points + begin, region->ends[k] - begin, p);
 }
 
 /* Contours are compared next to their points, by this part of their lines: loops of one contour touch at points. */
@@ -202,7 +181,8 @@ static bool find_holes(narc_region *region) {
     region->parents = malloc(region->count * sizeof *region->parents);
     const bool done = boxes && areas && region->parents;
     for (size_t k = 0; done && k < region->count; k++) {
-        boxes[k] = bound_contour(region, k);
+        boxes[k] =
+            bound_points(region->points + begin_of(region->ends, k), region->ends[k] - begin_of(region->ends, k));
         areas[k] = measure_contour(region, k);
     }
     for (size_t k = 0; done && k < region->count; k++) {

@@ -43,6 +43,9 @@ typedef struct narc_region {
 narc_status narc_split_contours(const narc_contours *contours, narc_contours *out_loops, bool *out_crosses,
                                 narc_error *error);
 
+/* Holes that cross as loops that do not; none where no two holes cross. Errors as above. */
+narc_status narc_split_holes(const narc_region *region, narc_contours *out_loops, narc_error *error);
+
 /* Makes the contours; `slack` > 0. NARC_ERROR_COUNT: no points; NARC_ERROR_SIZE: all in one place; NARC_ERROR_MEMORY. */
 narc_status narc_make_region(const narc_contours *contours, double slack, narc_region *out_region, narc_error *error);
 

@@ -104,3 +104,15 @@ double measure_distance(narc_point p, narc_point a, narc_point b) {
     const double t = length > 0 ? fmin(1, fmax(0, (to_x * x + to_y * y) / length)) : 0;
     return hypot(to_x - t * x, to_y - t * y);
 }
+
+bool is_inside(const narc_contours *of, narc_point p) {
+    bool inside = false;
+    for (size_t k = 0, begin = 0; k < of->count; begin = of->ends[k++]) {
+        for (size_t i = begin; i < of->ends[k]; i++) {
+            const narc_point a = of->points[i], b = of->points[i + 1 < of->ends[k] ? i + 1 : begin];
+            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+                inside = !inside;
+        }
+    }
+    return inside;
+}

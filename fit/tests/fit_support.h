@@ -52,4 +52,7 @@ double measure_area(const narc_contours *contours, size_t k);
  * three points. */
 double measure_distance(narc_point p, narc_point a, narc_point b);
 
+/* Is a point inside an odd number of the contours? */
+bool is_inside(const narc_contours *of, narc_point p);
+
 #endif

@@ -63,7 +63,7 @@ static operation fit_path;
 
 /* Of the first allocations each one fails, of later ones, which are much the same, some. */
 static void fail_all(const char *name, operation *operate, const void *input) {
-    enum { EACH = 60 };
+    const size_t each = test_trials(60);
     struct outcome usual = run(operate, input, 0, false); /* and libraries have what they keep */
     const size_t count = scarcity.count, live = live_blocks;
     if (usual.status)
@@ -71,7 +71,7 @@ static void fail_all(const char *name, operation *operate, const void *input) {
     assert_true(count > 0);
     size_t failures = 0;
     for (int forever = 0; forever < 2; forever++) {
-        for (size_t denied = 1; denied <= count; denied += denied < EACH ? 1 : denied) {
+        for (size_t denied = 1; denied <= count; denied += denied < each ? 1 : denied) {
             struct outcome outcome = run(operate, input, denied, forever);
             if (outcome.status == NARC_OK)
                 expect_same(&usual, &outcome);

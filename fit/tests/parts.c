@@ -11,19 +11,6 @@
 
 enum { SAMPLES = 64 };
 
-/* Inside by odd crossings. */
-static bool is_inside(const narc_contours *of, narc_point p) {
-    bool inside = false;
-    for (size_t k = 0, begin = 0; k < of->count; begin = of->ends[k++]) {
-        for (size_t i = begin; i < of->ends[k]; i++) {
-            const narc_point a = of->points[i], b = of->points[i + 1 < of->ends[k] ? i + 1 : begin];
-            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-                inside = !inside;
-        }
-    }
-    return inside;
-}
-
 static double find_distance(const narc_contours *of, narc_point p) {
     double least = INFINITY;
     for (size_t k = 0, begin = 0; k < of->count; begin = of->ends[k++])
@@ -352,6 +339,67 @@ TEST(test_crossings) {
     assert_true(fabs(made.parts.area - 27.75) <= 1e-9);
     free_cover(&made);
     free_outline(&of);
+}
+
+/* In how many of the contours a point is, and how far it is from all of them. */
+static size_t count_around(const narc_contours *of, narc_point p, double *out_distance) {
+    size_t around = 0;
+    *out_distance = INFINITY;
+    for (size_t k = 0; k < of->count; k++) {
+        const size_t begin = k ? of->ends[k - 1] : 0;
+        size_t end = of->ends[k] - begin;
+        const narc_contours alone = {of->points + begin, end, &end, 1, 0};
+        const double distance = find_distance(&alone, p);
+        around += distance == 0;
+        *out_distance = fmin(*out_distance, distance);
+    }
+    return around;
+}
+
+/* Contours that cross themselves and each other, or are holes that cross: all are cut within the tolerance. What is in one
+ * contour alone is inside; what is in none is not, and covered only near one. The area is between those of both. */
+TEST(test_random_crossings) {
+    struct test_random random = test_random_named("crossings to cut");
+    for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
+        struct outline of = make_outline("crossing contours");
+        const size_t contours = 2 + random_below(&random, 3), kind = trial % 3;
+        for (size_t k = 0; k < contours; k++) {
+            narc_point points[12];
+            const size_t count = 3 + random_below(&random, 9);
+            const double x = random_between(&random, 0, 4), y = random_between(&random, 0, 4),
+                         r = random_between(&random, 1, 3);
+            for (size_t i = 0; i < count; i++) {
+                const double a = 2 * PI * ((double)i + 0.6 * random_unit(&random)) / (double)count,
+                             far = r * random_between(&random, 0.4, 1);
+                points[i] = kind < 2
+                                ? (narc_point){x + far * cos(a), y + far * sin(a)}
+                                : (narc_point){x + random_between(&random, -r, r), y + random_between(&random, -r, r)};
+            }
+            add_corners(&of, points, count);
+        }
+        const double tolerance = random_between(&random, 0.02, 0.3);
+        cover made = cut(&of, NARC_MAX_PARTS, tolerance, 0);
+        assert_true(made.parts.distance <= tolerance);
+        const narc_aabb box = bound(&made.outline);
+        const double width = box.max_x - box.min_x + 1, height = box.max_y - box.min_y + 1;
+        size_t alone = 0, any = 0;
+        for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+            const narc_point p = {box.min_x - 0.5 + width * (i % SAMPLES + 0.31) / SAMPLES,
+                                  box.min_y - 0.5 + height * (i / SAMPLES + 0.17) / SAMPLES};
+            double distance;
+            const size_t around = count_around(&made.outline, p, &distance);
+            alone += around == 1;
+            any += around > 0;
+            if (around == 1 && !is_covered(&made, p, 1e-9))
+                fail_msg("trial %zu: %g, %g is inside, and not covered", trial, p.x, p.y);
+            if (distance > made.parts.distance + 1e-9 && is_covered(&made, p, 0))
+                fail_msg("trial %zu: %g, %g is covered, but %g away", trial, p.x, p.y, distance);
+        }
+        const double cell = width * height / (SAMPLES * SAMPLES), room = 0.5 * cell * SAMPLES; /* cells on borders */
+        assert_true(made.parts.area >= cell * (double)alone - room && made.parts.area <= cell * (double)any + room);
+        free_cover(&made);
+        free_outline(&of);
+    }
 }
 
 /* Waves round a ring, and another one inside. */

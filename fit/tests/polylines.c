@@ -12,13 +12,6 @@
 
 static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
 
-static double distance_to_line(narc_point p, narc_point q, narc_point x) {
-    const narc_point e = minus(q, p), d = minus(x, p);
-    const double square = e.x * e.x + e.y * e.y;
-    const double t = square > 0 ? fmin(fmax((d.x * e.x + d.y * e.y) / square, 0), 1) : 0;
-    return hypot(d.x - t * e.x, d.y - t * e.y);
-}
-
 /* A point of an arc, by its definition in the header. */
 static narc_point arc_point(const narc_curve_arc *arc, double part) {
     if (isinf(arc->radius)) {
@@ -42,14 +35,14 @@ static void check_near(const char *name, const narc_point *points, size_t count,
     for (size_t s = 0; s < sample_count; s++) {
         double least = INFINITY;
         for (size_t k = 0; k < count; k++)
-            least = fmin(least, distance_to_line(points[k], points[(k + 1) % count], samples[s]));
+            least = fmin(least, measure_distance(samples[s], points[k], points[(k + 1) % count]));
         if (!(least <= tolerance * (1 + 1e-9)))
             fail_msg("%s: the arcs are %g from the chain, the tolerance is %g", name, least, tolerance);
     }
     for (size_t k = 0; k < count; k++) {
         double least = INFINITY;
         for (size_t s = 0; s + 1 < sample_count; s++)
-            least = fmin(least, distance_to_line(samples[s], samples[s + 1], points[k]));
+            least = fmin(least, measure_distance(points[k], samples[s], samples[s + 1]));
         if (!(least <= tolerance + slop))
             fail_msg("%s: point %zu is %g from the arcs, the tolerance is %g", name, k, least, tolerance);
     }
@@ -222,6 +215,64 @@ TEST(test_narrow_slots) {
     fit_ring("slot", points, count, 0.05, count);
 }
 
+/* A slot that is thousands of times thinner than the tolerance: lines alone keep it whole. */
+TEST(test_thinnest_slots) {
+    enum { SIDE = 300 }; /* chords are nearer than 6e-5 */
+    for (double width = 2e-3; width > 2e-4; width /= 3) {
+        narc_point points[2 * SIDE];
+        for (size_t k = 0; k < 2 * SIDE; k++) {
+            const double x = 10 * (k < SIDE ? (double)k : (double)(2 * SIDE) - 1.5 - (double)k) / (SIDE - 1);
+            points[k] = (narc_point){x, 0.4 * sin(x) + (k < SIDE ? 0 : width)};
+        }
+        fit_ring("thinnest slot", points, 2 * SIDE, 0.5, 2 * SIDE);
+    }
+}
+
+/* Contours that are nearer to each other than the tolerance: their chains do not cross. Seen in many lines. */
+TEST(test_near_contours) {
+    enum { SIDES = 200, STEPS = 64 };
+    struct test_random random = test_random_named("near contours");
+    for (size_t trial = 0, trials = test_trials(6); trial < trials; trial++) {
+        const double tolerance = 0.05, gap = tolerance * random_log_between(&random, 1e-3, 0.5);
+        double phase[6];
+        for (int w = 0; w < 6; w++)
+            phase[w] = 2 * PI * random_unit(&random);
+        narc_path *path = NULL;
+        assert_int_equal(narc_create_path(&path), NARC_OK);
+        for (int inner = 0; inner < 2; inner++)
+            for (size_t k = 0; k < SIDES; k++) {
+                const double a = 2 * PI * ((double)k + 0.37 * inner) / SIDES;
+                double r = inner ? 1 - gap - 1e-4 : 1; /* chords are nearer by less than 1e-4 */
+                for (int w = 0; w < 6; w++)
+                    r += 0.15 / (w + 1) * cos((w + 1) * a + phase[w]);
+                const narc_point p = {4 * r * cos(a), 4 * r * sin(a)};
+                assert_int_equal(k ? narc_line_to(path, p, NULL) : narc_move_to(path, p, NULL), NARC_OK);
+            }
+        narc_arc_chains chains;
+        narc_error error;
+        expect_ok(narc_fit_chains(path, tolerance, false, &chains, &error), &error);
+        assert_int_equal(chains.count, 2);
+        assert_true(chains.distance <= tolerance);
+        /* All of the inner one, a sample each 64th of a piece, is inside the outer one. */
+        narc_contours outer = {.count = 1, .point_count = STEPS * chains.ends[0], .ends = &outer.point_count};
+        outer.points = malloc(outer.point_count * sizeof *outer.points);
+        assert_non_null(outer.points);
+        for (size_t i = 0; i < outer.point_count; i++)
+            outer.points[i] = arc_point(&chains.arcs[i / STEPS], (double)(i % STEPS) / STEPS);
+        for (size_t i = outer.point_count; i < STEPS * chains.arc_count; i++) {
+            const narc_point p = arc_point(&chains.arcs[i / STEPS], (double)(i % STEPS) / STEPS);
+            double least = INFINITY;
+            for (size_t k = 0; k < outer.point_count && !is_inside(&outer, p); k++)
+                least = fmin(least, measure_distance(p, outer.points[k], outer.points[(k + 1) % outer.point_count]));
+            if (least < INFINITY && least > 1e-4) /* the lines are that near to the arcs */
+                fail_msg("gap %g: the chain of the hole leaves that around it at %g, %g", gap, p.x, p.y);
+        }
+        free(outer.points);
+        narc_release_chains(&chains);
+        narc_destroy_path(path);
+    }
+}
+
 /* Arcs of more than half a turn become two. */
 TEST(test_large_turns) {
     for (int way = 0; way < 2; way++) {
@@ -259,6 +310,7 @@ TEST(test_slight_turns) {
 TEST(test_crossings) {
     static const narc_point bow[] = {{0, 0}, {4, 4}, {4, 0}, {0, 4}}, box[] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                             other[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, beside[] = {{4, 0}, {8, 0}, {8, 4}, {4, 4}},
+                            across[] = {{4, 4}, {8, 4}, {8, 8}, {4, 8}},
                             spike[] = {{0, 0}, {4, 0}, {4, 9}, {4, 4}, {0, 4}};
     const struct {
         const narc_point *first, *second;
@@ -267,8 +319,9 @@ TEST(test_crossings) {
     } cases[] = {{bow, NULL, 4, "contour 0: line 0 crosses line 2 of contour 0 at (2, 2)"},
                  {spike, NULL, 5, "contour 0: line 1 meets line 2 of contour 0 at (4, 4)"},
                  {box, other, 4, "contour 0: line 1 crosses line 0 of contour 1 at (4, 2)"},
-                 {box, beside, 4, NULL}};
-    for (size_t k = 0; k < 4; k++) {
+                 {box, beside, 4, NULL},
+                 {box, across, 4, NULL}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         narc_path *path = NULL;
         narc_arc_chains chains;
         narc_error error;

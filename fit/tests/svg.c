@@ -50,6 +50,9 @@ static double find_support(const narc_point *points, size_t count, double angle)
     return most;
 }
 
+/* Each drawing takes a tenth of a second: where trials are few, every fourth case. */
+static size_t every(void) { return test_trials(10) < 10 ? 4 : 1; }
+
 /* ---------------------------------------------------------------------------- how near the outline is */
 
 /* Ink whose hull is that of discs with one radius round some points; y up. */
@@ -203,7 +206,7 @@ struct seen {
 };
 
 static void expect_seen(const struct seen *cases, size_t count) {
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k += every()) {
         const struct seen *c = &cases[k];
         narc_contours contours = read_contours(c->attributes, c->body);
         const double sides[4] = {c->right, c->top, -c->left, -c->bottom};
@@ -298,7 +301,7 @@ TEST(leaves_out_faint_shadows) {
          "<rect x='30' y='22' width='40' height='20' filter='url(#f)' opacity='%g'/>",
          0.24, 73},
     };
-    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += every()) {
         char body[600];
         const double opacity = cases[k].opacity;
         snprintf(body, sizeof body, cases[k].shadow, opacity);
@@ -309,7 +312,7 @@ TEST(leaves_out_faint_shadows) {
         assert_true(fabs(reach.y + 20) <= near);
         reach = measure_reach(body, (narc_image_request){.threshold = 0.005});
         assert_true(reach.x > cases[k].right - near);
-        if (strstr(body, "Blur")) /* which takes seconds to draw */
+        if (every() > 1 || strstr(body, "Blur")) /* which takes seconds to draw */
             continue;
         reach = measure_reach(body, (narc_image_request){.threshold = opacity + 0.01});
         assert_true(fabs(reach.x - 50) <= near);
@@ -328,7 +331,7 @@ TEST(leaves_out_faint_shadows) {
 /* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
 TEST(keeps_strong_ink_at_any_threshold) {
     static const char body[] = "<path d='M20 20H80L50 76z'/><path d='M10 90L90 79V90z'/>";
-    for (double threshold = 0.05; threshold < 1; threshold += 0.15) {
+    for (double threshold = 0.05; threshold < 1; threshold += 0.15 * (double)every()) {
         const narc_point reach = measure_reach(body, (narc_image_request){.threshold = threshold});
         assert_true(fabs(reach.x - 90) <= 1.001 * 80 / 4096 && fabs(reach.y + 20) <= 1.001 * 80 / 4096);
     }

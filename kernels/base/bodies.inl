@@ -66,8 +66,9 @@ INLINE void load_indices(const struct sources *given, size_t first, int count, s
 /* How the caller's poses lie in memory. In rows, what belongs to a body is read at once. */
 enum pose_layout {
     POSE_COLUMNS,
-    POSE_ROWS,       /* x, y, cosine and sine follow each other, all float */
-    POSE_DOUBLE_ROWS /* double x, y; float cosine, sine, scale; shape: 32 bytes */
+    POSE_ROWS,        /* x, y, cosine and sine follow each other, all float */
+    POSE_DOUBLE_ROWS, /* double x, y; float cosine, sine, scale; shape: 32 bytes */
+    POSE_LANES        /* arrays of whole vectors, all float; bodies follow each other as pairs do */
 };
 
 static inline bool follows(const void *base, ptrdiff_t stride, narc_position_column first, size_t offset) {
@@ -164,6 +165,15 @@ INLINE void load_columns(const struct sources *given, const int32_t *a, const in
     out->scale_b = load_column_or(given->b.scale, b, 1);
 }
 
+INLINE vec2 load_vec2(const float *x, const float *y, size_t k) { return (vec2){v_load(x + k), v_load(y + k)}; }
+
+/* Bodies k ... of both sets. */
+INLINE struct body_pair load_lanes(const narc_bodies *a, const narc_bodies *b, size_t k) {
+    return (struct body_pair){v2_sub(load_vec2(b->x.base, b->y.base, k), load_vec2(a->x.base, a->y.base, k)),
+                              load_vec2(a->cosine.base, a->sine.base, k), load_vec2(b->cosine.base, b->sine.base, k),
+                              v_load(a->scale.base + k), v_load(b->scale.base + k)};
+}
+
 /* `shift`: of B, or NULL. */
 INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layout layout, const int32_t *a,
                                     const int32_t *b, const vec2 *shift) {
@@ -179,6 +189,8 @@ INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layou
                                   load_column_or(given->b.scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
         load_double_rows(&given->a, a, b, shift, &pair);
+    } else if (layout == POSE_LANES) {
+        pair = load_lanes(&given->a, &given->b, (uint32_t)*a);
     } else {
         load_columns(given, a, b, shift, &pair);
     }
@@ -206,12 +218,12 @@ INLINE void split_positions(narc_position_column column, const int32_t *index, v
 INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum pose_layout layout,
                                                const int32_t *index) {
     struct placed_bodies out = {.rest = {v_set(0), v_set(0)}};
-    out.scale = bodies->scale.base ? load_column(bodies->scale, index) : v_set(1);
+    vf row[4];
     if (layout == POSE_ROWS) {
-        vf row[4];
         v_rows(bodies->x.base, bodies->x.stride, index, row);
         out.position = (vec2){row[0], row[1]};
         out.rotation = (vec2){row[2], row[3]};
+        out.scale = load_column_or(bodies->scale, index, 1);
         return out;
     }
     if (bodies->x.precision == NARC_FLOAT64) {
@@ -220,7 +232,14 @@ INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum p
     } else {
         out.position = (vec2){load_column(get_singles(bodies->x), index), load_column(get_singles(bodies->y), index)};
     }
+    if (layout == POSE_DOUBLE_ROWS) {
+        v_rows(bodies->cosine.base, bodies->cosine.stride, index, row);
+        out.rotation = (vec2){row[0], row[1]};
+        out.scale = row[2];
+        return out;
+    }
     out.rotation = (vec2){load_column(bodies->cosine, index), load_column(bodies->sine, index)};
+    out.scale = load_column_or(bodies->scale, index, 1);
     return out;
 }
 

@@ -16,16 +16,16 @@
 
 struct call {
     const narc_batch *batch;
-    size_t first, count;       /* its pairs, of those that are asked of */
-    float margin;              /* 0 for overlaps */
-    narc_float_column margins; /* one for each pair of the batch; base NULL: all are `margin` */
-    size_t *skipped;           /* pairs without an answer are added to it */
-    uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
-    struct rows *rows;         /* the others: the same */
-    struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
-    struct box_queue *boxes;   /* pairs of boxes and of capsules that wait (box/box_detour.inl), or NULL */
-    bool pieces;               /* are there pieces of chains? */
-    struct queue *concave;     /* contacts of stores with pieces: where pairs with a concave arc wait; else NULL */
+    size_t first, count;             /* its pairs, of those that are asked of */
+    float margin;                    /* 0 for overlaps */
+    narc_float_column margins;       /* one for each pair of the batch; base NULL: all are `margin` */
+    size_t *skipped;                 /* pairs without an answer are added to it */
+    uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
+    struct rows *rows;               /* the others: the same */
+    const struct question *question; /* theirs */
+    struct box_queue *boxes;         /* pairs of boxes and of capsules that wait (box/box_detour.inl), or NULL */
+    bool pieces;                     /* are there pieces of chains? */
+    struct queue *concave;           /* rows, with pieces: where pairs with a concave arc wait; else NULL */
 };
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */

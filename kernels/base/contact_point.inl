@@ -60,22 +60,27 @@ INLINE vm is_parallel(vec2 junction, vec2 n) {
  * the normal of the junction with it. */
 INLINE struct feature find_feature_beside(const narc_record *records, struct ring ring, vi record,
                                           const struct arcs *arc, const struct pose *pose, vec2 n, bool is_b) {
-    const vi next = step_record(ring, record, vi_set(1)), last = step_record(ring, record, vi_set(-1));
-    const struct arcs before_arc = load_arcs(records, last, pose, is_b),
-                      after_arc = load_arcs(records, next, pose, is_b);
     const vm starts = is_parallel(arc->start, n), ends = is_parallel(arc->end, n);
-    const vf before = v2_cross(n, find_point(&before_arc, n, is_b));
-    const vf after = v2_cross(n, find_point(&after_arc, n, is_b));
-    struct feature f = find_feature(arc, arc, n, vi_select(ends, next, record), is_b);
-    f.along_min = v_select(starts, v_min(f.along_min, before), f.along_min);
-    f.along_max = v_select(starts, v_max(f.along_max, before), f.along_max);
-    f.along_min = v_select(ends, v_min(f.along_min, after), f.along_min);
-    f.along_max = v_select(ends, v_max(f.along_max, after), f.along_max);
-    f.radius = v_select(ends, after_arc.radius, f.radius);
-    f.start = v2_select(ends, after_arc.start, f.start);
-    f.end = v2_select(ends, after_arc.end, f.end);
-    const vf other = v_select(ends, find_magnitude(&after_arc), find_magnitude(&before_arc));
-    f.magnitude = v_select(vm_or(starts, ends), v_add(find_magnitude(arc), other), f.magnitude);
+    const vm either = vm_or(starts, ends), both = vm_and(starts, ends);
+    struct feature f = find_feature(arc, arc, n, record, is_b);
+    if (!vm_any(either))
+        return f;
+    if (vm_any(both)) { /* of an arc that turns by less than that */
+        const struct arcs before = load_arcs(records, step_record(ring, record, vi_set(-1)), pose, is_b);
+        const vf along = v2_cross(n, find_point(&before, n, is_b));
+        f.along_min = v_select(both, v_min(f.along_min, along), f.along_min);
+        f.along_max = v_select(both, v_max(f.along_max, along), f.along_max);
+    }
+    const vi other = step_record(ring, record, vi_select(ends, vi_set(1), vi_set(-1)));
+    const struct arcs beside = load_arcs(records, other, pose, is_b);
+    const vf along = v2_cross(n, find_point(&beside, n, is_b));
+    f.along_min = v_select(either, v_min(f.along_min, along), f.along_min);
+    f.along_max = v_select(either, v_max(f.along_max, along), f.along_max);
+    f.magnitude = v_select(either, v_add(find_magnitude(arc), find_magnitude(&beside)), f.magnitude);
+    f.record = vi_select(ends, other, record);
+    f.radius = v_select(ends, beside.radius, f.radius);
+    f.start = v2_select(ends, beside.start, f.start);
+    f.end = v2_select(ends, beside.end, f.end);
     return f;
 }
 
@@ -122,7 +127,7 @@ struct answer {
     vec2 normal, point; /* in the world's axes */
     vi feature;
     vf radius_a, radius_b;
-    vi reach_a, reach_b; /* of manifolds, as in the row */
+    vi reach_a, reach_b; /* as in a manifold's row */
 };
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
@@ -150,8 +155,8 @@ INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
 }
 
 /* The answer to the pairs k ... of a queue that touch along n, in A's frame. */
-INLINE struct answer find_answer(const struct call *call, const struct queue *queue, int k, vf separation, vec2 n,
-                                 const struct feature *on_a, const struct feature *on_b) {
+INLINE struct answer find_answer(const struct queue *queue, int k, vf separation, vec2 n, const struct feature *on_a,
+                                 const struct feature *on_b) {
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
     const vec2 to_world = get_vec2(queue, ROTATION_A, k);
     const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
@@ -160,17 +165,14 @@ INLINE struct answer find_answer(const struct call *call, const struct queue *qu
     const vi number_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), info_b);
     const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));
     const vi feature_b = vi_add(number_b, vi_select(edge_b, vi_set(NARC_FEATURE_EDGE), zero));
-    struct answer answer = {.separation = separation,
-                            .normal = v2_rotate(to_world, n),
-                            .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b))),
-                            .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
-                            .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
-                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius)};
-    if (call->edges) {
-        answer.reach_a = find_reach(on_a, n, info_a, edge_a);
-        answer.reach_b = find_reach(on_b, n, info_b, edge_b);
-    }
-    return answer;
+    return (struct answer){.separation = separation,
+                           .normal = v2_rotate(to_world, n),
+                           .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b))),
+                           .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
+                           .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
+                           .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius),
+                           .reach_a = find_reach(on_a, n, info_a, edge_a),
+                           .reach_b = find_reach(on_b, n, info_b, edge_b)};
 }
 
 #endif

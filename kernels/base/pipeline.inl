@@ -16,6 +16,7 @@
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
+#include "base/question.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "column.h"
@@ -27,13 +28,21 @@
 /* Answers what it can of a vector of pairs, the first of which has the number `pair`, and returns the other lanes. */
 typedef vm triage(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]);
 
-/* Answers the pairs `begin` ... of a queue, or pushes them to the next stage's. */
-typedef void stage(const struct call *call, struct queue *queue, int begin, struct queue *next);
-
 /* Takes pairs of a kind that has a way of its own, of those in the lanes `open`, and returns the other lanes. `number`:
  * of the first. */
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
+
+/* The way of a kernel's pairs: constants but for `stages` and `edged`. */
+struct course {
+    detour *take;   /* if call->boxes: what comes before all else */
+    triage *settle; /* what is answered as it is set up; all others go to stage `first` */
+    int fields;     /* what travels from there on */
+    stage *const *stages;
+    int first;
+    int edged; /* where pairs with edges may begin instead, or 0 */
+    int end;   /* behind the last stage */
+};
 
 /* Triage for methods that treat all pairs alike. */
 INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
@@ -49,56 +58,56 @@ enum { REMEMBERED = 64 * BLOCK };
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that
  * have edges, as among bodies that rest on each other, these go to the stage that can; polygons if it can't answer half
  * of them, or `not_first`. */
-INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage, int polygon_stage,
-                  bool not_first) {
+INLINE void enter(const struct course *course, struct queue *queues, vm open, const vf item[FIELDS], bool not_first) {
     vm here = open;
-    if (polygon_stage > 0 && (not_first || 2 * queues->edged_left > queues->edged)) {
+    if (POLYGONS > 0 && course->first == 0 && (not_first || 2 * queues->edged_left > queues->edged)) {
         const vm polygons = are_polygons(open, item[INFO_A], item[INFO_B]);
         here = vm_and_not(open, polygons);
         if (vm_any(polygons))
-            push(&queues[polygon_stage], polygons, item, fields);
+            push(&queues[POLYGONS], polygons, item, course->fields);
     }
-    if (edged_stage > 0 && 4 * queues->edged_left > 3 * queues->edged) {
+    if (course->edged > 0 && 4 * queues->edged_left > 3 * queues->edged) {
         const vm edged = vm_and_not(here, both_have(item, NARC_SHAPE_SMOOTH));
         here = vm_and_not(here, edged);
         if (vm_any(edged))
-            push(&queues[edged_stage], edged, item, fields);
+            push(&queues[course->edged], edged, item, course->fields);
     }
     if (vm_any(here))
-        push(queues, here, item, fields);
+        push(&queues[course->first], here, item, course->fields);
 }
 
-/* The queue that a stage is to take pairs from, or -1. The last one that has FLUSH goes first, so that all before it
+/* The stage that is to take pairs from its queue, or -1. The last one that has FLUSH goes first, so that all before it
  * find room. Those that have less wait, but for the `end`, when the first one goes first. */
-INLINE int find_due(const struct queue *queues, int stage_count, bool end) {
-    for (int s = stage_count - 1; s >= 0; s--)
+INLINE int find_due(const struct course *course, const struct queue *queues, bool end) {
+    for (int s = course->end - 1; s >= 0; s--)
         if (queues[s].count >= FLUSH)
             return s;
-    for (int s = 0; s < stage_count && end; s++)
+    for (int s = 0; s < course->end && end; s++)
         if (queues[s].count > 0)
             return s;
     return -1;
 }
 
 /* Takes the last pairs of a queue through its stage. */
-INLINE void run_stage(const struct call *call, stage *run, struct queue *queue) {
+INLINE void run_stage(const struct call *call, stage *run, struct queue *queues, int s) {
+    struct queue *const queue = &queues[s];
     const int begin = queue->count > STEP ? queue->count - STEP : 0;
     if (queue->count % V_WIDTH != 0 && begin == 0)
         pad(queue);
-    run(call, queue, begin, queue + 1);
+    run(call, queues, begin);
     queue->count = begin;
 }
 
-INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
+INLINE void run_stages(const struct call *call, const struct course *course, struct queue *queues, bool end) {
     if (call->count <= STEP) { /* no queue can be full: each stage runs once, when all pairs are in */
-        for (int s = 0; s < stage_count; s++)
+        for (int s = 0; s < course->end; s++)
             if (queues[s].count > 0)
-                run_stage(call, stages[s], &queues[s]);
+                run_stage(call, course->stages[s], queues, s);
         return;
     }
-    for (int s = find_due(queues, stage_count, end); s >= 0;) {
-        run_stage(call, stages[s], &queues[s]);
-        const int due = find_due(queues, stage_count, end);
+    for (int s = find_due(course, queues, end); s >= 0;) {
+        run_stage(call, course->stages[s], queues, s);
+        const int due = find_due(course, queues, end);
         s = queues[s].count >= STEP && due <= s ? s : due;
     }
 }
@@ -126,56 +135,56 @@ NOINLINE void fetch_ahead(const struct sources *given, const narc_shapes *shapes
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
 enum { FEW_PAIRS = 4 };
 
-/* Runs all pairs of a call. `take`: what comes before all else, or NULL. `queues`: one for each stage. `edged_stage`:
- * where pairs with edges may begin instead of at the first stage, or 0. */
-INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int fields, stage *const *stages,
-                      int stage_count, int edged_stage, struct queue *queues) {
+/* Runs all pairs of a call. `queues`: NULL if the triage answers all. */
+INLINE void run_pairs(const struct call *call, const struct course *course, struct queue *queues) {
     const struct sources given = copy_sources(call->batch);
-    const int polygon_stage = stage_count > POLYGONS ? POLYGONS : 0;
-    const bool not_first = edged_stage == 0 || call->count <= FEW_PAIRS; /* do polygons skip the first stage? */
-    const enum pose_layout layout = call->count <= FEW_PAIRS ? POSE_COLUMNS : find_layout(&given);
+    const bool not_first = course->edged == 0 || call->count <= FEW_PAIRS; /* do polygons skip the first stage? */
+    const enum pose_layout layout = call->batch->of_casts      ? POSE_LANES
+                                    : call->count <= FEW_PAIRS ? POSE_COLUMNS
+                                                               : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
-    for (int s = 0; s < stage_count; s++)
+    for (int s = 0; s < course->end; s++)
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(&given, call->first + block, n, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
             fetch_ahead(&given, call->batch->shapes, call->first + block + BLOCK, call->first + call->count);
-        if (edged_stage > 0 && block % REMEMBERED == 0)
+        if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
-        if (stage_count > 0 && block % (4 * BLOCK) == 0)
+        if (queues && block % (4 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             const struct placement placement = place_pairs(call, &given, &indices, k, layout);
             vm asked = vm_front(n - k);
-            if (take) {
-                asked = take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
+            if (course->take && !LIKELY(!call->boxes)) {
+                asked = course->take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
                 if (!vm_any(asked))
                     continue;
             }
             const struct filter circles =
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
-            const vm open = settle(call, block + (size_t)k, &circles, item);
+            const vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces))
                 fetch_pieces(call, circles.valid, item);
-            if (stage_count > 0 && vm_any(open)) {
-                enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);
-                if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH ||
-                    queues[polygon_stage].count >= FLUSH)
-                    run_stages(call, stages, stage_count, queues, false);
+            if (queues && vm_any(open)) {
+                enter(course, queues, open, item, not_first);
+                if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||
+                    queues[POLYGONS].count >= FLUSH)
+                    run_stages(call, course, queues, false);
             }
         }
     }
-    run_stages(call, stages, stage_count, queues, true);
+    if (queues)
+        run_stages(call, course, queues, true);
 }
 
 /* Are there pieces of chains, and are they asked of as such? */
 static inline bool has_pieces(const narc_batch *batch) {
-    return NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0;
+    return NARC_PIECES && !batch->of_casts && batch->shapes->piece_count > 0;
 }
 
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -189,8 +198,8 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
                          .pieces = has_pieces(batch)};
 }
 
-static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
-                                     const narc_rows *out, struct rows *rows) {
+static inline struct call begin_rows(const struct question *question, const narc_batch *batch, size_t first,
+                                     size_t count, size_t *skipped, const narc_rows *out, struct rows *rows) {
     start_rows(rows, count, out, batch->query->dense != 0);
     return (struct call){.batch = batch,
                          .first = first,
@@ -198,25 +207,9 @@ static inline struct call begin_rows(const narc_batch *batch, size_t first, size
                          .skipped = skipped,
                          .margin = batch->query->margin,
                          .margins = batch->query->margins,
+                         .question = question,
                          .rows = rows,
                          .pieces = has_pieces(batch)};
-}
-
-/* The kernels of a method with one stage. */
-INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
-                               uint64_t *out_bits) {
-    struct queue queue;
-    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, NULL, take_valid, QUEUE_FIELDS, &find, 1, 0, &queue);
-}
-
-INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
-                                 const narc_rows *out) {
-    struct queue queue;
-    struct rows rows;
-    const struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    run_pairs(&call, NULL, take_valid, QUEUE_FIELDS, &find, 1, 0, &queue);
-    return end_rows(&call);
 }
 
 #endif

@@ -17,13 +17,16 @@ enum { BLOCK = 32 };
 
 /* A stage waits for FLUSH pairs, so that vectors are full and its code is fetched once for several, and takes STEP at a
  * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack.
- * POLYGONS is the stage that takes pairs of polygons (polygon/polygon_edges.inl), or 0. */
+ * Those of methods have one stage, overlaps none for polygons, and none that writes rows. */
 #ifdef NARC_QUEUE_PAIRS
-enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1, POLYGONS = 0 };
-#elif defined(NARC_FEW_STAGES)
-enum { FLUSH = 32, STEP = 32, STAGES = 5, POLYGONS = 3 };
+enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS };
+enum { METHOD, STAGES, POLYGONS = 0 };
+#elif defined(NARC_OVERLAPS)
+enum { FLUSH = 32, STEP = 32 };
+enum { PROBE, PROBE_AGAIN, CLIMB, DECIDE, STAGES, POLYGONS = 0 };
 #else
-enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH, STAGES = 6, POLYGONS = 3 };
+enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH };
+enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, ANSWER_EDGES, STAGES };
 #endif
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and
@@ -50,11 +53,17 @@ enum {
     SIZE = 19,       /* the sum of both bounding radii */
     FIELDS,
     OVERLAP_FIELDS = ROTATION_A, /* overlaps need no rotation */
-    CONTACT_FIELDS = SIZE
+    ROW_FIELDS = SIZE,
+    /* Of pairs whose answer is certain (settle()), in place of what the search needs: along which normal they touch, in
+     * A's frame, and with which arcs. */
+    NORMAL = AXIS,
+    SEPARATION = CORE,
+    RECORD_A = SLACK,
+    RECORD_B = DIRECTION
 };
 
 /* Those that queues have room for. */
-#ifdef NARC_FEW_STAGES
+#ifdef NARC_OVERLAPS
 enum { QUEUE_FIELDS = OVERLAP_FIELDS };
 #else
 enum { QUEUE_FIELDS = FIELDS };
@@ -147,6 +156,15 @@ INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
     for (int f = 0; f < fields; f++)
         v_store(queue->item[f] + end, v_pack(packing, item[f]));
     queue->count = end + COUNT_BITS(vm_bits(keep));
+}
+
+/* Passes on the pairs k ... of a queue in the lanes `left`. */
+INLINE void pass_on(const struct queue *queue, int k, vm left, int fields, struct queue *to) {
+    vf item[FIELDS];
+    if (!vm_any(left))
+        return;
+    get_item(queue, k, item, fields);
+    push(to, left, item, fields);
 }
 
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */

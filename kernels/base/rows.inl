@@ -13,22 +13,11 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/question.inl"
 #include "base/queue.inl"
-#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "piece/pieces.inl"
 #include "simd/simd.h"
-
-/* Bytes of a row's members. */
-enum {
-    CONTACT_WORDS = offsetof(narc_contact, feature), /* eight of them to the end, behind the pair */
-    MANIFOLD_RADII = offsetof(narc_manifold, radius_a),
-    FIRST_POINT = offsetof(narc_manifold, point),
-    SECOND_POINT = FIRST_POINT + sizeof(narc_manifold_point)
-};
-_Static_assert(sizeof(narc_contact) == 36 && CONTACT_WORDS == 4, "two writes of four words follow the pair");
-_Static_assert(sizeof(narc_manifold) == 64 && MANIFOLD_RADII == 16 && FIRST_POINT == 32, "four writes of four words");
 
 /* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. All pairs
  * before `done` are answered and have `listed` rows, or wait in the queue of boxes, or in that of capsules, in their
@@ -92,38 +81,9 @@ INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
     rows->listed += COUNT_BITS(kept);
 }
 
-INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
-
-/* Writes rows of pairs with one point. */
-INLINE void write_answers(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
-    const vi one = vi_set(1);
-    int32_t number[V_WIDTH];
-    if (call->edges) {
-        const vf zero = v_set(0);
-        const vf head[4] = {v_of_bits(numbers), v_of_bits(one), answer->normal.x, answer->normal.y};
-        const vf radii[4] = {answer->radius_a, answer->radius_b, v_of_bits(answer->reach_a),
-                             v_of_bits(answer->reach_b)};
-        const vf first[4] = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)};
-        const vf second[4] = {zero, zero, zero, zero};
-        v_put_rows(place, 0, head);
-        v_put_rows(place, MANIFOLD_RADII, radii);
-        v_put_rows(place, FIRST_POINT, first);
-        v_put_rows(place, SECOND_POINT, second);
-        return;
-    }
-    const vf front[4] = {v_of_bits(pack_halves(answer->feature, one)), answer->separation, answer->normal.x,
-                         answer->normal.y};
-    const vf rest[4] = {answer->point.x, answer->point.y, answer->radius_a, answer->radius_b};
-    vi_store(number, numbers);
-    v_put_rows(place, CONTACT_WORDS, front);
-    v_put_rows(place, CONTACT_WORDS + 16, rest);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        put_word(place[lane], 0, (uint32_t)number[lane]);
-}
-
 /* Lists the rows of pairs in the lanes `keep` behind those that are listed, where there is room for all lanes: packed, so
  * that their places follow each other. What is written behind the last one is overwritten. */
-INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
+INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer, row_writer *write) {
     struct rows *rows = call->rows;
     const vp packing = vm_packing(keep);
     const vi numbers = vi_bits(v_pack(packing, v_of_bits(find_numbers(call, pairs))));
@@ -136,7 +96,7 @@ INLINE void append_answers(const struct call *call, vi pairs, vm keep, const str
     char *place[V_WIDTH];
     for (int lane = 0; lane < V_WIDTH; lane++)
         place[lane] = rows->out.base + (rows->listed + lane) * rows->out.stride;
-    write_answers(call, place, numbers, &packed);
+    write(call, place, numbers, &packed, NULL);
     rows->listed += COUNT_BITS(vm_bits(keep));
 }
 
@@ -148,27 +108,21 @@ INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {
     vi_store(pair, pairs);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int32_t k = pair[FIND_LOWEST(lanes)];
-        const narc_contact contact = {.pair = (uint32_t)find_number(call, k), .separation = INFINITY};
-        const narc_manifold manifold = {.pair = contact.pair, .point = {{.separation = INFINITY}}};
         if (!(find_margin(call, k) >= INFINITY))
             continue;
-        memcpy(find_place(call, k), call->edges ? (const void *)&manifold : &contact,
-               call->edges ? sizeof manifold : sizeof contact);
+        call->question->none(find_place(call, k), (uint32_t)find_number(call, k), INFINITY);
         call->rows->known[k] = 1;
         call->rows->without++;
     }
 }
 
 /* Fills the rows of pairs that have none: dense ones have all places filled. Returns how many contacts there are. */
-INLINE size_t fill_gaps(const struct call *call, size_t size) {
+INLINE size_t fill_gaps(const struct call *call) {
     int count = 0;
     for (int32_t k = 0; k < (int32_t)call->count; k++) {
         count += call->rows->known[k];
-        if (call->rows->known[k])
-            continue;
-        char *const place = find_place(call, k);
-        memset(place, 0, size);
-        put_word(place, 0, (uint32_t)find_number(call, k));
+        if (!call->rows->known[k])
+            call->question->none(find_place(call, k), (uint32_t)find_number(call, k), 0);
     }
     return (size_t)(count - call->rows->without);
 }
@@ -201,36 +155,9 @@ INLINE size_t close_gaps(const struct call *call, size_t size) {
     return count;
 }
 
-/* Ends a call. Sizes are constants, so that a row is copied by a few instructions. */
-INLINE size_t end_rows(const struct call *call) {
-    const bool dense = call->rows->dense;
-    if (call->batch->manifolds)
-        return dense ? fill_gaps(call, sizeof(narc_manifold)) : close_gaps(call, sizeof(narc_manifold));
-    return dense ? fill_gaps(call, sizeof(narc_contact)) : close_gaps(call, sizeof(narc_contact));
-}
-
-/* Of the pairs k ... of a queue in the lanes `keep`, those that touch with what may touch: all but with the back of a
- * run, or from behind a piece. */
-INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                      vi feature_a, vi feature_b) {
-    if (!NARC_PIECES || LIKELY(!call->pieces))
-        return keep;
-    const vm front =
-        vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b));
-    return keep_reached(call, queue, k, vm_and(keep, front), separation, n);
-}
-
-/* Writes the rows of the pairs k ... of a queue in the lanes `keep`. Returns those that have one. */
-INLINE vm store_rows(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                     const struct feature *on_a, const struct feature *on_b) {
-    const struct answer answer = find_answer(call, queue, k, separation, n, on_a, on_b);
-    const vi pairs = get_bits(queue, PAIR, k);
-    const vm kept = keep_fronts(call, queue, k, keep, separation, n, vi_and(answer.feature, vi_set(0xff)),
-                                vi_shift_right(answer.feature, 8));
-    char *place[V_WIDTH];
-    find_places(call, pairs, kept, place);
-    write_answers(call, place, find_numbers(call, pairs), &answer);
-    return kept;
+/* Ends a call. The size is a constant, so that a row is copied by a few instructions. */
+INLINE size_t end_rows(const struct call *call, size_t size) {
+    return call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
 }
 
 #endif

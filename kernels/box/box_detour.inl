@@ -12,12 +12,12 @@
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
+#include "base/question.inl"
+#include "base/rows.inl"
 #include "box/box_pairs.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
 #include "simd/simd.h"
-
-enum { OF_BOXES, OF_CAPSULES, BOX_QUEUES };
 
 INLINE void start_boxes(struct call *call, struct box_queue queues[BOX_QUEUES]) {
     queues[OF_BOXES].count = queues[OF_CAPSULES].count = 0;

@@ -28,7 +28,7 @@
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
-#include "base/rows.inl"
+#include "base/question.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
@@ -59,9 +59,6 @@ struct box_queue {
     _Alignas(64) float item[BOX_FIELDS][BOX_CAPACITY];
     int count;
 };
-
-/* Answers the pairs k ... of a queue in the lanes `live`. */
-typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
 
 /* Appends the lanes `keep` of `item`. */
 INLINE void push_boxes(struct box_queue *queue, vm keep, const vf item[BOX_FIELDS]) {

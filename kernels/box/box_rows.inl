@@ -117,16 +117,19 @@ INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_s
     return edge;
 }
 
-INLINE struct manifold_points find_box_points(const struct call *call, const struct box_pair *pair,
-                                              const struct box_contact *c, const struct box_touch *on_a,
-                                              const struct box_touch *on_b, vec2 place, vf margin) {
+INLINE struct sides find_box_sides(const struct call *call, const struct box_pair *pair, const struct box_contact *c,
+                                   const struct box_touch *on_a, const struct box_touch *on_b, vec2 place, vf margin) {
     const vf flat_sine = v_set(call->batch->flat_sine);
-    const struct edge a = find_box_edge(pair, &c->a, on_a, c->normal, flat_sine, 4, false);
-    const struct edge b = find_box_edge(pair, &c->b, on_b, c->normal, flat_sine, 6, true);
-    const vi number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
-             number_b = find_box_arc(pair, find_box_touching(&c->b), 6);
-    return find_manifold_points(call, &a, &b, c->separation, c->normal, place, get_box_vec2(pair, BOX_ROTATION_A),
-                                get_box_vec2(pair, BOX_POSITION), margin, number_a, number_b);
+    return (struct sides){.a = find_box_edge(pair, &c->a, on_a, c->normal, flat_sine, 4, false),
+                          .b = find_box_edge(pair, &c->b, on_b, c->normal, flat_sine, 6, true),
+                          .number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
+                          .number_b = find_box_arc(pair, find_box_touching(&c->b), 6),
+                          .n = c->normal,
+                          .to_world = get_box_vec2(pair, BOX_ROTATION_A),
+                          .position_b = get_box_vec2(pair, BOX_POSITION),
+                          .place = place,
+                          .margin = margin,
+                          .named = vm_front(V_WIDTH)};
 }
 
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
@@ -144,9 +147,9 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
     }
 }
 
-/* Answers the pairs k ... of a queue in the lanes `live`. */
+/* Answers the pairs k ... of a queue. `edges`: are second points asked for? */
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
-                         bool manifolds) {
+                         row_writer *write, bool edges) {
     const struct box_pair pair = {queue, k, capsules};
     const vi pairs = vi_bits(get_box_field(&pair, BOX_PAIR));
     const vf margin = find_margins(call, pairs);
@@ -155,47 +158,28 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     const vm keep = vm_and(open, is_below(c.separation, margin));
     if (!vm_any(keep))
         return;
-    const vec2 n = c.normal;
+    const vec2 n = c.normal, to_world = get_box_vec2(&pair, BOX_ROTATION_A);
     const struct box_touch on_a = find_touch(&c.a, n, get_box_field(&pair, BOX_RADIUS_A), false);
     const struct box_touch on_b = find_touch(&c.b, n, v_neg(get_box_field(&pair, BOX_RADIUS_B)), true);
-    const vf half = v_set(0.5f), across = v_mul(half, v_add(on_a.across, on_b.across));
+    const vf half = v_set(0.5f), flat = v_set(INFINITY), across = v_mul(half, v_add(on_a.across, on_b.across));
     const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
-    const vec2 normal = v2_rotate(get_box_vec2(&pair, BOX_ROTATION_A), n);
-    const vi numbers = find_numbers(call, pairs);
+    const vi of_a = find_box_feature(&pair, &c.a, &on_a, 4), of_b = find_box_feature(&pair, &c.b, &on_b, 6);
+    struct answer answer = {.separation = c.separation,
+                            .normal = v2_rotate(to_world, n),
+                            .point = v2_rotate(to_world, v2_rotate(n, place)),
+                            .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
+                            .radius_a = v_select(on_a.parallel, flat, get_box_field(&pair, BOX_RADIUS_A)),
+                            .radius_b = v_select(on_b.parallel, flat, get_box_field(&pair, BOX_RADIUS_B))};
     char *to[V_WIDTH];
     find_box_places(call, queue, k + live - 1, pairs, keep, to);
-    if (manifolds) {
-        const struct manifold_points m = find_box_points(call, &pair, &c, &on_a, &on_b, place, margin);
-        write_manifolds(to, numbers, normal, &m, find_box_reach(&pair, &c.a, &on_a),
-                        find_box_reach(&pair, &c.b, &on_b));
-        return;
+    if (edges) {
+        const struct sides sides = find_box_sides(call, &pair, &c, &on_a, &on_b, place, margin);
+        answer.reach_a = find_box_reach(&pair, &c.a, &on_a);
+        answer.reach_b = find_box_reach(&pair, &c.b, &on_b);
+        write(call, to, find_numbers(call, pairs), &answer, &sides);
+    } else {
+        write(call, to, find_numbers(call, pairs), &answer, NULL);
     }
-    const vf flat = v_set(INFINITY);
-    const vi of_a = find_box_feature(&pair, &c.a, &on_a, 4);
-    const vi of_b = find_box_feature(&pair, &c.b, &on_b, 6);
-    const struct answer answer = {.separation = c.separation,
-                                  .normal = normal,
-                                  .point = v2_rotate(get_box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
-                                  .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
-                                  .radius_a = v_select(on_a.parallel, flat, get_box_field(&pair, BOX_RADIUS_A)),
-                                  .radius_b = v_select(on_b.parallel, flat, get_box_field(&pair, BOX_RADIUS_B))};
-    write_answers(call, to, numbers, &answer);
-}
-
-static void answer_box_contacts(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, false, false);
-}
-
-static void answer_box_manifolds(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, false, true);
-}
-
-static void answer_capsule_contacts(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, true, false);
-}
-
-static void answer_capsule_manifolds(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, true, true);
 }
 
 #endif

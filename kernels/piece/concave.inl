@@ -26,6 +26,7 @@
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/pair_setup.inl"
+#include "base/question.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/shape.inl"
@@ -135,20 +136,9 @@ INLINE struct arc_window find_window(const narc_record *records, const struct qu
     return (struct arc_window){narrow, v2_rotate(turn, back)};
 }
 
-/* The rows of gaps, to these places. */
-INLINE void write_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
-                       char *const *place) {
-    const struct pose pose = get_pose(queue, k);
-    const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
-    const vec2 n = v2_divide(gap->normal, gap->length);
-    const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, gap->record_a, false);
-    const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, gap->record_b, true);
-    const struct answer answer = find_answer(call, queue, k, gap->separation, n, &on_a, &on_b);
-    write_answers(call, place, find_numbers(call, get_bits(queue, PAIR, k)), &answer);
-}
-
 /* Puts the last of a pair's rows among those before it: they are in the order of their normals, counter-clockwise. */
-INLINE void sort_last_row(char *rows, ptrdiff_t stride, int last, size_t size, size_t normal_at) {
+INLINE void sort_last_row(const struct question *question, char *rows, ptrdiff_t stride, int last) {
+    const size_t size = question->size, normal_at = question->normal_at;
     char row[sizeof(narc_manifold)];
     float normal[2], other[2];
     int k = last;
@@ -177,37 +167,32 @@ INLINE void list_gaps(const struct call *call, const struct queue *queue, int k,
         const ptrdiff_t next = (ptrdiff_t)list->first + (ptrdiff_t)list->count;
         place[lane] = has_room ? rows->out.base + next * rows->out.stride : rows->spare;
     }
-    write_gaps(call, queue, k, gap, place);
+    call->question->gaps(call, queue, k, gap, place);
     for (uint32_t lanes = kept; lanes; lanes &= lanes - 1) {
         narc_row_list *const list = &rows->out.lists[pair[FIND_LOWEST(lanes)]];
         char *const first = rows->out.base + (ptrdiff_t)list->first * rows->out.stride;
         if (list->count == list->room)
             continue;
-        if (call->batch->manifolds)
-            sort_last_row(first, rows->out.stride, (int)list->count, sizeof(narc_manifold),
-                          offsetof(narc_manifold, normal_x));
-        else
-            sort_last_row(first, rows->out.stride, (int)list->count, sizeof(narc_contact),
-                          offsetof(narc_contact, normal_x));
-        list->count++;
+        sort_last_row(call->question, first, rows->out.stride, (int)list->count++);
     }
     rows->done = (int)call->count;
 }
 
 /* Notes in pairs' rows how many there are besides, of `counts` in all. */
-INLINE void note_further_rows(const struct call *call, vi counts, char *const *place) {
+INLINE void note_more_rows(const struct call *call, vi counts, char *const *place) {
     int32_t count[V_WIDTH];
     if (call->rows->dense)
         return;
     vi_store(count, counts);
     for (int lane = 0; lane < V_WIDTH; lane++) {
-        const uint32_t more = count[lane] > 1 ? (uint32_t)count[lane] - 1 : 0, word = 1 + NARC_FURTHER_ROW * more;
-        const uint16_t half = (uint16_t)word;
-        if (more > 0 && call->batch->manifolds)
-            memcpy(place[lane] + offsetof(narc_manifold, count), &word, sizeof word);
-        else if (more > 0)
-            memcpy(place[lane] + offsetof(narc_contact, count), &half, sizeof half);
-        *call->rows->out.further += more;
+        const uint32_t more = count[lane] > 1 ? (uint32_t)count[lane] - 1 : 0;
+        uint32_t word;
+        if (more == 0)
+            continue;
+        memcpy(&word, place[lane] + sizeof word, sizeof word);
+        word += more * call->question->extra_row;
+        memcpy(place[lane] + sizeof word, &word, sizeof word);
+        *call->rows->out.more += more;
     }
 }
 
@@ -266,17 +251,12 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         return;
     char *place[V_WIDTH];
     find_places(call, get_bits(queue, PAIR, k), any, place);
-    write_gaps(call, queue, k, &deepest, place);
-    note_further_rows(call, found, place);
-}
-
-INLINE vm has_concave(const vf item[FIELDS]) {
-    return vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_CONCAVE),
-                 has_mark(get_item_bits(item, INFO_B), NARC_PIECE_CONCAVE));
+    call->question->gaps(call, queue, k, &deepest, place);
+    note_more_rows(call, found, place);
 }
 
 /* Answers the last pairs that wait: while there are others, whole vectors. */
-INLINE void answer_concave(const struct call *call) {
+static void answer_concave(const struct call *call) {
     struct queue *const queue = call->concave;
     const int begin = queue->count > STEP ? queue->count - STEP : 0;
     if (queue->count % V_WIDTH != 0 && begin == 0)
@@ -284,29 +264,6 @@ INLINE void answer_concave(const struct call *call) {
     for (int k = begin; k < queue->count; k += V_WIDTH)
         answer_concave_pairs(call, queue, k, vm_front(queue->count - k));
     queue->count = begin;
-}
-
-/* Takes the pairs with a concave arc of those in the lanes `valid`, and returns the others of `near`. What is apart by
- * its circles has no contact with a separation below 0, whatever the margin: a body may then be deep under the arc, but
- * not on it. So negative margins count as 0 here, and where circles are apart SLACK tells so. */
-INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct filter *circles,
-                       const vf item[FIELDS]) {
-    const vm concave = vm_and(valid, has_concave(item));
-    if (!vm_any(concave))
-        return near;
-    const vf zero = v_set(0), reach = v_add(circles->size, v_max(circles->margin, zero));
-    const vm apart = v_lt(v_mul(reach, reach), circles->square);
-    const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
-    const vm waits = vm_and_not(concave, apart);
-    vf own[FIELDS];
-    memcpy(own, item, sizeof own);
-    own[SLACK] = v_select(beside, v_set(1), zero);
-    own[CORE] = circles->size; /* it, and what joins the circles, for find_window() */
-    set_vec2(own, AXIS, circles->between);
-    push(call->concave, waits, own, CONTACT_FIELDS);
-    if (call->concave->count >= FLUSH)
-        answer_concave(call);
-    return vm_and_not(near, concave);
 }
 
 #endif

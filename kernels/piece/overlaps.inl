@@ -36,12 +36,12 @@ struct piece_pairs {
 
 /* Clears the bits of those that have no contact: rows come in the order of the pairs. */
 static void ask_contacts(const narc_batch *batch, struct piece_pairs *pairs, uint64_t *bits) {
-    size_t skipped = 0, further = 0, row = 0;
+    size_t skipped = 0, more = 0, row = 0;
     const narc_query query = {.selection = {pairs->number, sizeof *pairs->number},
                               .front_only = batch->query->front_only};
     narc_batch selected = *batch;
     selected.query = &query;
-    const narc_rows rows = {.base = (char *)pairs->contact, .stride = sizeof *pairs->contact, .further = &further};
+    const narc_rows rows = {.base = (char *)pairs->contact, .stride = sizeof *pairs->contact, .more = &more};
     const size_t found = NARC_NAMED(contact)(&selected, 0, pairs->count, &skipped, &rows);
     for (size_t k = 0; k < pairs->count; k++) {
         const bool touches = row < found && pairs->contact[row].pair == pairs->number[k];

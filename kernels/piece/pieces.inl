@@ -96,15 +96,15 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         const size_t number = find_number(call, pair[l]);
         const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
                                                     find_header(batch, batch->b, batch->pairs->b, number)};
-        narc_toucher touching[2];
+        narc_contact_side touching[2];
         for (int side = 0; side < 2; side++)
-            touching[side] = (narc_toucher){header[side],
-                                            narc_arcs_of(batch->shapes, header[side]),
-                                            (double)scale[side][l],
-                                            (double)field[side][0][l],
-                                            (double)field[side][1][l],
-                                            (double)field[side][2][l],
-                                            (double)field[side][3][l]};
+            touching[side] = (narc_contact_side){header[side],
+                                                 narc_arcs_of(batch->shapes, header[side]),
+                                                 (double)scale[side][l],
+                                                 (double)field[side][0][l],
+                                                 (double)field[side][1][l],
+                                                 (double)field[side][2][l],
+                                                 (double)field[side][3][l]};
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));
@@ -117,6 +117,17 @@ INLINE vm keep_reached(const struct call *call, const struct queue *queue, int k
                             has_mark(get_bits(queue, INFO_B, k), NARC_PIECE_MARKS));
     const vm deep = vm_and(vm_and(keep, pieces), v_lt(separation, v_set(0)));
     return vm_any(deep) ? vm_and_not(keep, find_unreached(call, queue, k, deep, separation, n)) : keep;
+}
+
+/* Of the pairs k ... of a queue in the lanes `keep`, those that touch with what may touch: all but with the back of a
+ * run, or from behind a piece. */
+INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                      vi feature_a, vi feature_b) {
+    if (!NARC_PIECES || LIKELY(!call->pieces))
+        return keep;
+    const vm front =
+        vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b));
+    return keep_reached(call, queue, k, vm_and(keep, front), separation, n);
 }
 
 #endif

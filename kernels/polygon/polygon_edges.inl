@@ -6,9 +6,7 @@
  * corner a at that edge; at the negated normal of an edge of B it is n.b of a corner at the edge less the largest n.a.
  * So all junctions cost 2 * 8 * 8 products, without a search and without a branch.
  *
- * They tell which edge answers, if one is CLEAR_EDGE slacks above all others (polygon_contact.inl); and of overlaps
- * nearly all: polygons whose largest value at a junction is below 0 have none above, as between two junctions g is a
- * sinusoid that is positive on half a turn, and each sector is less than that.
+ * They tell which edge answers, if one is CLEAR_EDGE slacks above all others (polygon_contact.inl).
  */
 #ifndef NARC_POLYGON_POLYGON_EDGES_INL
 #define NARC_POLYGON_POLYGON_EDGES_INL
@@ -171,8 +169,7 @@ struct polygon_edge {
     vi corner;
 };
 
-INLINE struct polygon_edge find_best_of(const narc_record *records, const struct queue *queue, int k, bool full,
-                                        bool contact) {
+INLINE struct polygon_edge find_best_of(const narc_record *records, const struct queue *queue, int k, bool full) {
     const struct pose pose = get_pose(queue, k);
     const vf none = v_set(-INFINITY);
     struct polygon a, b; /* an initialiser would clear all of both */
@@ -184,18 +181,16 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
     load_polygon(records, get_ring_b(queue, k), &pose, &b);
     try_edges(&a, &b, queue, k, &found.best);
     try_edges(&b, &a, queue, k, &found.best);
-    if (contact)
-        found.corner = find_closest_corner(&a, &b, vi_lt(found.best.edge, vi_set(MAX_CORNERS)), found.best.normal);
+    found.corner = find_closest_corner(&a, &b, vi_lt(found.best.edge, vi_set(MAX_CORNERS)), found.best.normal);
     return found;
 }
 
-/* Those of the pairs k ... of a queue; without `contact` only the gap. */
-INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k,
-                                             bool contact) {
+/* Those of the pairs k ... of a queue. */
+INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k) {
     const vi most = vi_set(MAX_CORNERS);
     const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
     const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
-    return full ? find_best_of(records, queue, k, true, contact) : find_best_of(records, queue, k, false, contact);
+    return full ? find_best_of(records, queue, k, true) : find_best_of(records, queue, k, false);
 }
 
 #endif

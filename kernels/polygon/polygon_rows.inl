@@ -12,10 +12,12 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/question.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "piece/pieces.inl"
 #include "polygon/polygon_contact.inl"
 #include "sat/manifold_edges.inl"
 #include "simd/simd.h"
@@ -58,37 +60,44 @@ INLINE struct edge find_touching_edge(const struct call *call, const struct queu
 }
 
 /* Writes the rows of the pairs k ... of a queue in the lanes `keep`. */
-INLINE void store_polygon_rows(const struct call *call, const struct queue *queue, int k, vm keep, vf margin,
-                               const struct polygon_contact *c) {
-    const vec2 n = c->normal, to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
+INLINE void write_polygons(const struct call *call, const struct queue *queue, int k, vm keep, vf margin,
+                           const struct polygon_contact *c, row_writer *write, bool edges) {
+    const vec2 n = c->normal, to_world = get_vec2(queue, ROTATION_A, k);
     const struct feature on_a = find_polygon_feature(&c->a, n, false), on_b = find_polygon_feature(&c->b, n, true);
     const vec2 place = find_contact_place(&on_a, &on_b);
     const vm edge_a = lies_on_edge(&c->a), edge_b = lies_on_edge(&c->b);
-    const vi pairs = get_bits(queue, PAIR, k), numbers = find_numbers(call, pairs);
+    const vi pairs = get_bits(queue, PAIR, k);
     const vi number_a = find_number_of(queue, k, on_a.record, false),
              number_b = find_number_of(queue, k, on_b.record, true);
     const vi of_edge = vi_set(NARC_FEATURE_EDGE), zero = vi_set(0);
     const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
     const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
-    char *to[V_WIDTH];
-    find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
-    if (call->edges) {
-        const struct edge a = find_touching_edge(call, queue, k, &c->a, n, false);
-        const struct edge b = find_touching_edge(call, queue, k, &c->b, n, true);
-        const struct manifold_points m = find_manifold_points(call, &a, &b, c->separation, n, place, to_world,
-                                                              get_vec2(queue, POSITION, k), margin, number_a, number_b);
-        write_manifolds(to, numbers, normal, &m, find_reach(&on_a, n, get_bits(queue, INFO_A, k), edge_a),
-                        find_reach(&on_b, n, get_bits(queue, INFO_B, k), edge_b));
-        return;
-    }
     const vf flat = v_set(INFINITY);
     const struct answer answer = {.separation = c->separation,
-                                  .normal = normal,
+                                  .normal = v2_rotate(to_world, n),
                                   .point = v2_rotate(to_world, v2_rotate(n, place)),
                                   .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
                                   .radius_a = v_select(edge_a, flat, on_a.radius),
-                                  .radius_b = v_select(edge_b, flat, on_b.radius)};
-    write_answers(call, to, numbers, &answer);
+                                  .radius_b = v_select(edge_b, flat, on_b.radius),
+                                  .reach_a = find_reach(&on_a, n, get_bits(queue, INFO_A, k), edge_a),
+                                  .reach_b = find_reach(&on_b, n, get_bits(queue, INFO_B, k), edge_b)};
+    char *to[V_WIDTH];
+    find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
+    if (edges) {
+        const struct sides sides = {.a = find_touching_edge(call, queue, k, &c->a, n, false),
+                                    .b = find_touching_edge(call, queue, k, &c->b, n, true),
+                                    .number_a = number_a,
+                                    .number_b = number_b,
+                                    .n = n,
+                                    .to_world = to_world,
+                                    .position_b = get_vec2(queue, POSITION, k),
+                                    .place = place,
+                                    .margin = margin,
+                                    .named = vm_front(V_WIDTH)};
+        write(call, to, find_numbers(call, pairs), &answer, &sides);
+    } else {
+        write(call, to, find_numbers(call, pairs), &answer, NULL);
+    }
 }
 
 #endif

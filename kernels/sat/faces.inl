@@ -111,18 +111,14 @@ NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int
     *normal = choose_face(&arcs, pose.position, loose, faces, circle[0], circle[1], *normal);
 }
 
-/* The unit normal of the gap of the pairs k ... of a queue, in the lanes `which`, and what touches along it. */
-INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue, int k, vm which,
-                              const struct gap *gap, struct feature *out_a, struct feature *out_b) {
-    const narc_record *records = call->batch->shapes->records;
+/* The unit normal of the gap of the pairs k ... of a queue, in the lanes `which`. */
+INLINE vec2 find_normal(const struct call *call, const struct queue *queue, int k, vm which, const struct gap *gap) {
     const struct pose pose = get_pose(queue, k);
-    const struct arc_pair arcs = load_arc_pair(records, gap->record_a, gap->record_b, &pose);
+    const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
     const vm loose = vm_and(which, is_loose(&arcs, pose.position));
     vec2 n = v2_divide(gap->normal, gap->length);
     if (vm_any(loose))
         tell_faces(call, queue, k, gap, loose, &n);
-    *out_a = find_feature_beside(records, get_ring_a(queue, k), gap->record_a, &arcs.a, &pose, n, false);
-    *out_b = find_feature_beside(records, get_ring_b(queue, k), gap->record_b, &arcs.b, &pose, n, true);
     return n;
 }
 

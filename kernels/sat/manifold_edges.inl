@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * manifold_edges.inl - the last stage of manifolds: the second point, where a straight edge of A faces one of B.
+ * manifold_edges.inl - of manifolds, the second point, where a straight edge of A faces one of B, and the ids of both.
  *
  * Seen along the tangent t, the normal n turned a quarter turn counter-clockwise, A's upper outline is a concave height
  * function and B's lower one a convex one. Their distance is convex; its least value is the separation, at the deepest
@@ -8,8 +8,6 @@
  * next to its touching arc whose normal is closest to n, if that is within the flat angle; the stretch of t that both
  * edges cover is joined with the deepest point, and its ends are the two points. On A t rises from an edge's start to
  * its end, and on B it falls.
- *
- * Here the ids of points get their last form, those of pairs with one point too (find_feature_id()).
  */
 #ifndef NARC_SAT_MANIFOLD_EDGES_INL
 #define NARC_SAT_MANIFOLD_EDGES_INL
@@ -17,50 +15,15 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <string.h>
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/question.inl"
 #include "base/queue.inl"
-#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "simd/simd.h"
-
-/* The fields of pairs that may have a second point, in place of those that are of no more use: what is known of the
- * deepest point. */
-enum {
-    DEEPEST_NORMAL = AXIS,
-    DEEPEST_SEPARATION = CORE,
-    DEEPEST_ACROSS = SLACK,
-    DEEPEST_ALONG = DIRECTION,
-    DEEPEST_RECORD_A = DIRECTION + 1,
-    DEEPEST_RECORD_B = SIZE
-};
-
-/* Of manifolds, collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a
- * second point, and the first one's id is not final. */
-INLINE void collect_edges(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                          const struct feature *on_a, const struct feature *on_b) {
-    if (!call->edges)
-        return;
-    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
-    const vm smooth = vm_or(has_flag(info_a, NARC_SHAPE_SMOOTH), has_flag(info_b, NARC_SHAPE_SMOOTH));
-    const vm edges = vm_and_not(keep, smooth);
-    if (!vm_any(edges))
-        return;
-    const vec2 place = find_contact_place(on_a, on_b);
-    vf item[FIELDS];
-    get_item(queue, k, item, SIZE);
-    set_vec2(item, DEEPEST_NORMAL, n);
-    item[DEEPEST_SEPARATION] = separation;
-    item[DEEPEST_ACROSS] = place.x;
-    item[DEEPEST_ALONG] = place.y;
-    item[DEEPEST_RECORD_A] = v_of_bits(on_a->record);
-    item[DEEPEST_RECORD_B] = v_of_bits(on_b->record);
-    push(call->edges, edges, item, FIELDS);
-}
 
 /* One end of an edge: its place along t and across it, and the radius of the arc next to it. */
 struct edge_end {
@@ -74,6 +37,15 @@ struct edge {
     struct edge_end low, high; /* in the order of t */
     vi before, after;          /* the numbers of the arcs at its start and at its counter-clockwise end */
     vf arc_radius;             /* of the touching arc */
+};
+
+/* Two bodies that touch along n with the arcs of these numbers, next to these edges. */
+struct sides {
+    struct edge a, b;
+    vi number_a, number_b;
+    vec2 n, to_world, position_b, place; /* place: of the contact point, across and along */
+    vf margin;
+    vm named; /* has an edge that touches its say in the id of an only point? */
 };
 
 INLINE struct edge_end find_edge_end(const struct arcs *arc, vec2 junction, vec2 n, bool is_b) {
@@ -276,19 +248,6 @@ INLINE vi find_touching_id(const struct edge *a, const struct edge *b, vf along,
                   vi_shift_left(find_touching_feature(b, a, along, number_b, true), 8));
 }
 
-/* Stores the ids of pairs with one point, in the lanes `which`. */
-INLINE void store_touching_ids(const struct call *call, const struct queue *queue, int k, vm which,
-                               const struct edge *a, const struct edge *b) {
-    const vi number_a = find_number_of(queue, k, get_bits(queue, DEEPEST_RECORD_A, k), false);
-    const vi number_b = find_number_of(queue, k, get_bits(queue, DEEPEST_RECORD_B, k), true);
-    char *place[V_WIDTH];
-    int32_t id[V_WIDTH];
-    find_places(call, get_bits(queue, PAIR, k), which, place);
-    vi_store(id, find_touching_id(a, b, get(queue, DEEPEST_ALONG, k), number_a, number_b));
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        put_word(place[lane], FIRST_POINT + offsetof(narc_manifold_point, feature), (uint32_t)id[lane]);
-}
-
 /* The points of two edges that face each other, in the lanes `two` both, elsewhere the first only, which is the deepest
  * then. */
 struct facing_points {
@@ -352,86 +311,47 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
 
-/* The words of a manifold's row behind its first ones: the point that `place` tells, or those of two edges. */
+/* The words of a manifold's row behind its first ones. */
 struct manifold_points {
     vi count;
     vf radius_a, radius_b, first[4], second[4];
 };
 
-/* Those of two bodies that touch along n with the arcs of these numbers, next to these edges. */
-INLINE struct manifold_points find_manifold_points(const struct call *call, const struct edge *a, const struct edge *b,
-                                                   vf separation, vec2 n, vec2 place, vec2 to_world, vec2 position_b,
-                                                   vf margin, vi number_a, vi number_b) {
+INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
+                                                   const struct sides *s) {
+    const struct edge *const a = &s->a, *const b = &s->b;
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
-    const vm stretch = is_stretch(&low, &high, separation, n, position_b);
+    const vm stretch = is_stretch(&low, &high, answer->separation, s->n, s->position_b);
     const vm faces = vm_and(vm_and(a->offered, b->offered), stretch);
-    const struct end_point exact = get_deepest(a, b, place.y, place.x, separation);
-    struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, margin));
+    const struct end_point exact = get_deepest(a, b, s->place.y, s->place.x, answer->separation);
+    struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, s->margin));
+    struct manifold_points m = {.radius_a = p.deepest.radius_a, .radius_b = p.deepest.radius_b};
     if (vm_any(vm_not(faces))) {
-        const vi id = find_touching_id(a, b, place.y, number_a, number_b);
+        const vi id = find_touching_id(a, b, s->place.y, s->number_a, s->number_b);
         p.two = vm_and(p.two, faces);
         p.first = select_end_point(faces, &p.first, &exact);
-        p.first_id = vi_select(faces, p.first_id, id);
-        p.deepest = select_end_point(faces, &p.deepest, &exact);
+        p.first_id = vi_select(faces, p.first_id, vi_select(s->named, id, answer->feature));
+        m.radius_a = v_select(faces, m.radius_a, answer->radius_a);
+        m.radius_b = v_select(faces, m.radius_b, answer->radius_b);
     }
-    struct manifold_points m = {.count = vi_select(p.two, vi_set(2), vi_set(1)),
-                                .radius_a = p.deepest.radius_a,
-                                .radius_b = p.deepest.radius_b};
-    write_facing_points(&p, to_world, n, m.first, m.second);
+    m.count = vi_select(p.two, vi_set(2), vi_set(1));
+    write_facing_points(&p, s->to_world, s->n, m.first, m.second);
     return m;
 }
 
-/* Writes rows of manifolds. */
-INLINE void write_manifolds(char *const *place, vi numbers, vec2 normal, const struct manifold_points *m, vi reach_a,
-                            vi reach_b) {
-    const vf head[4] = {v_of_bits(numbers), v_of_bits(m->count), normal.x, normal.y};
-    const vf radii[4] = {m->radius_a, m->radius_b, v_of_bits(reach_a), v_of_bits(reach_b)};
-    v_put_rows(place, 0, head);
-    v_put_rows(place, MANIFOLD_RADII, radii);
-    v_put_rows(place, FIRST_POINT, m->first);
-    v_put_rows(place, SECOND_POINT, m->second);
-}
-
-/* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
-static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const vec2 n = get_vec2(queue, DEEPEST_NORMAL, k);
-        const vf deepest = get(queue, DEEPEST_SEPARATION, k);
-        const struct edge a = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_A, k), n, false);
-        const struct edge b = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_B, k), n, true);
-        const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-        const vec2 position_b = get_vec2(queue, POSITION, k);
-        const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest, n, position_b));
-        const vm faces = vm_and(live, common);
-        const vm one = vm_and(vm_and_not(live, faces), vm_or(touches(&a), touches(&b)));
-        if (vm_any(one))
-            store_touching_ids(call, queue, k, one, &a, &b);
-        if (!vm_any(faces))
-            continue;
-        const struct end_point exact =
-            get_deepest(&a, &b, get(queue, DEEPEST_ALONG, k), get(queue, DEEPEST_ACROSS, k), deepest);
-        const vf margin = find_second_margin(call, get_margins(call, queue, k));
-        const struct facing_points p = find_facing_points(&a, &b, low, high, &exact, margin);
-        const vec2 to_world = get_vec2(queue, ROTATION_A, k);
-        vf first[4], second[4];
-        write_facing_points(&p, to_world, n, first, second);
-        char *place[V_WIDTH];
-        float radius_a[V_WIDTH], radius_b[V_WIDTH];
-        int32_t count[V_WIDTH];
-        find_places(call, get_bits(queue, PAIR, k), faces, place);
-        v_put_rows(place, FIRST_POINT, first);
-        v_put_rows(place, SECOND_POINT, second);
-        v_store(radius_a, p.deepest.radius_a);
-        v_store(radius_b, p.deepest.radius_b);
-        vi_store(count, vi_select(p.two, vi_set(2), vi_set(1)));
-        for (int lane = 0; lane < V_WIDTH; lane++) {
-            put_word(place[lane], offsetof(narc_manifold, count), (uint32_t)count[lane]);
-            memcpy(place[lane] + MANIFOLD_RADII, &radius_a[lane], sizeof(float));
-            memcpy(place[lane] + MANIFOLD_RADII + sizeof(float), &radius_b[lane], sizeof(float));
-        }
-    }
+/* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */
+INLINE void find_sides(const struct call *call, const struct queue *queue, int k, vi record_a, vi record_b, vec2 n,
+                       vec2 place, struct sides *s) {
+    s->a = find_edge(call, queue, k, record_a, n, false);
+    s->b = find_edge(call, queue, k, record_b, n, true);
+    s->number_a = find_number_of(queue, k, record_a, false);
+    s->number_b = find_number_of(queue, k, record_b, true);
+    s->n = n;
+    s->to_world = get_vec2(queue, ROTATION_A, k);
+    s->position_b = get_vec2(queue, POSITION, k);
+    s->place = place;
+    s->margin = get_margins(call, queue, k);
+    s->named = vm_or(touches(&s->a), touches(&s->b));
 }
 
 #endif

@@ -4,11 +4,11 @@
  *
  * Circles settle some pairs, and two probes most others: one along the axis between the inscribed circles, and one
  * along u of the arcs that the first one found. A probe ends with a proof (certificates.inl) that the bodies are apart
- * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap; of polygons with few
- * corners it is computed at all junctions. What is left then goes to the deciding formula.
+ * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes to
+ * the deciding formula.
  */
-/* With a queue less there is room for more pairs in each. */
-#define NARC_FEW_STAGES
+/* With two queues less there is room for more pairs in each. */
+#define NARC_OVERLAPS
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"
@@ -22,14 +22,15 @@
 #include "box/capsules.inl"
 #include "kernels.h"
 #include "piece/overlaps.inl"
-#include "polygon/polygon_edges.inl"
-#include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
 #include "sat/normal_fan.inl"
 #include "sat/search.inl"
+#include "sat/stages.inl"
 #include "simd/simd.h"
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+    if (!NARC_SHORTCUTS)
+        return call->pieces ? take_pieces(call, pair, circles->valid, item) : circles->valid;
     const vm near = vm_and_not(circles->valid, circles->apart);
     const vm mine = call->pieces ? take_pieces(call, pair, near, item) : near;
     const vm open = vm_and_not(mine, circles->deep);
@@ -43,12 +44,6 @@ INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct fil
     return left;
 }
 
-/* That of stores with pieces where all else goes to the formula. */
-INLINE vm triage_piece_overlaps(const struct call *call, size_t pair, const struct filter *circles,
-                                const vf item[FIELDS]) {
-    return take_pieces(call, pair, circles->valid, item);
-}
-
 /* The centres and radii of the arcs that were looked up: u, and the sum of the radii. */
 INLINE vec2 load_circles(const narc_record *records, const struct queue *queue, int k, vf *out_radii) {
     const struct pose pose = get_pose(queue, k);
@@ -59,111 +54,56 @@ INLINE vec2 load_circles(const narc_record *records, const struct queue *queue, 
     return find_circle_difference((vec2){a[0], a[1]}, (vec2){b[0], b[1]}, &pose);
 }
 
-/* Passes on the pairs k ... of a queue in the lanes `left`. */
-INLINE void pass_on_overlaps(const struct queue *queue, int k, vm left, struct queue *next) {
-    vf item[FIELDS];
-    if (!vm_any(left))
-        return;
-    get_item(queue, k, item, OVERLAP_FIELDS);
-    push(next, left, item, OVERLAP_FIELDS);
-}
-
 /* The difference of the support points of two arcs along DIRECTION n, times the length of n. */
 INLINE vm touch_in_common(const struct queue *queue, int k, vec2 n, vec2 u, vf radii) {
     const vf length = v2_length(n);
     return has_common_point(queue, k, v2_sub(v2_scale(n, radii), v2_scale(u, length)), length);
 }
 
-/* What a probe along DIRECTION tells, in each lane. */
-struct overlap_probe {
-    vec2 u;
-    vm apart, hit;
-};
-
-/* Tells by centres and radii alone. */
-INLINE struct overlap_probe probe_circles(const narc_record *records, const struct queue *queue, int k, vec2 n) {
-    vf radii;
-    const vec2 u = load_circles(records, queue, k, &radii);
-    return (struct overlap_probe){u, is_above(u, radii, n, find_lookup_slack(queue, k)),
-                                  touch_in_common(queue, k, n, u, radii)};
-}
-
-/* Tells by whole arcs. */
-INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n,
-                                             vm live) {
+/* Circles settle what overlaps deeply or is well apart: along the axis, centres and radii alone are probed. Once that
+ * leaves more than half of a vector, as among bodies that rest on each other, whole arcs are worth their price for the
+ * rest of a block. */
+INLINE struct verdict judge_overlap(const struct call *call, struct queue *queue, int k, vm live, enum probing how) {
+    const narc_record *const records = call->batch->shapes->records;
+    const vec2 n = get_vec2(queue, DIRECTION, k);
+    if (how == ALONG_AXIS && !queue->whole) {
+        vf radii;
+        const vec2 u = load_circles(records, queue, k, &radii);
+        const vm apart = is_above(u, radii, n, find_lookup_slack(queue, k)),
+                 hit = touch_in_common(queue, k, n, u, radii);
+        const vm left = vm_and(vm_and_not(live, vm_or(apart, hit)), find_smooth(queue, k));
+        queue->whole = 2 * COUNT_BITS(vm_bits(left)) > V_WIDTH;
+        return (struct verdict){.u = u, .settled = vm_or(apart, hit), .wanted = vm_and(live, hit)};
+    }
     const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
     const vm below = v_lt(p.separation, v_set(0)), above = is_above(p.u, p.radii, n, find_lookup_slack(queue, k));
-    return (struct overlap_probe){p.u, vm_or(vm_or(p.far, above), vm_and_not(p.only, below)),
-                                  vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below))};
+    const vm apart = vm_or(vm_or(p.far, above), vm_and_not(p.only, below)),
+             hit = vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below));
+    return (struct verdict){.u = p.u, .settled = vm_or(apart, hit), .wanted = vm_and(live, hit)};
 }
 
-/* Stages that others pass pairs on to. */
-enum { CLIMB = 2, DECIDE = 4 };
-
-/* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. Circles
- * settle what overlaps deeply or is well apart. Once they leave more than half of a vector, as among bodies that rest
- * on each other, whole arcs are worth their price for the rest of a block. */
-static void probe_axis_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    const narc_record *records = call->batch->shapes->records;
-    look_up_arcs(records, queue, begin, false);
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
-        const vec2 n = get_vec2(queue, DIRECTION, k);
-        const struct overlap_probe p =
-            queue->whole ? probe_whole_arcs(records, queue, k, n, live) : probe_circles(records, queue, k, n);
-        mark_overlaps(call, queue, k, vm_and(live, p.hit));
-        const vm left = vm_and_not(live, vm_or(p.apart, p.hit));
-        if (!queue->whole)
-            queue->whole = 2 * COUNT_BITS(vm_bits(vm_and(left, smooth))) > V_WIDTH;
-        store_vec2(queue, DIRECTION, k, v2_select(smooth, p.u, n));
-        pass_on_overlaps(queue, k, vm_and(left, smooth), next);
-        const vm edged = vm_and_not(left, smooth), polygons = select_polygons(queue, k, edged);
-        pass_on_overlaps(queue, k, vm_and_not(edged, polygons), queue + CLIMB);
-        pass_on_overlaps(queue, k, polygons, queue + POLYGONS);
-        count_edged(queue, vm_and_not(live, smooth), vm_and_not(left, smooth));
-    }
+INLINE void settle_overlap(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
+                           vf separation, vec2 n, vi record_a, vi record_b) {
+    (void)queues, (void)separation, (void)n, (void)record_a, (void)record_b;
+    mark_overlaps(call, queue, k, which);
 }
 
-/* Probes along u, with whole arcs. */
-static void probe_again_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    const narc_record *records = call->batch->shapes->records;
-    look_up_arcs(records, queue, begin, false);
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const struct overlap_probe p = probe_whole_arcs(records, queue, k, get_vec2(queue, DIRECTION, k), live);
-        mark_overlaps(call, queue, k, vm_and(live, p.hit));
-        store_vec2(queue, DIRECTION, k, p.u);
-        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(p.apart, p.hit)), next);
-    }
+static const struct search overlaps = {OVERLAP_FIELDS, false, judge_overlap, settle_overlap};
+
+static void probe_overlaps(const struct call *call, struct queue *queues, int begin) {
+    probe_axis(&overlaps, call, queues, begin);
 }
 
-/* Climbs from the arcs that hold DIRECTION. */
-static void climb_from_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
-    const narc_record *records = call->batch->shapes->records;
-    look_up_arcs(records, queue, begin, false);
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const struct certified_maximum top = climb_and_certify(records, queue, k, live, v_set(0));
-        mark_overlaps(call, queue, k, vm_and(top.certain, v_lt(top.separation, v_set(0))));
-        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(top.apart, top.certain)), queue + (DECIDE - CLIMB));
-    }
+static void probe_overlaps_again(const struct call *call, struct queue *queues, int begin) {
+    probe_again(&overlaps, call, queues, begin);
 }
 
-/* Polygons: the largest gap at a junction has the answer's sign, if it is not 0 up to rounding. */
-static void compare_polygon_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const vf best = find_polygon_edge(call->batch->shapes->records, queue, k, false).best.gap,
-                 slack = get(queue, SLACK, k);
-        const vm deep = v_lt(best, v_neg(slack)), apart = v_lt(slack, best);
-        mark_overlaps(call, queue, k, vm_and(live, deep));
-        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(deep, apart)), next);
-    }
+static void climb_overlaps(const struct call *call, struct queue *queues, int begin) {
+    climb_from(&overlaps, call, queues, begin);
 }
 
-static void decide_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)next;
+static void decide_overlaps(const struct call *call, struct queue *queues, int begin) {
+    const struct queue *const queue = &queues[DECIDE];
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const struct gap gap = find_gap(call->batch->shapes, queue, k, vm_front(queue->count - k), false);
         mark_overlaps(call, queue, k, v_lt(gap.separation, v_set(0)));
@@ -195,21 +135,22 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
 
 /* All pairs; of those with a piece, which ones are near. */
 NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps,
-                                    compare_polygon_overlaps, decide_overlaps};
+    static stage *const stages[STAGES] = {probe_overlaps, probe_overlaps_again, climb_overlaps, decide_overlaps};
+    const struct course course = {.take = detour_overlaps,
+                                  .settle = triage_overlaps,
+                                  .fields = OVERLAP_FIELDS,
+                                  .stages = stages,
+                                  .first = NARC_SHORTCUTS ? PROBE : DECIDE,
+                                  .edged = NARC_SHORTCUTS ? CLIMB : 0,
+                                  .end = STAGES};
     struct queue queues[STAGES];
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     struct box_queue boxes[BOX_QUEUES];
-    if (!NARC_SHORTCUTS) {
-        run_pairs(&call, NULL, call.pieces ? triage_piece_overlaps : take_valid, OVERLAP_FIELDS, &stages[DECIDE], 1, 0,
-                  queues);
-    } else if (batch->shapes->box_count == 0) {
-        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
-    } else {
+    if (NARC_SHORTCUTS && batch->shapes->box_count > 0)
         start_boxes(&call, boxes);
-        run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
+    run_pairs(&call, &course, queues);
+    if (call.boxes)
         end_boxes(&call, overlap_detours);
-    }
 }
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {

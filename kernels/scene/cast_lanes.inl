@@ -10,8 +10,8 @@
 
 #include "base/shape.inl"
 #include "broken.h"
-#include "kernels.h"
 #include "narc_scene.h"
+#include "scene/cast_fields.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
 #include "store.h"
@@ -21,18 +21,18 @@ enum { MOST_ROUNDS = 128 };
 
 typedef struct {
     vd x, y;
-} spot;
+} dvec2;
 
-INLINE vd find_dot(spot a, spot b) { return a.x * b.x + a.y * b.y; }
-INLINE vd find_cross(spot a, spot b) { return a.x * b.y - a.y * b.x; }
-INLINE vd find_length(spot a) { return d_sqrt(find_dot(a, a)); }
-INLINE spot turn(spot rotation, spot p) {
-    return (spot){rotation.x * p.x - rotation.y * p.y, rotation.y * p.x + rotation.x * p.y};
+INLINE vd find_dot(dvec2 a, dvec2 b) { return a.x * b.x + a.y * b.y; }
+INLINE vd find_cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
+INLINE vd find_length(dvec2 a) { return d_sqrt(find_dot(a, a)); }
+INLINE dvec2 turn(dvec2 rotation, dvec2 p) {
+    return (dvec2){rotation.x * p.x - rotation.y * p.y, rotation.y * p.x + rotation.x * p.y};
 }
-INLINE spot turn_back(spot rotation, spot p) {
-    return (spot){rotation.x * p.x + rotation.y * p.y, rotation.x * p.y - rotation.y * p.x};
+INLINE dvec2 turn_back(dvec2 rotation, dvec2 p) {
+    return (dvec2){rotation.x * p.x + rotation.y * p.y, rotation.x * p.y - rotation.y * p.x};
 }
-INLINE spot get_spot(const float *x, const float *y) { return (spot){d_of_floats(x), d_of_floats(y)}; }
+INLINE dvec2 get_dvec2(const float *x, const float *y) { return (dvec2){d_of_floats(x), d_of_floats(y)}; }
 
 /* Times of 0 or more as floats that are not later. What is less by half a step or more is rounded to the float before: in
  * proportion, and where floats underflow, by three quarters of their step. */
@@ -45,54 +45,44 @@ INLINE vd round_down(vd time) {
 }
 
 /* Rotations at the start. */
-INLINE spot find_rotation(const float *cosine, const float *sine) {
-    const spot given = get_spot(cosine, sine);
+INLINE dvec2 find_rotation(const float *cosine, const float *sine) {
+    const dvec2 given = get_dvec2(cosine, sine);
     const vd error = find_dot(given, given) - d_set(1), factor = NARC_INVERSE_LENGTH(error);
-    return (spot){factor * given.x, factor * given.y};
-}
-
-/* The slots k ...; lanes behind the last one repeat the first. */
-INLINE void get_slots(size_t k, size_t end, int32_t slot[V_WIDTH]) {
-    for (size_t l = 0; l < V_WIDTH; l++)
-        slot[l] = (int32_t)(k + l < end ? k + l : k);
-}
-
-INLINE vi get_shapes(const struct narc_cast_side *side, const int32_t *slot) {
-    int32_t shape[V_WIDTH];
-    for (int l = 0; l < V_WIDTH; l++)
-        shape[l] = (int32_t)side->shape[slot[l]];
-    return vi_load(shape);
+    return (dvec2){factor * given.x, factor * given.y};
 }
 
 /* ------------------------------------------------------------------------------------------------ what touches */
 
-/* Contacts, from rows, and the arcs that they name. */
+/* Contacts, from rows. */
 struct touch {
-    int32_t slot[V_WIDTH];
-    vi feature;
+    vi feature; /* 0 in lanes that have none */
+    vm known;   /* which have an answer */
     float separation[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], radius_a[V_WIDTH], radius_b[V_WIDTH];
 };
 
-INLINE struct touch load_contacts(const narc_contact *contacts, size_t k, size_t count) {
+INLINE struct touch load_contacts(const narc_contact *contacts, vm live) {
     struct touch touch;
+    int32_t lane[V_WIDTH];
     vf row[8];
     _Static_assert(offsetof(narc_contact, normal_y) - offsetof(narc_contact, feature) == 12 &&
                        offsetof(narc_contact, radius_b) - offsetof(narc_contact, point_x) == 12,
                    "four numbers that follow each other");
-    get_slots(k, count, touch.slot);
     if (V_WIDTH == 1) { /* the row has just been written, otherwise divided */
-        const narc_contact *const c = &contacts[k];
-        touch.feature = vi_set(c->feature);
-        touch.separation[0] = c->separation;
-        touch.normal_x[0] = c->normal_x;
-        touch.normal_y[0] = c->normal_y;
-        touch.radius_a[0] = c->radius_a;
-        touch.radius_b[0] = c->radius_b;
+        touch.feature = vi_set(contacts->feature);
+        touch.known = vi_lt(vi_set(0), vi_set(contacts->count));
+        touch.separation[0] = contacts->separation;
+        touch.normal_x[0] = contacts->normal_x;
+        touch.normal_y[0] = contacts->normal_y;
+        touch.radius_a[0] = contacts->radius_a;
+        touch.radius_b[0] = contacts->radius_b;
         return touch;
     }
-    v_rows(&contacts->feature, sizeof *contacts, touch.slot, row);
-    v_rows(&contacts->point_x, sizeof *contacts, touch.slot, row + 4);
-    touch.feature = vi_bits(row[0]);
+    for (int l = 0; l < V_WIDTH; l++)
+        lane[l] = l;
+    v_rows(&contacts->feature, sizeof *contacts, lane, row);
+    v_rows(&contacts->point_x, sizeof *contacts, lane, row + 4);
+    touch.feature = vi_select(live, vi_bits(row[0]), vi_set(0));
+    touch.known = vi_lt(vi_set(0), vi_shift_right(touch.feature, 16));
     v_store(touch.separation, row[1]);
     v_store(touch.normal_x, row[2]);
     v_store(touch.normal_y, row[3]);
@@ -107,16 +97,14 @@ struct outline_part {
     vm round, on_edge; /* is it a circle; does the edge before the arc touch? */
 };
 
-INLINE struct outline_part find_part(const narc_shapes *shapes, const struct narc_cast_side *side, int which,
+/* Those of casts k ..., in the lanes `live`; the others have the first arc of all. */
+INLINE struct outline_part find_part(const struct narc_cast_side *side, size_t k, int which, vm live,
                                      const struct touch *touch) {
-    int32_t shape[V_WIDTH];
-    vf word[4];
-    vi_store(shape, get_shapes(side, touch->slot));
-    v_rows(shapes->headers, sizeof *shapes->headers, shape, word);
-    const vi info = vi_bits(word[1]), count = get_arc_count(info);
+    const vi record = vi_bits(v_select(live, v_load(side->record + k), v_set(0)));
+    const vi info = vi_select(live, vi_bits(v_load(side->info + k)), vi_set(1)), count = get_arc_count(info);
     const vi feature = which == 0 ? touch->feature : vi_shift_right(touch->feature, 8);
     const vi from_first = vi_sub(vi_and(feature, vi_set(NARC_FEATURE_EDGE - 1)), get_first_arc(info));
-    return (struct outline_part){.first_record = find_first_arc(vi_bits(word[0]), info),
+    return (struct outline_part){.first_record = record,
                                  .count = count,
                                  .arc = vi_select(vi_lt(from_first, vi_set(0)), vi_add(from_first, count), from_first),
                                  .round = has_flag(info, NARC_SHAPE_CIRCLE),
@@ -139,12 +127,6 @@ INLINE void load_held(const narc_shapes *shapes, const struct outline_part *part
     v_store(out->end_y, field[7]);
 }
 
-INLINE vl find_true(vm m, int h) {
-    float lane[V_WIDTH];
-    v_store(lane, v_select(m, v_set(1), v_set(0)));
-    return d_lt(d_set(0), d_of_floats(lane + h));
-}
-
 /* What a step has come to. */
 struct step {
     float outcome[V_WIDTH], time[V_WIDTH], back[V_WIDTH], rounds[V_WIDTH];
@@ -155,6 +137,14 @@ INLINE void put_step(struct step *out, int h, vd outcome, vd time, vd back, vd r
     d_put_floats(out->time + h, time);
     d_put_floats(out->back + h, back);
     d_put_floats(out->rounds + h, rounds);
+}
+
+/* Keeps the lanes m of steps, and takes the rest from others. */
+INLINE void select_steps(vm m, struct step *steps, const struct step *others) {
+    v_store(steps->outcome, v_select(m, v_load(steps->outcome), v_load(others->outcome)));
+    v_store(steps->time, v_select(m, v_load(steps->time), v_load(others->time)));
+    v_store(steps->back, v_select(m, v_load(steps->back), v_load(others->back)));
+    v_store(steps->rounds, v_select(m, v_load(steps->rounds), v_load(others->rounds)));
 }
 
 #endif

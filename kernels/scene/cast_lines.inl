@@ -14,8 +14,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "kernels.h"
 #include "narc_scene.h"
+#include "scene/cast_fields.inl"
 #include "scene/cast_lanes.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
@@ -27,60 +27,61 @@ INLINE vl find_touch(const narc_casts *casts, const struct touch *touch, size_t 
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), radii = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h),
              goal = radii + d_of_floats(casts->target + slot), way = radii + d_of_floats(touch->separation + h);
-    const spot n = get_spot(touch->normal_x + h, touch->normal_y + h), u = {way * n.x, way * n.y},
-               motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
+    const dvec2 n = get_dvec2(touch->normal_x + h, touch->normal_y + h), u = {way * n.x, way * n.y},
+                motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
     const vd across = find_cross(u, motion), height = goal * goal * find_dot(motion, motion) - across * across;
     const vd duration = (find_dot(u, u) - goal * goal) / (d_sqrt(d_abs(height)) - find_dot(u, motion));
     vl found = d_lt(radii, d_set(INFINITY)) & d_lt(zero, goal) & d_le(zero, height);
     for (int side = 0; side < 2; side++) {
-        const spot then = {u.x + duration * motion.x, u.y + duration * motion.y}, back = {-then.x, -then.y};
-        const spot normal = turn_back(find_rotation(casts->side[side].cosine + slot, casts->side[side].sine + slot),
-                                      side == 0 ? then : back);
-        const spot start = get_spot(arcs[side].start_x + h, arcs[side].start_y + h),
-                   end = get_spot(arcs[side].end_x + h, arcs[side].end_y + h);
-        found &= find_true(parts[side].round, h) |
+        const dvec2 then = {u.x + duration * motion.x, u.y + duration * motion.y}, back = {-then.x, -then.y};
+        const dvec2 normal = turn_back(find_rotation(casts->side[side].cosine + slot, casts->side[side].sine + slot),
+                                       side == 0 ? then : back);
+        const dvec2 start = get_dvec2(arcs[side].start_x + h, arcs[side].start_y + h),
+                    end = get_dvec2(arcs[side].end_x + h, arcs[side].end_y + h);
+        found &= d_of_lanes(parts[side].round, h) |
                  (d_le(zero, find_cross(start, normal)) & d_le(zero, find_cross(normal, end)));
     }
     *out_duration = duration;
     return found;
 }
 
-/* Newton's steps; `out_next`: where each leads to if it may be tried to go further, else infinity. */
-INLINE void advance_line(const narc_casts *casts, const struct touch *touch, size_t k, int h, struct step *out,
-                         double *out_next) {
+/* Newton's steps. Returns which may be tried to go further; `out_next`: than there, infinity for the others. */
+INLINE vl advance_line(const narc_casts *casts, const struct touch *touch, size_t k, int h, struct step *out,
+                       double *out_next) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), back = d_of_floats(casts->back + slot),
              rounds = d_of_floats(casts->rounds + slot) + d_set(1), enough = d_load(casts->enough + slot);
     const vd gap = d_of_floats(touch->separation + h) - d_of_floats(casts->target + slot),
              slope = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
-    const vl parts = d_le(zero, slope), tried = d_le(zero, back), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
+    const vl parts = d_le(zero, slope), tried = d_le(zero, back), direct = d_le(back, d_set((double)CAST_DIRECT));
     const vl passed = tried & (parts | d_lt(gap, -enough)); /* it may have passed the first root */
     const vl there = d_le(gap, zero) | (d_le(gap, enough) & ~parts);
-    const vd next = time - gap / slope, safe = round_down(next), hit = d_set(NARC_CAST_HIT),
-             on = d_set(NARC_CAST_GOES_ON);
+    const vd next = time - gap / slope, safe = round_down(next), hit = d_set(NARC_CAST_HIT), on = d_set(CAST_GOES_ON);
     vd outcome = d_select(d_le(d_set(MOST_ROUNDS), rounds), d_set(NARC_CAST_UNFINISHED), on);
     outcome = d_select(parts | d_lt(d_load(casts->end + slot), next), d_set(NARC_CAST_MISS),
                        d_select(d_le(safe, time), hit, outcome));
     outcome = d_select(passed, on, d_select(there, hit, outcome));
     const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
-    d_store(out_next, d_select(goes_on & ~(passed | direct), next, d_set(INFINITY)));
+    const vl free = goes_on & ~(passed | direct);
+    d_store(out_next, d_select(free, next, d_set(INFINITY)));
     put_step(out, h, outcome, d_select(goes_on, d_select(passed, back, safe), time),
-             d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE)),
+             d_select(passed | direct, d_set((double)CAST_DIRECT), d_set((double)CAST_FREE)),
              d_select(passed, rounds - d_set(1), rounds));
+    return free;
 }
 
 /* Goes on to where circles touch, where that is later than Newton's step. */
-INLINE void go_further(const narc_casts *casts, const struct touch *touch, size_t k, int h,
-                       const struct held_arcs arcs[2], const struct outline_part parts[2], const double *next,
-                       struct step *out) {
+INLINE void try_ahead(const narc_casts *casts, const struct touch *touch, size_t k, int h,
+                      const struct held_arcs arcs[2], const struct outline_part parts[2], const double *next,
+                      struct step *out) {
     const size_t slot = k + (size_t)h;
     vd duration;
     const vl found = find_touch(casts, touch, k, h, arcs, parts, &duration);
     const vd ahead = d_of_floats(casts->time + slot) + duration, safe = d_of_floats(out->time + h);
-    const vl further = found & d_lt(d_load(next), ahead) & d_le(ahead, d_load(casts->end + slot));
-    d_put_floats(out->time + h, d_select(further, round_down(ahead), safe));
-    d_put_floats(out->back + h, d_select(further, safe, d_of_floats(out->back + h)));
+    const vl tries = found & d_lt(d_load(next), ahead) & d_le(ahead, d_load(casts->end + slot));
+    d_put_floats(out->time + h, d_select(tries, round_down(ahead), safe));
+    d_put_floats(out->back + h, d_select(tries, safe, d_of_floats(out->back + h)));
 }
 
 INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
@@ -88,20 +89,19 @@ INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, co
     struct held_arcs arcs[2];
     struct outline_part parts[2];
     double next[V_WIDTH];
+    const vf radii = v_add(v_load(touch->radius_a), v_load(touch->radius_b));
+    const vm round = vm_and(live, v_lt(radii, v_set(INFINITY)));
+    int any = 0;
     for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-        advance_line(casts, touch, k, h, out, next + h);
-    const vf radii = v_add(v_load(touch->radius_a), v_load(touch->radius_b)), infinite = v_set(INFINITY);
-    float is_free[V_WIDTH];
-    for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-        d_put_floats(is_free + h, d_load(next + h));
-    if (!vm_any(vm_and(live, vm_and(v_lt(radii, infinite), v_lt(v_load(is_free), infinite)))))
+        any |= d_any(d_of_lanes(round, h) & advance_line(casts, touch, k, h, out, next + h));
+    if (!any)
         return;
     for (int side = 0; side < 2; side++) {
-        parts[side] = find_part(shapes, &casts->side[side], side, touch);
+        parts[side] = find_part(&casts->side[side], k, side, live, touch);
         load_held(shapes, &parts[side], parts[side].arc, &arcs[side]);
     }
     for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-        go_further(casts, touch, k, h, arcs, parts, next + h, out);
+        try_ahead(casts, touch, k, h, arcs, parts, next + h, out);
 }
 
 #endif

@@ -18,8 +18,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "kernels.h"
 #include "narc_scene.h"
+#include "scene/cast_fields.inl"
 #include "scene/cast_lanes.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
@@ -47,18 +47,19 @@ struct axes {
 };
 
 /* Where axes that turn leave their arcs, and where those begin. */
-INLINE void find_ends(const struct held_arcs *arcs, int h, vl forward, spot *out_from, spot *out_to) {
-    const spot start = get_spot(arcs->start_x + h, arcs->start_y + h), end = get_spot(arcs->end_x + h, arcs->end_y + h);
-    *out_from = (spot){d_select(forward, start.x, end.x), d_select(forward, start.y, end.y)};
-    *out_to = (spot){d_select(forward, end.x, start.x), d_select(forward, end.y, start.y)};
+INLINE void find_ends(const struct held_arcs *arcs, int h, vl forward, dvec2 *out_from, dvec2 *out_to) {
+    const dvec2 start = get_dvec2(arcs->start_x + h, arcs->start_y + h),
+                end = get_dvec2(arcs->end_x + h, arcs->end_y + h);
+    *out_from = (dvec2){d_select(forward, start.x, end.x), d_select(forward, start.y, end.y)};
+    *out_to = (dvec2){d_select(forward, end.x, start.x), d_select(forward, end.y, start.y)};
 }
 
 /* Are axes, which turn in the sense of a sign, on their arcs, and stay there? */
 INLINE void compare_axes(struct met *met, const float *sign) {
     for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
         const vd of = d_of_floats(sign + h), zero = d_set(0);
-        const spot axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
-        spot from, to;
+        const dvec2 axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
+        dvec2 from, to;
         find_ends(&met->arcs, h, d_lt(zero, of), &from, &to);
         const vl on = d_lt(d_set(AT_END), of * find_cross(axis, to)) | d_lt(find_dot(axis, to), zero);
         d_put_floats(met->on_arc + h, d_select(on, d_set(1), zero));
@@ -68,16 +69,15 @@ INLINE void compare_axes(struct met *met, const float *sign) {
 /* The arcs of the body `which` that hold the axes, which turn at `rate` against it: those that touch, or the next. */
 INLINE void find_held(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
                       int which, vm live, vf rate, struct met *met) {
-    const struct narc_cast_side *const side = &casts->side[which];
     const struct outline_part *const part = &met->part;
     const vm forward = v_lt(v_set(0), rate), turns = vm_and(live, v_lt(v_set(0), v_abs(rate)));
     if (!vm_any(turns))
         return;
     for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
         const size_t slot = k + (size_t)h;
-        const spot n = get_spot(touch->normal_x + h, touch->normal_y + h), back = {-n.x, -n.y};
-        const spot turned = {d_load(side->turned_x + slot), d_load(side->turned_y + slot)};
-        const spot axis = turn_back(turned, which == 0 ? n : back);
+        const dvec2 n = get_dvec2(touch->normal_x + h, touch->normal_y + h), back = {-n.x, -n.y};
+        const dvec2 turned = {d_load(casts->turned_x[which] + slot), d_load(casts->turned_y[which] + slot)};
+        const dvec2 axis = turn_back(turned, which == 0 ? n : back);
         d_store(met->axis_x + h, axis.x);
         d_store(met->axis_y + h, axis.y);
     }
@@ -100,12 +100,12 @@ INLINE void find_held(const narc_shapes *shapes, const narc_casts *casts, const 
 INLINE struct lever find_arm(const struct met *met, int h, vl moves, vd scale, vd rate) {
     const vd zero = d_set(0), center_x = scale * d_of_floats(met->arcs.center_x + h),
              center_y = scale * d_of_floats(met->arcs.center_y + h);
-    const spot center = {center_x, center_y}, axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
-    const vl forward = d_lt(zero, rate), round = find_true(met->part.round, h);
+    const dvec2 center = {center_x, center_y}, axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
+    const vl forward = d_lt(zero, rate), round = d_of_lanes(met->part.round, h);
     const vd sign = d_select(forward, d_set(1), d_set(-1)), arm = find_cross(center, axis);
-    spot from, to;
+    dvec2 from, to;
     find_ends(&met->arcs, h, forward, &from, &to);
-    const spot chord = {to.x - axis.x, to.y - axis.y};
+    const dvec2 chord = {to.x - axis.x, to.y - axis.y};
     const vl known = d_le(d_set(-AT_END), sign * find_cross(from, axis)) | d_lt(find_dot(axis, from), zero);
     const vl through = round | (d_lt(zero, sign * arm) & d_lt(sign * find_cross(center, to), zero));
     vd least = d_min(find_dot(center, axis), find_dot(center, to));
@@ -138,15 +138,15 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
                       vd gap, vd falls, bool tries, struct series *out_series) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), two = d_set(2), infinite = d_set(INFINITY), rate = d_of_floats(axes->rate + h);
-    const spot n = get_spot(touch->normal_x + h, touch->normal_y + h),
-               motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
+    const dvec2 n = get_dvec2(touch->normal_x + h, touch->normal_y + h),
+                motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
     const vd along = find_dot(n, motion), across = find_cross(n, motion);
     const vl turns = d_lt(zero, d_abs(rate));
     struct series series = {along, zero, zero, zero};
     vd bend = zero, duration = infinite, fastest = falls, slide = across;
     if (d_any(turns)) {
         const vd time = d_of_floats(casts->time + slot), left = d_load(casts->end + slot) - time;
-        const spot way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
+        const dvec2 way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
         const vd speed = find_length(motion);
         series.first += rate * find_cross(n, way);
         if (tries) {
@@ -207,24 +207,21 @@ INLINE vd find_root(vd gap, const struct series *series, vd left) {
 INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
                          struct step *out) {
     const size_t slot = k + (size_t)h;
-    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), end = d_load(casts->end + slot),
              back = d_of_floats(casts->back + slot), rounds = d_of_floats(casts->rounds + slot) + d_set(1),
              enough = d_load(casts->enough + slot);
     const vd gap = d_of_floats(touch->separation + h) - d_of_floats(casts->target + slot);
     const vd along = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
-    const vd turning = d_load(a->lever + slot) * d_abs(d_of_floats(a->angle + slot)) +
-                       d_load(b->lever + slot) * d_abs(d_of_floats(b->angle + slot)),
-             falls = turning - along;
-    const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
+    const vd turning = d_load(casts->moved + slot), falls = turning - along;
+    const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)CAST_DIRECT));
     const vl passed = d_le(zero, back) & (~sure | d_lt(gap, zero)); /* it may have passed the first root */
     struct series series;
     const vl tries = sure & ~(passed | direct);
     const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, d_any(tries), &series), least = gap / falls;
     const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
     const vl near = d_le(gap, enough), last = d_le(d_set(MOST_ROUNDS), rounds);
-    const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(NARC_CAST_GOES_ON);
+    const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(CAST_GOES_ON);
     vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), on);
     outcome = d_select(d_lt(end, next), miss, d_select(d_le(safe, time), hit, outcome));
     outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(series.first, zero), hit, outcome));
@@ -232,7 +229,7 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
     const vl may_try = goes_on & tries & d_lt(series.first, zero);
     vd to = d_select(passed, back, safe),
-       then_back = d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE));
+       then_back = d_select(passed | direct, d_set((double)CAST_DIRECT), d_set((double)CAST_FREE));
     if (d_any(may_try)) {
         const vd ahead = round_down(time + find_root(gap - d_set(0.5) * enough, &series, end - time));
         const vl try = may_try & d_lt(safe, ahead);
@@ -247,7 +244,7 @@ INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, co
     const vf angle_a = v_load(casts->side[0].angle + k), angle_b = v_load(casts->side[1].angle + k), zero = v_set(0);
     struct axes axes;
     for (int side = 0; side < 2; side++)
-        axes.met[side].part = find_part(shapes, &casts->side[side], side, touch);
+        axes.met[side].part = find_part(&casts->side[side], k, side, live, touch);
     const vf of_b = v_select(axes.met[1].part.on_edge, angle_b, zero);
     const vf rate = v_select(vm_and(axes.met[0].part.on_edge, v_lt(zero, v_abs(angle_a))), angle_a, of_b);
     v_store(axes.rate, rate);

@@ -1,24 +1,32 @@
 /* SPDX-License-Identifier: MIT
  *
- * casts.c - the kernels of times of impact, a pair in each lane: where it begins, where its bodies are at a time, and
- * what the contact there means. What is not proved by docs/algorithm.md is not relied upon: a pair never goes past a
- * time at which its separation could have come down to the target, or goes back there if it may have. What contacts
- * mean is in cast_lines.inl and cast_turns.inl.
+ * casts.c - the kernel of times of impact, a pair in each lane. Some pairs are under way at a time: all of them are placed
+ * at their present times, the contact kernel finds what there is between them, and each goes on or makes room for the
+ * next pair, so that vectors are full until a part ends.
+ *
+ * What is not proved by docs/algorithm.md is not relied upon: a pair never goes past a time at which its separation
+ * could have come down to the target, or goes back there if it may have. What contacts mean is in cast_lines.inl and
+ * cast_turns.inl.
  */
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/bodies.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "column.h"
 #include "elementary.h"
 #include "kernels.h"
 #include "narc_scene.h"
+#include "scene/cast_fields.inl"
 #include "scene/cast_lanes.inl"
 #include "scene/cast_lines.inl"
 #include "scene/cast_turns.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
+#include "store.h"
 
 /* What a separation without turning may be away from the target, of a distance and both radii: a quarter of what
  * rounding may do to it (NARC_ERROR_BOUND). */
@@ -29,28 +37,152 @@
 #define MOVED_PART     0x1p-4
 #define THICKNESS_PART 0x1p-6
 
+/* What the casts of a call have in common. */
+struct cast_call {
+    const narc_cast_batch *given;
+    const narc_shapes *shapes;
+    struct sources sources;
+    enum pose_layout layout[2];
+    bool own, pieces; /* do pairs bring their own bodies; are there pieces of chains? */
+    size_t skipped;   /* pairs without an answer */
+};
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+_Static_assert(sizeof(narc_impact) - offsetof(narc_impact, separation) ==
+                   sizeof(narc_contact) - offsetof(narc_contact, separation),
+               "from there on rows are alike");
+
+/* The row that a pair's answer goes to. */
+static narc_impact *find_row(const narc_cast_batch *given, size_t pair) {
+    return &given->out[given->nearest ? narc_index_at(given->batch->pairs->a, pair) : pair];
+}
+
+/* Has its mover, of `nearest`, hit something before it can? */
+static bool is_late(const narc_cast_batch *given, const narc_casts *casts, size_t slot) {
+    const narc_impact *const row = find_row(given, casts->pair[slot]);
+    const float back = casts->back[slot];
+    return row->count != NARC_CAST_MISS && row->fraction < (back >= 0 ? back : casts->time[slot]);
+}
+
+/* Writes the row of a pair, unless its mover hits another body before, or one with a lower number then. */
+static void write_row(const narc_cast_batch *given, const narc_casts *casts, size_t slot, int outcome) {
+    const narc_contact *const c = &casts->contact[slot];
+    const uint32_t pair = casts->pair[slot], body = casts->body[slot];
+    const float time = casts->time[slot];
+    narc_impact *const row = find_row(given, pair);
+    if (!given->nearest)
+        row->pair = pair;
+    else if (row->count != NARC_CAST_MISS && (row->fraction < time || (row->fraction == time && row->body < body)))
+        return;
+    row->body = body;
+    row->feature = c->feature;
+    row->count = (uint16_t)outcome;
+    row->fraction = time;
+    memcpy(&row->separation, &c->separation, sizeof *c - offsetof(narc_contact, separation));
+}
+
+#if NARC_PIECES
+/* Is what touches a piece's front for certain? Else it may be a run's closure, or behind a piece: where it has been
+ * from the start, or is to be so deep. */
+static bool is_in_front(const narc_shape_header *a, const narc_shape_header *b, const narc_casts *casts, size_t slot) {
+    const narc_contact *const c = &casts->contact[slot];
+    const bool starts = !(casts->time[slot] > 0), deep = c->separation < 0 && (starts || casts->target[slot] < 0);
+    return narc_touches(a, c->feature & 0xff) && narc_touches(b, c->feature >> 8) &&
+           !(deep && (narc_is_piece(a) || narc_is_piece(b)));
+}
+
+/* Goes on alone with a cast of pieces, where it must: with a concave arc from the start, or where it hits what may not be
+ * a front. */
+static int cast_pieces(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
+    const narc_shape_header *const a = &call->shapes->headers[casts->side[0].shape[slot]],
+                                   *const b = &call->shapes->headers[casts->side[1].shape[slot]];
+    if (outcome == CAST_GOES_ON ? narc_is_concave(a) || narc_is_concave(b)
+                                : outcome == NARC_CAST_HIT && !is_in_front(a, b, casts, slot))
+        return NARC_NAMED(piece)(call->shapes, casts, slot);
+    return outcome;
+}
+#endif
+
+/* Of casts k ... in some lanes: ends those that are done. */
+NOINLINE void end_casts(struct cast_call *call, narc_casts *casts, size_t k, uint32_t lanes, int32_t *outcome) {
+    const narc_cast_batch *const given = call->given;
+    const bool nearest = given->nearest;
+    for (; lanes; lanes &= lanes - 1) {
+        const size_t lane = (size_t)FIND_LOWEST(lanes), slot = k + lane;
+#if NARC_PIECES
+        if (call->pieces)
+            outcome[lane] = cast_pieces(call, casts, slot, outcome[lane]);
+#endif
+        if (outcome[lane] == NARC_CAST_HIT || outcome[lane] == NARC_CAST_UNFINISHED) {
+            write_row(given, casts, slot, outcome[lane]);
+        } else if (outcome[lane] == CAST_GOES_ON) {
+            outcome[lane] = nearest && is_late(given, casts, slot) ? NARC_CAST_MISS : CAST_GOES_ON;
+        } else {
+            call->skipped += outcome[lane] == CAST_BROKEN;
+            if (!nearest)
+                given->out[casts->pair[slot]] = (narc_impact){.pair = casts->pair[slot]};
+        }
+    }
+}
+
+/* Of casts k ..., in the lanes `live`: ends those that are done, and moves the others to `to`. Returns how many. */
+INLINE size_t keep_casts(struct cast_call *call, narc_casts *casts, size_t k, vm live, vi outcome, size_t to) {
+    const vi broken = vi_set(CAST_BROKEN);
+    int32_t lane[V_WIDTH];
+    const vm ended = vm_and_not(live, vi_lt(broken, outcome));
+    const uint32_t lanes = call->pieces || call->given->nearest ? vm_bits(live) : vm_bits(ended);
+    if (lanes) {
+        vi_store(lane, outcome);
+        end_casts(call, casts, k, lanes, lane);
+        outcome = vi_load(lane);
+    }
+    const vm on = vm_and(live, vi_lt(broken, outcome));
+    const int count = COUNT_BITS(vm_bits(on));
+    if (k == to && vm_bits(on) == vm_bits(vm_front(count)))
+        return (size_t)count;
+    const vp packing = vm_packing(on);
+    UNROLL
+    for (int f = 0; f < (int)(sizeof casts->single / sizeof casts->single[0]); f++)
+        v_store(casts->single[f] + to, v_pack(packing, v_load(casts->single[f] + k)));
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
+        const vl half = d_of_lanes(on, h);
+        UNROLL
+        for (int f = 0; f < (int)(sizeof casts->wide / sizeof casts->wide[0]); f++)
+            d_store(casts->wide[f] + to, d_pack(half, d_load(casts->wide[f] + k + (size_t)h)));
+        to += (size_t)COUNT_BITS(vm_bits(on) >> h & ((1u << D_WIDTH) - 1));
+    }
+    return (size_t)count;
+}
+
 /* ------------------------------------------------------------------------------------------------ the start */
 
-/* A body: its bounding circle, a circle within it, and whether it is a circle, 1 or 0: then that is the one within. */
+/* A body: its bounding circle; and where something turns a circle within it, and whether it is a circle, 1 or 0: then
+ * that is the one within. */
 struct outline {
     float bound_x[V_WIDTH], bound_y[V_WIDTH], bound[V_WIDTH], inner_x[V_WIDTH], inner_y[V_WIDTH], inner[V_WIDTH];
     float round[V_WIDTH];
 };
 
-INLINE void load_outline(const narc_shapes *shapes, const struct narc_cast_side *side, const int32_t *slot,
-                         struct outline *out) {
-    int32_t shape[V_WIDTH];
-    vi_store(shape, get_shapes(side, slot));
+/* Those of casts k ... */
+INLINE void load_outline(const narc_shapes *shapes, const int32_t *shape, bool turns, size_t k,
+                         struct narc_cast_side *side, struct outline *out) {
     const struct headers h = load_headers(shapes->headers, shape);
-    const vm round = has_flag(h.info, NARC_SHAPE_CIRCLE);
-    vf arc[4] = {h.inner_center.x, h.inner_center.y, h.inner_radius, h.inner_radius};
-    if (vm_any(round)) {
-        vi_store(shape, find_first_arc(h.first_record, h.info));
-        v_rows(shapes->records, sizeof *shapes->records, shape, arc);
-    }
+    const vi first_arc = find_first_arc(h.first_record, h.info);
+    v_store(side->record + k, v_of_bits(first_arc));
+    v_store(side->info + k, v_of_bits(h.info));
     v_store(out->bound_x, h.bound_center.x);
     v_store(out->bound_y, h.bound_center.y);
     v_store(out->bound, h.bound_radius);
+    if (!turns)
+        return;
+    const vm round = has_flag(h.info, NARC_SHAPE_CIRCLE);
+    vf arc[4] = {h.inner_center.x, h.inner_center.y, h.inner_radius, h.inner_radius};
+    if (vm_any(round)) {
+        int32_t record[V_WIDTH];
+        vi_store(record, first_arc);
+        v_rows(shapes->records, sizeof *shapes->records, record, arc);
+    }
     v_store(out->inner_x, v_select(round, arc[0], h.inner_center.x));
     v_store(out->inner_y, v_select(round, arc[1], h.inner_center.y));
     v_store(out->inner, v_select(round, arc[2], h.inner_radius));
@@ -64,43 +196,105 @@ INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct out
     return vm_and(vm_and(sized, turned), v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
 }
 
+/* From A's position to B's in double precision. */
+INLINE void load_ways(const struct sources *given, const int32_t *a, const int32_t *b, double *out_x, double *out_y) {
+    const narc_position_column a_x = given->a.x, a_y = given->a.y, b_x = given->b.x, b_y = given->b.y;
+    const bool doubles = a_x.precision == NARC_FLOAT64 && b_x.precision == NARC_FLOAT64;
+    for (int l = 0; l < V_WIDTH; l++) {
+        const size_t from = (uint32_t)a[l], to = (uint32_t)b[l];
+        out_x[l] = doubles ? narc_double_at(b_x, to) - narc_double_at(a_x, from)
+                           : narc_position_at(b_x, to) - narc_position_at(a_x, from);
+        out_y[l] = doubles ? narc_double_at(b_y, to) - narc_double_at(a_y, from)
+                           : narc_position_at(b_y, to) - narc_position_at(a_y, from);
+    }
+}
+
+/* Loads pairs k ... of a group, casts `to` ... What is still to be added up: shifts, and motions of A and B. */
+struct loaded {
+    float shift_x[V_WIDTH], shift_y[V_WIDTH], motion_x[2][V_WIDTH], motion_y[2][V_WIDTH];
+    struct outline outline[2];
+    bool turn; /* does one of them turn? */
+    vm fine;
+};
+
+INLINE void load_casts(const struct cast_call *call, const struct pair_indices *in, int k, narc_casts *casts, size_t to,
+                       struct loaded *out) {
+    const narc_cast_batch *const given = call->given;
+    const struct sources *const from = &call->sources;
+    const int32_t *const number = in->number + k, *const item[2] = {in->a + k, in->b + k},
+                         *const shape[2] = {in->shape_a + k, in->shape_b + k};
+    const narc_bodies *const sets[2] = {&from->a, &from->b};
+    int32_t body[2][V_WIDTH]; /* the caller's numbers */
+    vf angles = v_set(0);
+    for (int side = 0; side < 2; side++) {
+        struct narc_cast_side *const its = &casts->side[side];
+        const narc_motions *const motions = &given->motions[side];
+        const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], item[side]);
+        const vi pairs = vi_load(number);
+        vi_store(body[side], call->own ? vi_add(vi_add(pairs, pairs), vi_set(side)) : vi_load(item[side]));
+        memcpy(its->shape + to, shape[side], V_WIDTH * sizeof(int32_t));
+        v_store(its->cosine + to, bodies.rotation.x);
+        v_store(its->sine + to, bodies.rotation.y);
+        v_store(its->scale + to, bodies.scale);
+        const vf angle = load_column_or(motions->angle, body[side], 0);
+        angles = v_max(angles, v_abs(angle));
+        v_store(its->angle + to, angle);
+        v_store(out->motion_x[side], load_column_or(motions->x, body[side], 0));
+        v_store(out->motion_y[side], load_column_or(motions->y, body[side], 0));
+    }
+    out->turn = vm_any(v_lt(v_set(0), angles));
+    out->fine = vm_front(V_WIDTH);
+    for (int side = 0; side < 2; side++) {
+        load_outline(call->shapes, shape[side], out->turn, to, &casts->side[side], &out->outline[side]);
+        out->fine = vm_and(out->fine, are_fine(&casts->side[side], to, &out->outline[side]));
+    }
+    load_ways(from, item[0], item[1], casts->x + to, casts->y + to);
+    v_store(out->shift_x, load_column_or(from->pairs.shift_x, number, 0));
+    v_store(out->shift_y, load_column_or(from->pairs.shift_y, number, 0));
+    v_store(casts->target + to, load_column_or(given->targets, given->nearest ? item[0] : number, given->target));
+    v_store(casts->back + to, v_set(CAST_FREE));
+    v_store(casts->rounds + to, v_set(0));
+    memcpy(casts->pair + to, number, V_WIDTH * sizeof(int32_t));
+    memcpy(casts->body + to, body[1], V_WIDTH * sizeof(int32_t));
+    memset(casts->hint + to, 0, V_WIDTH * sizeof(int32_t));
+}
+
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape
  * turns by a radian. A point p of the outline is no further from the centre q of a circle in the shape than R, and
  * along its normal p - q is no shorter than that circle's radius r, so that |p x n| <= |q| + sqrt(R^2 - r^2). Of boxes
  * and regular polygons about their origins it is half an edge, and no less will do. Of a circle it is |q|: the bounding
  * circle, which has room for rounding, says nothing there. */
 INLINE vd find_lever(const struct outline *outline, int h) {
-    const spot inner = get_spot(outline->inner_x + h, outline->inner_y + h);
-    const spot bound = get_spot(outline->bound_x + h, outline->bound_y + h);
+    const dvec2 inner = get_dvec2(outline->inner_x + h, outline->inner_y + h);
+    const dvec2 bound = get_dvec2(outline->bound_x + h, outline->bound_y + h);
     const vd off = find_length(inner), zero = d_set(0), radius = d_of_floats(outline->inner + h);
     const vd r = d_select(d_lt(zero, radius), radius, zero);
-    const vd far = d_of_floats(outline->bound + h) + find_length((spot){bound.x - inner.x, bound.y - inner.y});
+    const vd far = d_of_floats(outline->bound + h) + find_length((dvec2){bound.x - inner.x, bound.y - inner.y});
     const vl round = d_lt(zero, d_of_floats(outline->round + h));
     return off + d_select(round, zero, d_sqrt(far * far - r * r));
 }
 
-/* Circles that hold the bodies all the time: their radii, and their centres from the positions. What turns but moves
- * nothing by it does not turn from here on. */
-INLINE vd find_circle(struct narc_cast_side *side, size_t k, const struct outline *outline, int h, spot *out_center) {
+/* Circles that hold the bodies all the time: their radii, and their centres from the positions; and by how much turning
+ * moves the outlines, at most. What turns but moves nothing by it does not turn from here on. */
+INLINE vd find_circle(struct narc_cast_side *side, size_t k, const struct outline *outline, int h, bool turns,
+                      dvec2 *out_center, vd *out_moved) {
     const vd scale = d_of_floats(side->scale + k), angle = d_of_floats(side->angle + k), zero = d_set(0);
     const vd radius = scale * d_of_floats(outline->bound + h);
-    const spot bound = get_spot(outline->bound_x + h, outline->bound_y + h),
-               center = {scale * bound.x, scale * bound.y};
-    const spot turned = turn(find_rotation(side->cosine + k, side->sine + k), center);
+    const dvec2 bound = get_dvec2(outline->bound_x + h, outline->bound_y + h),
+                center = {scale * bound.x, scale * bound.y};
+    *out_moved = zero;
+    *out_center = center;
+    if (d_any(d_lt(zero, d_abs(bound.x) + d_abs(bound.y)))) /* not all about their positions */
+        *out_center = turn(find_rotation(side->cosine + k, side->sine + k), center);
+    if (!turns)
+        return radius;
     const vl still = d_le(d_abs(angle), zero);
-    vd lever = zero;
-    if (d_any(~still))
-        lever = d_select(still, zero, scale * find_lever(outline, h));
+    const vd lever = d_select(still, zero, scale * find_lever(outline, h));
     const vl rests = d_le(lever, zero);
-    d_store(side->lever + k, lever);
     d_put_floats(side->angle + k, d_select(rests, zero, angle));
-    *out_center = (spot){d_select(rests, turned.x, zero), d_select(rests, turned.y, zero)};
+    *out_moved = d_select(rests, zero, lever * d_abs(angle));
+    *out_center = (dvec2){d_select(rests, out_center->x, zero), d_select(rests, out_center->y, zero)};
     return d_select(rests, radius, radius + find_length(center));
-}
-
-/* By how much turning moves an outline, at most. */
-INLINE vd find_moved(const struct narc_cast_side *side, size_t k) {
-    return d_load(side->lever + k) * d_abs(d_of_floats(side->angle + k));
 }
 
 /* What a hit may be away from the target by default, as far as it is up to one of the bodies: a small part of its size,
@@ -112,7 +306,7 @@ INLINE vd find_tolerance(const struct narc_cast_side *side, size_t k, const stru
 }
 
 /* When are two circles, that far apart, as near as `reach`? */
-INLINE vl meet_circles(spot apart, spot motion, vd reach, vd *out_start, vd *out_end) {
+INLINE vl meet_circles(dvec2 apart, dvec2 motion, vd reach, vd *out_start, vd *out_end) {
     const vd zero = d_set(0), one = d_set(1), square = find_dot(motion, motion);
     const vd excess = find_dot(apart, apart) - reach * reach, along = find_dot(apart, motion),
              across = find_cross(apart, motion), height = reach * reach * square - across * across;
@@ -127,63 +321,66 @@ INLINE vl meet_circles(spot apart, spot motion, vd reach, vd *out_start, vd *out
     return (rests & touch) | (~rests & meet);
 }
 
-INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outline[2], float *out_outcome) {
-    const spot from = {d_load(casts->x + k), d_load(casts->y + k)},
-               motion = {d_load(casts->motion_x + k), d_load(casts->motion_y + k)};
+INLINE void begin_half(const struct cast_call *call, narc_casts *casts, size_t k, int h, const struct loaded *loaded,
+                       float *out_outcome) {
+    const struct outline *const outline = loaded->outline;
+    const dvec2 from = {d_load(casts->x + k) + d_of_floats(loaded->shift_x + h),
+                        d_load(casts->y + k) + d_of_floats(loaded->shift_y + h)},
+                motion = {d_of_floats(loaded->motion_x[1] + h) - d_of_floats(loaded->motion_x[0] + h),
+                          d_of_floats(loaded->motion_y[1] + h) - d_of_floats(loaded->motion_y[0] + h)};
     const vd far = d_set(NARC_MAX_DISTANCE), zero = d_set(0), target = d_of_floats(casts->target + k);
-    spot center_a, center_b;
-    vd start, end;
-    const vd radius_a = find_circle(&casts->side[0], k, &outline[0], h, &center_a),
-             radius_b = find_circle(&casts->side[1], k, &outline[1], h, &center_b),
-             reach = radius_a + radius_b + target;
-    const spot apart = {from.x + center_b.x - center_a.x, from.y + center_b.y - center_a.y};
+    dvec2 center_a, center_b;
+    vd start, end, moved_a, moved_b;
+    const vd radius_a = find_circle(&casts->side[0], k, &outline[0], h, loaded->turn, &center_a, &moved_a),
+             radius_b = find_circle(&casts->side[1], k, &outline[1], h, loaded->turn, &center_b, &moved_b),
+             reach = radius_a + radius_b + target, moved = moved_a + moved_b;
+    const dvec2 apart = {from.x + center_b.x - center_a.x, from.y + center_b.y - center_a.y};
     const vl meet = d_le(zero, reach) & meet_circles(apart, motion, reach, &start, &end);
-    const vd moved = find_moved(&casts->side[0], k) + find_moved(&casts->side[1], k);
     const vl turns = d_lt(zero, moved);
     vd enough = d_set(ROUNDING) * (radius_a + radius_b + d_abs(target));
-    if (d_any(turns)) {
-        const vd given = d_set((double)casts->tolerance),
+    if (loaded->turn) {
+        const vd given = d_set((double)call->given->tolerance),
                  sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
                                find_tolerance(&casts->side[1], k, &outline[1], h)),
                  part = d_min(d_set(MOVED_PART) * moved, sizes), usual = d_select(d_lt(enough, part), part, enough);
         enough = d_select(turns, d_select(d_lt(zero, given), given, usual), enough);
     }
+    d_store(casts->x + k, from.x);
+    d_store(casts->y + k, from.y);
+    d_store(casts->motion_x + k, motion.x);
+    d_store(casts->motion_y + k, motion.y);
     d_store(casts->end + k, end);
     d_store(casts->enough + k, enough);
+    d_store(casts->moved + k, moved);
     d_put_floats(casts->time + k, round_down(start));
-    d_put_floats(casts->turning + k, d_select(turns, d_set(1), zero));
     const vd longest = d_set(INFINITY);
     const vl fine = d_le(d_abs(from.x), far) & d_le(d_abs(from.y), far) & d_lt(d_abs(motion.x), longest) &
                     d_lt(d_abs(motion.y), longest);
-    const vd outcome = d_select(meet, d_set(NARC_CAST_GOES_ON), d_set(NARC_CAST_MISS));
-    d_put_floats(out_outcome, d_select(fine, outcome, d_set(NARC_CAST_BROKEN)));
+    const vd outcome = d_select(meet, d_set(CAST_GOES_ON), d_set(NARC_CAST_MISS));
+    d_put_floats(out_outcome, d_select(fine, outcome, d_set(CAST_BROKEN)));
 }
 
-/* Places casts first .. end - 1 at the first times at which bounding circles touch, or says that they never do:
- * NARC_CAST_MISS. */
-void NARC_NAMED(begin)(const narc_shapes *shapes, narc_casts *casts, size_t first, size_t end) {
-    for (size_t k = first; k < end; k += V_WIDTH) {
-        int32_t slot[V_WIDTH];
+/* Begins the next pairs at the first times at which bounding circles touch; those whose circles never meet, or that have
+ * no answer, are done. */
+NOINLINE void begin_casts(struct cast_call *call, size_t first, size_t count, narc_casts *casts) {
+    struct pair_indices in;
+    load_indices(&call->sources, first, (int)count, &in);
+    for (int k = 0; k < (int)count; k += V_WIDTH) {
+        const size_t to = casts->count;
         float outcome[V_WIDTH];
-        struct outline outline[2];
-        vm fine = vm_front(V_WIDTH);
-        get_slots(k, end, slot);
-        for (int side = 0; side < 2; side++) {
-            load_outline(shapes, &casts->side[side], slot, &outline[side]);
-            fine = vm_and(fine, are_fine(&casts->side[side], k, &outline[side]));
-        }
+        struct loaded loaded;
+        load_casts(call, &in, k, casts, to, &loaded);
         for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-            begin_half(casts, k + (size_t)h, h, outline, outcome + h);
-        v_store(casts->back + k, v_set(NARC_CAST_FREE));
-        v_store(casts->rounds + k, v_set(0));
-        vi_store(casts->outcome + k, vi_select(fine, vi_truncate(v_load(outcome)), vi_set(NARC_CAST_BROKEN)));
+            begin_half(call, casts, to + (size_t)h, h, &loaded, outcome + h);
+        const vi found = vi_select(loaded.fine, vi_truncate(v_load(outcome)), vi_set(CAST_BROKEN));
+        casts->count += keep_casts(call, casts, to, vm_front((int)count - k), found, to);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ places */
 
 /* Cosines and sines of angles, to some 1e-14: quarter turns and the series of the rest. They are rounded to floats. */
-INLINE spot find_directions(vd angle) {
+INLINE dvec2 find_directions(vd angle) {
     const vd whole = d_set(0x1.8p52); /* what is added to it is rounded to an integer */
     const vd quarters = (angle * d_set(0.63661977236758134) + whole) - whole; /* 2 / pi */
     const vd part = quarters - d_set(4) * ((quarters * d_set(0.25) + whole) - whole), size = d_abs(part);
@@ -195,86 +392,139 @@ INLINE spot find_directions(vd angle) {
     s = x + x * z * s;
     c = one - z * (d_set(0.5) - z * c);
     const vl odd = d_le(size, one) & d_le(one, size), opposite = d_lt(one, size) | d_lt(part, d_set(0));
-    const spot p = {d_select(odd, -s, c), d_select(odd, c, s)};
-    spot direction = {d_select(opposite, -p.x, p.x), d_select(opposite, -p.y, p.y)};
+    const dvec2 p = {d_select(odd, -s, c), d_select(odd, c, s)};
+    dvec2 direction = {d_select(opposite, -p.x, p.x), d_select(opposite, -p.y, p.y)};
     const vl small = d_lt(d_abs(angle), d_set(0x1p20));
     if (d_any(~small)) {
         double angles[D_WIDTH], cosine[D_WIDTH], sine[D_WIDTH];
         d_store(angles, angle);
         for (int l = 0; l < D_WIDTH; l++)
             narc_find_cosine(angles[l], &cosine[l], &sine[l]);
-        direction = (spot){d_select(small, direction.x, d_load(cosine)), d_select(small, direction.y, d_load(sine))};
+        direction = (dvec2){d_select(small, direction.x, d_load(cosine)), d_select(small, direction.y, d_load(sine))};
     }
     return direction;
 }
 
-/* The rotations of slots k ... at their times; what does not turn keeps its own, to the bit. */
-INLINE void turn_bodies(struct narc_cast_side *side, const float *time, size_t k, float *out_cosine, float *out_sine) {
-    for (size_t h = k; h < k + V_WIDTH; h += D_WIDTH) {
-        const spot direction = find_directions(d_of_floats(time + h) * d_of_floats(side->angle + h));
-        const spot turned = turn(direction, find_rotation(side->cosine + h, side->sine + h));
-        d_store(side->turned_x + h, turned.x);
-        d_store(side->turned_y + h, turned.y);
-        d_put_floats(out_cosine + (h - k), turned.x);
-        d_put_floats(out_sine + (h - k), turned.y);
-    }
-    const vm turns = v_lt(v_set(0), v_abs(v_load(side->angle + k)));
-    v_store(out_cosine, v_select(turns, v_load(out_cosine), v_load(side->cosine + k)));
-    v_store(out_sine, v_select(turns, v_load(out_sine), v_load(side->sine + k)));
+/* Which of casts k ... turn? */
+INLINE vm find_turning(const narc_casts *casts, size_t k) {
+    const vf angle_a = v_load(casts->side[0].angle + k), angle_b = v_load(casts->side[1].angle + k);
+    return v_lt(v_set(0), v_max(v_abs(angle_a), v_abs(angle_b)));
 }
 
-void NARC_NAMED(place)(narc_casts *casts, size_t count) {
-    for (size_t k = 0; k < count; k += V_WIDTH) {
-        const vm live = vm_front(count - k < V_WIDTH ? (int)(count - k) : V_WIDTH);
-        const vf angles = v_max(v_abs(v_load(casts->side[0].angle + k)), v_abs(v_load(casts->side[1].angle + k)));
-        const int any_turns = vm_any(vm_and(live, v_lt(v_set(0), angles)));
-        float x[V_WIDTH], y[V_WIDTH], cosine[V_WIDTH], sine[V_WIDTH];
-        for (size_t h = 0; h < V_WIDTH; h += D_WIDTH) {
-            const vd time = d_of_floats(casts->time + k + h);
-            d_put_floats(x + h, d_load(casts->x + k + h) + time * d_load(casts->motion_x + k + h));
-            d_put_floats(y + h, d_load(casts->y + k + h) + time * d_load(casts->motion_y + k + h));
+/* The rotations of casts k ... at their times; what does not turn keeps its own, to the bit. */
+INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
+    const struct narc_cast_side *const side = &casts->side[which];
+    float cosine[V_WIDTH], sine[V_WIDTH];
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
+        const size_t slot = k + (size_t)h;
+        const dvec2 direction = find_directions(d_of_floats(casts->time + slot) * d_of_floats(side->angle + slot));
+        const dvec2 turned = turn(direction, find_rotation(side->cosine + slot, side->sine + slot));
+        d_store(casts->turned_x[which] + slot, turned.x);
+        d_store(casts->turned_y[which] + slot, turned.y);
+        d_put_floats(cosine + h, turned.x);
+        d_put_floats(sine + h, turned.y);
+    }
+    const vm turns = v_lt(v_set(0), v_abs(v_load(side->angle + k)));
+    v_store(casts->cosine_now[which] + k, v_select(turns, v_load(cosine), v_load(side->cosine + k)));
+    v_store(casts->sine_now[which] + k, v_select(turns, v_load(sine), v_load(side->sine + k)));
+}
+
+/* Places all bodies at their casts' times. */
+NOINLINE void place_casts(narc_casts *casts) {
+    for (size_t k = 0; k < casts->count; k += V_WIDTH) {
+        const vm live = vm_front((int)(casts->count - k));
+        const bool any_turns = vm_any(vm_and(live, find_turning(casts, k)));
+        for (size_t h = k; h < k + V_WIDTH; h += D_WIDTH) {
+            const vd time = d_of_floats(casts->time + h);
+            d_put_floats(casts->x_now + h, d_load(casts->x + h) + time * d_load(casts->motion_x + h));
+            d_put_floats(casts->y_now + h, d_load(casts->y + h) + time * d_load(casts->motion_y + h));
         }
         for (int side = 0; side < 2; side++) {
-            char *place[V_WIDTH];
-            vf row[4] = {v_set(0), v_set(0), v_load(casts->side[side].cosine + k), v_load(casts->side[side].sine + k)};
-            if (any_turns) {
-                turn_bodies(&casts->side[side], casts->time, k, cosine, sine);
-                row[2] = v_load(cosine);
-                row[3] = v_load(sine);
-            }
-            if (side == 1) {
-                row[0] = v_load(x);
-                row[1] = v_load(y);
-            }
-            for (size_t l = 0; l < V_WIDTH; l++)
-                place[l] = (char *)casts->pose[side][k + l];
-            v_put_rows(place, 0, row);
+            v_store(casts->cosine_now[side] + k, v_load(casts->side[side].cosine + k));
+            v_store(casts->sine_now[side] + k, v_load(casts->side[side].sine + k));
+            if (any_turns)
+                turn_bodies(casts, side, k);
         }
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ all */
 
-/* Of casts 0 .. count - 1: takes the contacts at their times and finds what they mean, and where to look next. Of
- * NARC_CAST_HIT and NARC_CAST_UNFINISHED contact and time are the answer's. */
-void NARC_NAMED(advance)(const narc_shapes *shapes, narc_casts *casts, size_t count) {
-    for (size_t k = 0; k < count; k += V_WIDTH) {
-        const vm live = vm_front(count - k < V_WIDTH ? (int)(count - k) : V_WIDTH);
-        const vm turning = v_lt(v_set(0), v_load(casts->turning + k));
-        const struct touch touch = load_contacts(casts->contact, k, count);
-        struct step lines, turns;
-        const bool any_turns = vm_any(vm_and(live, turning));
-        const struct step *from = any_turns ? &turns : &lines;
+/* Takes the contacts at the times of all casts and finds what they mean, and where to look next. Those that are done make
+ * room. */
+NOINLINE void advance_casts(struct cast_call *call, narc_casts *casts) {
+    size_t kept = 0;
+    for (size_t k = 0; k < casts->count; k += V_WIDTH) {
+        const vm live = vm_front((int)(casts->count - k));
+        const vm turning = find_turning(casts, k);
+        const struct touch touch = load_contacts(casts->contact + k, live);
+        const vm straight = vm_and_not(live, turning), turns = vm_and(live, turning);
+        const bool any_turns = vm_any(turns);
+        struct step step, turned;
         if (any_turns)
-            advance_turns(shapes, casts, &touch, k, vm_and(live, turning), &turns);
-        const vm straight = vm_and_not(live, turning);
-        if (vm_any(straight))
-            advance_lines(shapes, casts, &touch, k, straight, &lines);
-        else
-            lines = turns;
-        vi_store(casts->outcome + k, vi_truncate(v_select(straight, v_load(lines.outcome), v_load(from->outcome))));
-        v_store(casts->time + k, v_select(straight, v_load(lines.time), v_load(from->time)));
-        v_store(casts->back + k, v_select(straight, v_load(lines.back), v_load(from->back)));
-        v_store(casts->rounds + k, v_select(straight, v_load(lines.rounds), v_load(from->rounds)));
+            advance_turns(call->shapes, casts, &touch, k, turns, &turned);
+        if (any_turns && !vm_any(straight)) {
+            step = turned;
+        } else {
+            advance_lines(call->shapes, casts, &touch, k, straight, &step);
+            if (any_turns)
+                select_steps(straight, &step, &turned);
+        }
+        v_store(casts->time + k, v_load(step.time));
+        v_store(casts->back + k, v_load(step.back));
+        v_store(casts->rounds + k, v_load(step.rounds));
+        const vi outcome = vi_truncate(v_load(step.outcome));
+        kept += keep_casts(call, casts, k, live, vi_select(touch.known, outcome, vi_set(CAST_BROKEN)), kept);
     }
+    casts->count = kept;
+}
+
+/* What the contact kernel reads of a side, whose positions are in two arrays. */
+static narc_bodies view_side(const narc_casts *casts, int side, const float *x, const float *y) {
+    const ptrdiff_t item = sizeof(float);
+    return (narc_bodies){.count = CAST_SLOTS,
+                         .x = {x, item, NARC_FLOAT32},
+                         .y = {y, item, NARC_FLOAT32},
+                         .cosine = {casts->cosine_now[side], item},
+                         .sine = {casts->sine_now[side], item},
+                         .scale = {casts->side[side].scale, item},
+                         .shape = {casts->side[side].shape, item}};
+}
+
+size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end) {
+    static const float zeros[CAST_SLOTS];
+    const narc_batch *const batch = given->batch;
+    struct cast_call call = {.given = given,
+                             .shapes = batch->shapes,
+                             .sources = copy_sources(batch),
+                             .layout = {find_pose_layout(batch->a), find_pose_layout(batch->b)},
+                             .own = narc_have_own_bodies(batch->pairs),
+                             .pieces = NARC_PIECES && batch->shapes->piece_count > 0};
+    narc_casts casts;
+    casts.count = 0;
+    casts.front_only = given->front_only;
+    const narc_bodies a = view_side(&casts, 0, zeros, zeros), b = view_side(&casts, 1, casts.x_now, casts.y_now);
+    const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &b};
+    const narc_query query = {.margin = INFINITY, .hints = {casts.hint, sizeof casts.hint[0]}};
+    const narc_batch contacts = {.shapes = batch->shapes,
+                                 .a = &a,
+                                 .b = &b,
+                                 .pairs = &pairs,
+                                 .query = &query,
+                                 .count = CAST_SLOTS,
+                                 .asked = CAST_SLOTS,
+                                 .of_casts = true};
+    const narc_rows rows = {.base = (char *)casts.contact, .stride = sizeof casts.contact[0]};
+    size_t unused;
+    while (casts.count > 0 || first < end) {
+        while (casts.count + CAST_GROUP <= CAST_SLOTS && first < end) {
+            const size_t count = end - first < CAST_GROUP ? end - first : CAST_GROUP;
+            begin_casts(&call, first, count, &casts);
+            first += count;
+        }
+        place_casts(&casts);
+        NARC_NAMED(contact)(&contacts, 0, casts.count, &unused, &rows);
+        advance_casts(&call, &casts);
+    }
+    return call.skipped;
 }

@@ -26,6 +26,7 @@
 #include "kernels.h"
 #include "piece.h"
 #include "scene/body_frame.inl"
+#include "scene/cast_fields.inl"
 #include "scene/concave.inl"
 
 /* Contacts after which a cast that turns is unfinished. */
@@ -55,16 +56,17 @@ struct nearest {
 };
 
 /* One of two bodies with a contact along a normal of the world, as soa/piece.h wants it. */
-static narc_toucher make_toucher(const struct body_frame *frame, const struct body_frame *other, place normal) {
+static narc_contact_side make_contact_side(const struct body_frame *frame, const struct body_frame *other,
+                                           place normal) {
     const place n = turn_to_shape(frame, normal);
     const place way =
         turn_to_shape(frame, (place){other->position.x - frame->position.x, other->position.y - frame->position.y});
-    return (narc_toucher){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
+    return (narc_contact_side){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
 }
 
 static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation,
                              bool front_only) {
-    const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
+    const narc_contact_side of_a = make_contact_side(a, b, normal), of_b = make_contact_side(b, a, normal);
     return narc_is_reached(&of_a, &of_b, separation, front_only);
 }
 
@@ -84,7 +86,7 @@ static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_
     out->arcs = narc_arcs_of(shapes, out->header);
 }
 
-static bool is_hollow(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side) {
+static bool is_concave(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side) {
     return narc_is_concave(&shapes->headers[casts->side[side].shape[slot]]);
 }
 
@@ -245,7 +247,7 @@ static void write_contact(const struct scene *scene, const struct nearest *n, in
     const unsigned feature = round ? 0 : find_feature_number(scene->body.header, n->arc, n->on_edge);
     const double sign = side == 0 ? 1 : -1, half = n->separation / 2;
     const float curved = n->on_edge ? INFINITY : (float)get_radius(scene, n->arc);
-    const float hollow = n->at_end ? 0 : -(float)scene->arc.radius;
+    const float concave = n->at_end ? 0 : -(float)scene->arc.radius;
     *out = (narc_contact){.feature = (uint16_t)(side == 0 ? feature << 8 : feature),
                           .count = 1,
                           .separation = (float)n->separation,
@@ -253,8 +255,8 @@ static void write_contact(const struct scene *scene, const struct nearest *n, in
                           .normal_y = (float)(sign * n->normal.y),
                           .point_x = (float)(scene->ground.position.x + n->at.x + half * n->normal.x),
                           .point_y = (float)(scene->ground.position.y + n->at.y + half * n->normal.y),
-                          .radius_a = side == 0 ? hollow : curved,
-                          .radius_b = side == 0 ? curved : hollow};
+                          .radius_a = side == 0 ? concave : curved,
+                          .radius_b = side == 0 ? curved : concave};
 }
 
 /* When does an arc that moves along a line leave the circle of `goal`, where it may touch? Infinite: never. */
@@ -359,11 +361,12 @@ static double find_speed_seen(const struct speeds *s, int body, double reach) {
 
 /* Goes on from a cast's time by what `look` says, until there is a contact that reaches a piece and did not come from
  * behind. What is nearer than `enough` is as good as there. */
-typedef struct outlook looker(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time);
+typedef struct outlook look_at_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time);
 
 /* A contact may be deep when it is told at last: of what has passed an end. Finds the first time, between one without
  * and this one. */
-static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
+static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, look_at_time *look,
+                            float before) {
     float after = casts->time[slot];
     const double enough = (double)casts->target[slot] + casts->enough[slot];
     for (int halving = 0; halving < HALVINGS; halving++) {
@@ -375,7 +378,7 @@ static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t
     (void)look(shapes, casts, slot, (double)after);
 }
 
-static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, double speed,
+static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, look_at_time *look, double speed,
                            double size) {
     const double target = (double)casts->target[slot], enough = casts->enough[slot],
                  least = NARC_TURNING_TOLERANCE * size / speed;
@@ -395,7 +398,7 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
             return NARC_CAST_HIT;
         }
         behind = near && (behind || !o.reached);
-        if (behind && !(casts->turning[slot] > 0)) /* it leaves the piece once */
+        if (behind && !(casts->moved[slot] > 0)) /* it leaves the piece once */
             return NARC_CAST_MISS;
         before = casts->time[slot];
         const bool comes = o.separation > target && o.separation < INFINITY; /* then it goes by what is left alone */
@@ -430,7 +433,7 @@ static double find_arc_wait(const struct scene *scene, int arc, double target, d
 }
 
 static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
-    const int side = is_hollow(shapes, casts, slot, 0) ? 0 : 1;
+    const int side = is_concave(shapes, casts, slot, 0) ? 0 : 1;
     const struct scene scene = place_scene(shapes, casts, slot, side, time);
     const struct body_frame both[2] = {side ? scene.body : scene.ground, side ? scene.ground : scene.body};
     const struct speeds s = find_speeds(both, casts, slot);
@@ -699,14 +702,10 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
 
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
-/* Of a cast that has begun, or that is where a run's closed shape is at the target: what becomes of it. Time and
- * contact are then the answer's. */
 int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
-    const bool of_a = is_hollow(shapes, casts, slot, 0), of_b = is_hollow(shapes, casts, slot, 1);
+    const bool of_a = is_concave(shapes, casts, slot, 0), of_b = is_concave(shapes, casts, slot, 1);
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]};
-    const double angles = fabs((double)casts->side[0].angle[slot]) * casts->side[0].lever[slot] +
-                          fabs((double)casts->side[1].angle[slot]) * casts->side[1].lever[slot];
-    const double speed = sqrt(find_dot(motion, motion)) + angles;
+    const double speed = sqrt(find_dot(motion, motion)) + casts->moved[slot];
     double size = INFINITY;
     for (int side = 0; side < 2; side++)
         size = find_least(size, (double)casts->side[side].scale[slot] *
@@ -715,7 +714,7 @@ int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot)
         return NARC_CAST_MISS;
     if (!of_a && !of_b)
         return advance_in_time(shapes, casts, slot, look_at_run, speed, size);
-    if (casts->turning[slot] > 0)
+    if (casts->moved[slot] > 0)
         return advance_in_time(shapes, casts, slot, look_at_concave, speed, size);
     return cast_straight(shapes, casts, slot, of_a ? 0 : 1);
 }

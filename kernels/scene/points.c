@@ -89,15 +89,15 @@ INLINE float find_separation(const struct body_frame *frame, float x, float y) {
 /* ------------------------------------------------------------------------------------------------ rows */
 
 /* A point and a body that wait for their row: eight numbers for two vectors of rows. */
-struct question {
+struct point_query {
     float x, y; /* see place_point() */
     float cosine, sine, scale;
     uint32_t shape, point, body;
     char *row;
 };
 
-struct questions {
-    struct question item[V_WIDTH];
+struct point_queries {
+    struct point_query item[V_WIDTH];
     int count;
 };
 
@@ -159,7 +159,7 @@ INLINE struct nearest find_nearest_place(const narc_record *records, struct ring
 INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distance){.point = (uint32_t)point}; }
 
 /* Takes rows back whose point is nearest to what closes a run behind (store.h). */
-INLINE void take_back(const narc_shapes *shapes, const struct question *item, int count) {
+INLINE void take_back(const narc_shapes *shapes, const struct point_query *item, int count) {
     for (int k = 0; NARC_PIECES && k < count; k++) {
         narc_distance *const row = (narc_distance *)(void *)item[k].row;
         if (!narc_touches(&shapes->headers[item[k].shape], row->feature))
@@ -190,7 +190,7 @@ INLINE void answer_concave(const struct body_frame *frame, place point, uint32_t
 }
 
 /* Writes the rows of those that wait. The lanes behind the last one repeat the first, and its row. */
-static void answer(const narc_shapes *shapes, struct questions *waiting) {
+static void answer(const narc_shapes *shapes, struct point_queries *waiting) {
     const narc_record *records = shapes->records;
     int32_t item[V_WIDTH], shape[V_WIDTH];
     char *row[V_WIDTH];
@@ -236,7 +236,7 @@ static void answer(const narc_shapes *shapes, struct questions *waiting) {
 
 /* Sees to it that the row of a point and a body is written, now or when others have come. */
 INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_distance *row,
-                struct questions *waiting) {
+                struct point_queries *waiting) {
     struct body_frame frame;
     float x, y;
     if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) ||
@@ -248,21 +248,21 @@ INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_d
         answer_concave(&frame, load_point(batch->points, point), (uint32_t)point, (uint32_t)body, row);
         return;
     }
-    waiting->item[waiting->count++] = (struct question){x,
-                                                        y,
-                                                        (float)frame.rotation.x,
-                                                        (float)frame.rotation.y,
-                                                        (float)frame.scale,
-                                                        (uint32_t)(frame.header - batch->shapes->headers),
-                                                        (uint32_t)point,
-                                                        (uint32_t)body,
-                                                        (char *)row};
+    waiting->item[waiting->count++] = (struct point_query){x,
+                                                           y,
+                                                           (float)frame.rotation.x,
+                                                           (float)frame.rotation.y,
+                                                           (float)frame.scale,
+                                                           (uint32_t)(frame.header - batch->shapes->headers),
+                                                           (uint32_t)point,
+                                                           (uint32_t)body,
+                                                           (char *)row};
     if (waiting->count == V_WIDTH)
         answer(batch->shapes, waiting);
 }
 
 void NARC_NAMED(distance)(const narc_point_batch *batch, size_t first, size_t end) {
-    struct questions waiting;
+    struct point_queries waiting;
     waiting.count = 0;
     for (size_t k = first; k < end; k++)
         ask(batch, k, batch->body.base ? narc_index_at(batch->body, k) : k, batch->out + k, &waiting);
@@ -408,7 +408,7 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
 }
 
 /* Writes the rows of what was found, or sees to it. */
-INLINE void ask_nearest(const struct search *search, size_t point, struct questions *waiting) {
+INLINE void ask_nearest(const struct search *search, size_t point, struct point_queries *waiting) {
     const narc_point_batch *const batch = search->batch;
     for (size_t i = 0; i < batch->most; i++) {
         narc_distance *const row = &search->rows[i];
@@ -451,7 +451,7 @@ static void find_nearest(struct search *search) {
 
 void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end) {
     const narc_index_query *const query = batch->search;
-    struct questions waiting;
+    struct point_queries waiting;
     waiting.count = 0;
     for (size_t k = first; k < end; k++) {
         struct search search = {.batch = batch, .point = load_point(batch->points, k), .chosen = read_chosen(query, k)};

@@ -2,7 +2,8 @@
  *
  * doubles.h - double lanes, for what single precision is not enough for: half as many as floats, and one if there is
  * one. Sums, differences, products and quotients are the language's own operators, and so are & | ~ of predicates. All
- * are correctly rounded, as in simd.h.
+ * are correctly rounded, as in simd.h; other operations do what theirs of floats do. d_of_lanes(m, h) is what a predicate
+ * of floats says of lanes h ..., 0 or D_WIDTH; d_pack(m, a) packs the lanes m.
  */
 #ifndef NARC_SIMD_DOUBLES_H
 #define NARC_SIMD_DOUBLES_H
@@ -12,14 +13,18 @@
 #if V_WIDTH == 1
 enum { D_WIDTH = 1 };
 typedef double vd;
-typedef int64_t vl; /* a predicate: 0 or -1 in each lane */
+typedef int64_t vl; /* a predicate: 0 or -1 in each lane, or a mask register's bits */
 
 INLINE vd d_set(double a) { return a; }
 INLINE vl d_lt(vd a, vd b) { return -(vl)(a < b); }
 INLINE vl d_le(vd a, vd b) { return -(vl)(a <= b); }
 INLINE vd d_select(vl m, vd a, vd b) { return m ? a : b; }
 INLINE vd d_sqrt(vd a) { return sqrt(a); }
+INLINE vd d_abs(vd a) { return fabs(a); }
+INLINE vd d_min(vd a, vd b) { return a < b ? a : b; }
 INLINE int d_any(vl m) { return m != 0; }
+INLINE vl d_of_lanes(vm m, int h) { return -(vl)(m << h); }
+INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
 INLINE vd d_of_floats(const float *p) { return (double)*p; }
 INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
 #else
@@ -32,42 +37,68 @@ INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
 #endif
 enum { D_WIDTH = V_WIDTH / 2 };
 typedef double vd VECTOR_OF(8 * V_WIDTH / 2);
-typedef int64_t vl VECTOR_OF(8 * V_WIDTH / 2);
 
 INLINE vd d_set(double a) { return a - (vd){0}; }
-INLINE vl d_lt(vd a, vd b) { return (vl)(a < b); }
-INLINE vl d_le(vd a, vd b) { return (vl)(a <= b); }
-INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
 /* Conversions by intrinsics: GCC 12 takes (double)(float)a for a, where it makes vectors of such lanes itself. */
 #if V_WIDTH == 16
+typedef uint32_t vl;
+INLINE vl d_lt(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+INLINE vl d_le(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+INLINE vd d_select(vl m, vd a, vd b) { return _mm512_mask_blend_pd((__mmask8)m, b, a); }
 INLINE vd d_sqrt(vd a) { return _mm512_sqrt_pd(a); }
+INLINE vd d_abs(vd a) { return _mm512_abs_pd(a); }
+INLINE vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
+INLINE int d_any(vl m) { return (__mmask8)m != 0; }
+INLINE vl d_of_lanes(vm m, int h) { return (vl)m >> h; }
+INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); }
 INLINE vd d_of_floats(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a)); }
-#elif V_WIDTH == 8
+#else
+typedef int64_t vl VECTOR_OF(8 * V_WIDTH / 2);
+INLINE vl d_lt(vd a, vd b) { return (vl)(a < b); }
+INLINE vl d_le(vd a, vd b) { return (vl)(a <= b); }
+INLINE vd d_abs(vd a) { return (vd)((vl)a & INT64_MAX); }
+INLINE vd d_pack(vl m, vd a) { return (vd)v_pack(vm_packing((vm)m), (vf)a); }
+#if V_WIDTH == 8
+INLINE vd d_select(vl m, vd a, vd b) { return _mm256_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm256_sqrt_pd(a); }
+INLINE vd d_min(vd a, vd b) { return _mm256_min_pd(a, b); }
+INLINE int d_any(vl m) { return _mm256_movemask_pd((vd)m) != 0; }
+INLINE vl d_of_lanes(vm m, int h) {
+    const __m256i all = _mm256_castps_si256(m);
+    return (vl)_mm256_cvtepi32_epi64(h ? _mm256_extracti128_si256(all, 1) : _mm256_castsi256_si128(all));
+}
 INLINE vd d_of_floats(const float *p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a)); }
 #elif defined(__SSE2__)
+INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
+INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
+INLINE int d_any(vl m) { return _mm_movemask_pd((vd)m) != 0; }
+INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 INLINE vd d_of_floats(const float *p) {
     return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
 INLINE void d_put_floats(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a))); }
-#elif defined(__aarch64__)
+#else
+INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
+INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
+INLINE int d_any(vl m) { return (m[0] | m[1]) != 0; }
+#if defined(__aarch64__)
+INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? vzip2q_u32(m, m) : vzip1q_u32(m, m)); }
 INLINE vd d_sqrt(vd a) { return (vd)vsqrtq_f64((float64x2_t)a); }
 INLINE vd d_of_floats(const float *p) { return (vd)vcvt_f64_f32(vld1_f32(p)); }
 INLINE void d_put_floats(float *p, vd a) { vst1_f32(p, vcvt_f32_f64((float64x2_t)a)); }
 #else
+INLINE vl d_of_lanes(vm m, int h) {
+    return (vl)(h ? wasm_i32x4_shuffle(m, m, 2, 2, 3, 3) : wasm_i32x4_shuffle(m, m, 0, 0, 1, 1));
+}
 INLINE vd d_sqrt(vd a) { return (vd)wasm_f64x2_sqrt((v128_t)a); }
 INLINE vd d_of_floats(const float *p) { return (vd)wasm_f64x2_promote_low_f32x4(wasm_v128_load64_zero(p)); }
 INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_demote_f64x2_zero((v128_t)a), 0); }
 #endif
-INLINE int d_any(vl m) {
-    int64_t all = 0;
-    for (int l = 0; l < D_WIDTH; l++)
-        all |= m[l];
-    return all != 0;
-}
+#endif
+#endif
 #endif
 
 INLINE vd d_load(const double *p) {
@@ -76,7 +107,5 @@ INLINE vd d_load(const double *p) {
     return a;
 }
 INLINE void d_store(double *p, vd a) { memcpy(p, &a, sizeof a); }
-INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
-INLINE vd d_abs(vd a) { return d_select(d_lt(a, d_set(0)), -a, a); }
 
 #endif

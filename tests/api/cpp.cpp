@@ -315,6 +315,10 @@ void test_contacts() {
     CHECK(std::memcmp(rows.data(), expected.data(), found * sizeof rows[0]) == 0);
     rows.resize(2 * n);
     CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, narc::query(), rows).value().size() == found);
+    std::vector<narc_refined_contact> refined;
+    const narc::span<const narc_contact> contacts(rows.data(), found);
+    CHECK(narc::refine_contacts(scene.shapes, scene.bodies, scene.batch, {}, contacts, refined));
+    CHECK(refined.size() == found && std::fabs(refined[0].separation - static_cast<double>(rows[0].separation)) < 1e-6);
     CHECK(rows.size() == 2 * n);
     const auto points = narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, narc::query(), manifolds).value();
     CHECK(points.size() == found && same(points[found - 1], expected_manifolds[found - 1]));
@@ -372,6 +376,22 @@ void test_overlaps() {
     CHECK(array[0] == (bits[0] >> 5 & 1));
     CHECK(narc::find_overlaps(scene.shapes, scene.bodies, scene.batch,
                               narc::query().selection(narc::span<const uint32_t>()), narc::span<uint64_t>()));
+}
+
+void test_separations() {
+    const Scene scene = make_scene(100);
+    const auto query = narc::query().margin(INFINITY);
+    std::vector<float> separations;
+    std::vector<narc_contact> contacts;
+    float few[1];
+    CHECK(narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, separations));
+    const auto found = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, contacts).value();
+    CHECK(separations.size() == found.size());
+    for (size_t k = 0; k < found.size(); k++)
+        CHECK(separations[k] <= found[k].separation && separations[k] >= found[k].separation);
+    const auto short_by_one = narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, few);
+    CHECK(status_of(short_by_one) == NARC_ERROR_CAPACITY &&
+          short_by_one.error().value == static_cast<double>(found.size()));
 }
 
 void test_small_batches() {
@@ -644,6 +664,7 @@ int main() {
     test_query();
     test_contacts();
     test_overlaps();
+    test_separations();
     test_small_batches();
     test_workers();
     test_broad_phase();

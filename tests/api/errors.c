@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * errors.c - wrong arguments of the queries, by every method: each has its status and a message that names the culprit,
- * and no output is touched; bodies that are none, and lists that are too short.
+ * errors.c - wrong arguments, in every question: each has its status and a message that names the culprit, and no
+ * output is touched; and lists that are too short.
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,93 +10,58 @@
 
 #include "expect.h"
 #include "guard.h"
-#include "methods.h"
+#include "questions.h"
 
-enum { PAIRS = 200, BODIES = 30, METHODS = 7 };
-
-static bool has_contacts(narc_method method) { return method < NARC_METHOD_CIRCLE; }
+enum { PAIRS = 200, BODIES = 30 };
 
 /* Outputs of all calls. */
 struct outputs {
-    uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+    narc_manifold rows[PAIRS]; /* of others and bits, too */
     uint32_t hints[PAIRS];
     uint8_t outcomes[PAIRS];
-    narc_manifold rows[PAIRS]; /* of contacts, too */
     size_t count, skipped;
 };
 
-/* What a wrong call is made of, beside outputs: those of `query` and `options` are set for each call. */
+/* What a wrong call is made of, beside outputs: those of `query` are set for each call. */
 struct call {
-    const narc_shapes *shapes;
-    const narc_methods *methods;
+    const void *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    narc_method_options options;
     narc_query query;
 };
 
-/* The calls, bits: by a method they are BY times those. */
-enum { OVERLAPS = 1, CONTACTS = 2, MANIFOLDS = 4, LISTS = CONTACTS | MANIFOLDS, PLAIN = OVERLAPS | LISTS, BY = 8 };
-enum { BY_METHODS = BY * (OVERLAPS | CONTACTS), ALL = PLAIN | BY_METHODS };
-
-static narc_status run(const struct call *call, int kind, struct outputs *out, narc_error *error) {
-    void *rows = out->rows;
-    switch (kind) {
-    case OVERLAPS:
-        return narc_find_overlaps(call->shapes, call->bodies, call->pairs, &call->query, out->bits, error);
-    case CONTACTS:
-        return narc_find_contacts(call->shapes, call->bodies, call->pairs, &call->query, rows, PAIRS, &out->count,
-                                  error);
-    case MANIFOLDS:
-        return narc_find_manifolds(call->shapes, call->bodies, call->pairs, &call->query, rows, PAIRS, &out->count,
-                                   error);
-    case BY *OVERLAPS:
-        return narc_find_overlaps_by(call->methods, call->bodies, call->pairs, &call->options, &call->query, out->bits,
-                                     error);
-    default:
-        return narc_find_contacts_by(call->methods, call->bodies, call->pairs, &call->options, &call->query, rows,
-                                     PAIRS, &out->count, error);
-    }
+static narc_status run(const struct question *question, const struct call *call, struct outputs *out,
+                       narc_error *error) {
+    narc_query query = call->query;
+    query.hints = NARC_HINT_ARRAY(out->hints);
+    query.out_skipped = &out->skipped;
+    const struct asked asked = {call->shapes, call->bodies, call->pairs, &query,
+                                out->rows,    PAIRS,        &out->count, out->outcomes};
+    return question->ask(question, &asked, error);
 }
 
-static void check_error(narc_status status, narc_status expected, const narc_error *error, const char *const texts[],
-                        size_t text_count) {
-    for (size_t k = 0; k < text_count; k++)
-        expect_error(status, expected, error, texts[k]);
-    expect_error(status, expected, error, "");
-}
-
-/* The calls in `kinds`, with an error to fill and without, and some numbers of threads: always the same error, and
- * nothing is written. */
-static void check_call(const struct call *wrong, int kinds, narc_status expected, const char *const texts[],
-                       size_t text_count) {
+/* With an error to fill and without, and some numbers of threads: always the same error, and nothing is written. */
+static void check_call(const struct question *question, struct call call, narc_status expected,
+                       const char *const texts[], size_t text_count) {
     struct outputs *out = make_junk(sizeof *out);
-    for (unsigned run_number = 0; run_number < 3; run_number++) {
-        const narc_workers workers = narc_openmp_workers(run_number);
-        struct call call = *wrong;
-        call.query.hints = NARC_HINT_ARRAY(out->hints);
+    for (unsigned threads = 0; threads < 3; threads++) {
+        const narc_workers workers = narc_openmp_workers(threads);
         call.query.workers = &workers;
-        call.query.out_skipped = &out->skipped;
-        call.options.out_outcomes = out->outcomes;
-        for (int kind = 1; kind <= kinds; kind *= 2) {
-            if (!(kinds & kind) || (kind == BY * CONTACTS && !has_contacts(call.options.method)))
-                continue;
-            narc_error error = {0};
-            check_error(run(&call, kind, out, &error), expected, &error, texts, text_count);
-            assert_int_equal(run(&call, kind, out, NULL), expected);
-        }
+        narc_error error = {0};
+        const narc_status status = run(question, &call, out, &error);
+        expect_error(status, expected, &error, "");
+        for (size_t k = 0; k < text_count; k++)
+            expect_error(status, expected, &error, texts[k]);
+        assert_int_equal(run(question, &call, out, NULL), expected);
     }
     assert_true(is_junk(out, sizeof *out));
     free(out);
 }
 
-/* What is wrong with a batch is so with every method. */
+/* What is wrong with a batch is so in every question. */
 static void check_batch(struct call call, narc_status expected, const char *const texts[], size_t text_count) {
-    check_call(&call, PLAIN, expected, texts, text_count);
-    for (int method = 0; method < METHODS; method++) {
-        call.options.method = (narc_method)method;
-        check_call(&call, BY_METHODS, expected, texts, text_count);
-    }
+    for (size_t q = 0; q < question_count; q++)
+        check_call(&questions[q], call, expected, texts, text_count);
 }
 
 #define NAMES(...) (const char *const[]){__VA_ARGS__}, sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *)
@@ -114,64 +79,43 @@ static void set_up(struct fixture *f) {
     f->scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     f->bodies = scene_bodies(&f->scene);
     f->pairs = scene_pairs(&f->scene);
-    f->call = (struct call){.shapes = f->scene.store,
-                            .methods = scene_methods(&f->scene),
-                            .bodies = &f->bodies,
-                            .pairs = &f->pairs,
-                            .query = {.margin = INFINITY}};
+    f->call = (struct call){take_shapes(f->scene.store, NULL), &f->bodies, &f->pairs, {.margin = INFINITY}};
+}
+
+static void tear_down(struct fixture *f) {
+    release_shapes(f->call.shapes);
+    destroy_scene(&f->scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ arguments */
 
-TEST(test_options) {
-    struct fixture f;
-    set_up(&f);
-    static const int bad_methods[] = {METHODS, 100, -1, INT32_MAX, INT32_MIN};
-    for (size_t k = 0; k < sizeof bad_methods / sizeof *bad_methods; k++) {
-        char number[16];
-        snprintf(number, sizeof number, "%d", bad_methods[k]);
-        f.call.options.method = (narc_method)bad_methods[k];
-        check_call(&f.call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("method", number));
-    }
-    for (int method = 0; method < METHODS; method++) {
-        f.call.options = (narc_method_options){.method = (narc_method)method, .tolerance = NAN};
-        check_call(&f.call, BY_METHODS, NARC_ERROR_NOT_FINITE, NAMES("tolerance"));
-        f.call.options.tolerance = INFINITY;
-        check_call(&f.call, BY_METHODS, NARC_ERROR_NOT_FINITE, NAMES("tolerance", "inf"));
-        f.call.options.tolerance = -INFINITY;
-        check_call(&f.call, BY_METHODS, NARC_ERROR_NOT_FINITE, NAMES("tolerance", "-inf"));
-        f.call.options.tolerance = -0.25f;
-        check_call(&f.call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("tolerance", "-0.25"));
-        f.call.options.tolerance = 0;
-        f.call.options.reserved[3] = &f;
-        check_call(&f.call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("reserved"));
-    }
-    destroy_scene(&f.scene);
-}
-
 TEST(test_queries) {
     struct fixture f;
     set_up(&f);
+    enum { MANIFOLDS = sizeof(narc_manifold) };
     static const struct {
         narc_query query;
-        int kinds;
+        size_t row_size; /* of such rows alone; 0: of all */
         narc_status status;
         const char *words;
     } cases[] = {
-        {{.margin = NAN}, LISTS | BY * CONTACTS, NARC_ERROR_NOT_FINITE, "margin"},
+        {{.margin = NAN}, 0, NARC_ERROR_NOT_FINITE, "margin"},
         {{.second_margin = NAN}, MANIFOLDS, NARC_ERROR_NOT_FINITE, "second_margin"},
         {{.flat_angle = NAN}, MANIFOLDS, NARC_ERROR_NOT_FINITE, "flat_angle"},
         {{.flat_angle = 1.6f}, MANIFOLDS, NARC_ERROR_ARGUMENT, "flat_angle is 1.6"},
-        {{.row_stride = 4}, LISTS | BY * CONTACTS, NARC_ERROR_ARGUMENT, "row_stride"},
-        {{.row_stride = sizeof(narc_contact) - 4}, LISTS | BY * CONTACTS, NARC_ERROR_ARGUMENT, "row_stride"},
+        {{.row_stride = 4}, 0, NARC_ERROR_ARGUMENT, "row_stride"},
+        {{.row_stride = sizeof(narc_contact) - 4}, 0, NARC_ERROR_ARGUMENT, "row_stride"},
         {{.row_stride = sizeof(narc_manifold) - 4}, MANIFOLDS, NARC_ERROR_ARGUMENT, "row_stride"},
-        {{.row_stride = 66}, LISTS | BY * CONTACTS, NARC_ERROR_ARGUMENT, "row_stride"},
-        {{.row_stride = 129}, LISTS | BY * CONTACTS, NARC_ERROR_ARGUMENT, "row_stride"},
-        {{.row_stride = -32}, LISTS | BY * CONTACTS, NARC_ERROR_ARGUMENT, "row_stride"},
+        {{.row_stride = 66}, 0, NARC_ERROR_ARGUMENT, "row_stride"},
+        {{.row_stride = 129}, 0, NARC_ERROR_ARGUMENT, "row_stride"},
+        {{.row_stride = -32}, 0, NARC_ERROR_ARGUMENT, "row_stride"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         f.call.query = cases[k].query;
-        check_call(&f.call, cases[k].kinds, cases[k].status, &cases[k].words, 1);
+        for (size_t q = 0; q < question_count; q++)
+            if (questions[q].row_size && !questions[q].polygons && /* there are others */
+                (!cases[k].row_size || cases[k].row_size == questions[q].row_size))
+                check_call(&questions[q], f.call, cases[k].status, &cases[k].words, 1);
     }
     f.call.query = (narc_query){.selection_count = 1};
     check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("selection is NULL"));
@@ -180,7 +124,7 @@ TEST(test_queries) {
         f.call.query.reserved[k] = &f;
         check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("reserved"));
     }
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 TEST(test_null_arguments) {
@@ -188,9 +132,7 @@ TEST(test_null_arguments) {
     set_up(&f);
     struct call call = f.call;
     call.shapes = NULL;
-    check_call(&call, PLAIN, NARC_ERROR_ARGUMENT, NAMES("shapes"));
-    call.methods = NULL;
-    check_call(&call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("methods"));
+    check_batch(call, NARC_ERROR_ARGUMENT, &shapes_name, 1);
     call = f.call;
     call.bodies = NULL;
     check_batch(call, NARC_ERROR_ARGUMENT, NAMES("bodies"));
@@ -232,7 +174,7 @@ TEST(test_null_arguments) {
         f.bodies = bodies;
         f.pairs = pairs;
     }
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 /* A pair that names a body there is not, whichever of those that are looked at at once, in plain arrays and in rows of
@@ -259,27 +201,37 @@ TEST(test_body_index) {
         snprintf(body, sizeof(body), "%lu", (unsigned long)wrong[k % 8 / 2]);
         snprintf(number, sizeof(number), "%zu", pair);
         check_batch(f.call, NARC_ERROR_INDEX, NAMES(number, body));
-        destroy_scene(&f.scene);
+        tear_down(&f);
     }
 }
 
 /* Several threads look; the first wrong pair of all is still the one that is told. */
 TEST(test_first_wrong_pair) {
+    enum { MANY = 9000 };
     struct test_random random = test_random_named("first wrong pair");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, 9000);
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, MANY);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    narc_contact *rows = make_junk(9000 * sizeof *rows);
+    const void *shapes = take_shapes(scene.store, NULL);
+    narc_manifold *rows = make_junk(MANY * sizeof *rows);
+    uint8_t *outcomes = make_junk(MANY);
+    uint32_t *hints = make_junk(MANY * sizeof *hints);
     scene.pairs[8111].a = scene.pairs[4055].b = scene.pairs[4056].a = 5005;
-    for (unsigned threads = 0; threads < 6; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
+    for (size_t k = 0; k < 6 * question_count; k++) {
+        const narc_workers workers = narc_openmp_workers((unsigned)(k % 6));
+        const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &workers};
         size_t found;
+        const struct asked asked = {shapes, &bodies, &pairs, &query, rows, MANY, &found, outcomes};
         narc_error error = {0};
-        const narc_status status = narc_find_contacts(scene.store, &bodies, &pairs, &(narc_query){.workers = &workers},
-                                                      rows, 9000, &found, &error);
-        check_error(status, NARC_ERROR_INDEX, &error, NAMES("4055", "5005"));
+        const narc_status status = questions[k / 6].ask(&questions[k / 6], &asked, &error);
+        expect_error(status, NARC_ERROR_INDEX, &error, "4055");
+        expect_error(status, NARC_ERROR_INDEX, &error, "5005");
         assert_int_equal(error.index, 4055);
     }
+    assert_true(is_junk(hints, MANY * sizeof *hints) && is_junk(outcomes, MANY));
+    release_shapes(shapes);
+    free(hints);
+    free(outcomes);
     free(rows);
     destroy_scene(&scene);
 }
@@ -294,7 +246,7 @@ TEST(test_shape_index) {
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23", "4711"));
     f.scene.bodies[23].shape = (uint32_t)narc_count_shapes(f.scene.store);
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23"));
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 /* Of two sets of bodies, either of which may have a shape that there is not. */
@@ -314,7 +266,7 @@ TEST(test_shapes_of_two_sets) {
     f.scene.bodies[22].shape = 4712;
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "22", "4712"));
     free(others);
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 /* A selection that names a pair there is not, or a pair that names a body there is not. What is not asked of may be
@@ -323,45 +275,47 @@ TEST(test_selections) {
     struct fixture f;
     set_up(&f);
     uint32_t selection[] = {150, 3, PAIRS, 7};
-    f.call.query.selection = (narc_index_column){selection, sizeof *selection};
+    f.call.query.selection = NARC_ARRAY(selection);
     f.call.query.selection_count = 4;
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("selection", "200"));
     selection[2] = 10;
     f.scene.pairs[3].b = 4711;
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("pair 3", "4711"));
-    struct outputs *out = make_junk(sizeof *out);
-    narc_error error;
+    struct call range = f.call;
+    range.query = (narc_query){.first = 64};
     selection[1] = 4;
-    expect_ok(run(&f.call, OVERLAPS, out, &error), &error);
-    expect_ok(run(&f.call, CONTACTS, out, &error), &error);
-    assert_int_equal(out->count, 4);
+    struct outputs *out = make_junk(sizeof *out);
+    for (size_t q = 0; q < question_count; q++) {
+        narc_error error;
+        if (questions[q].polygons)
+            continue; /* there are others */
+        expect_ok(run(&questions[q], &range, out, &error), &error);
+        out->count = 4;
+        expect_ok(run(&questions[q], &f.call, out, &error), &error);
+        assert_int_equal(out->count, 4);
+    }
+    free(out);
     static const size_t too_many[] = {PAIRS + 1, UINT32_MAX, SIZE_MAX};
     for (size_t k = 0; k < sizeof too_many / sizeof *too_many; k++) {
         f.call.query.selection_count = too_many[k];
         check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("query.selection_count", "200 pairs"));
     }
-    f.call.query.selection = (narc_index_column){0};
-    f.call.query.selection_count = 0;
-    f.call.query.first = 64;
-    expect_ok(run(&f.call, OVERLAPS, out, &error), &error);
-    free(out);
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 /* No body at all, and no shape at all. */
 TEST(test_empty_tables) {
     struct fixture f;
     set_up(&f);
-    const struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
+    struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
     struct call call = f.call;
-    call.shapes = empty.store;
-    call.methods = scene_methods(&empty);
+    call.shapes = take_shapes(empty.store, NULL);
     check_batch(call, NARC_ERROR_INDEX, NAMES("pair 0"));
     f.bodies = (narc_bodies){0};
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("pair 0"));
-    struct scene done = empty;
-    destroy_scene(&done);
-    destroy_scene(&f.scene);
+    release_shapes(call.shapes);
+    destroy_scene(&empty);
+    tear_down(&f);
 }
 
 TEST(test_too_many_pairs) {
@@ -372,7 +326,7 @@ TEST(test_too_many_pairs) {
     static const uint32_t first_body = 0;
     f.pairs = (narc_pairs){.count = (size_t)UINT32_MAX + 1, .a = {&first_body, 0}, .b = {&first_body, 0}};
     check_batch(f.call, NARC_ERROR_ARGUMENT, NULL, 0);
-    destroy_scene(&f.scene);
+    tear_down(&f);
 #endif
 }
 
@@ -394,81 +348,36 @@ TEST(test_ranges) {
         for (size_t k = 0; k < sizeof(bad_for_bits) / sizeof(bad_for_bits[0]); k++) {
             f.call.query.first = bad_for_bits[k][0];
             f.call.query.count = bad_for_bits[k][1];
-            check_call(&f.call, OVERLAPS | BY * OVERLAPS, NARC_ERROR_ARGUMENT, NULL, 0);
+            for (size_t q = 0; q < question_count; q++)
+                if (!questions[q].row_size)
+                    check_call(&questions[q], f.call, NARC_ERROR_ARGUMENT, NULL, 0);
         }
-        f.call.query.selection = (narc_index_column){selection, sizeof *selection};
+        f.call.query.selection = NARC_ARRAY(selection);
         f.call.query.selection_count = PAIRS;
     }
-    destroy_scene(&f.scene);
+    tear_down(&f);
 }
 
 TEST(test_outputs) {
     struct fixture f;
     set_up(&f);
-    const narc_shapes *store = f.scene.store;
-    narc_contact rows[3];
-    narc_manifold points[3];
-    uint8_t outcomes[PAIRS];
-    size_t count;
-    narc_error error;
-    memset(rows, 0xa5, sizeof rows);
-    memset(points, 0xa5, sizeof points);
-    memset(outcomes, 0xa5, sizeof outcomes);
-    memset(&count, 0xa5, sizeof count);
-#define EXPECT(call, word) expect_error(call, NARC_ERROR_ARGUMENT, &error, word)
-    EXPECT(narc_find_overlaps(store, &f.bodies, &f.pairs, NULL, NULL, &error), "out_bits");
-    EXPECT(narc_find_contacts(store, &f.bodies, &f.pairs, NULL, NULL, 3, &count, &error), "out_rows");
-    EXPECT(narc_find_contacts(store, &f.bodies, &f.pairs, NULL, rows, 3, NULL, &error), "out_count");
-    EXPECT(narc_find_manifolds(store, &f.bodies, &f.pairs, NULL, NULL, 3, &count, &error), "out_rows");
-    EXPECT(narc_find_manifolds(store, &f.bodies, &f.pairs, NULL, points, 3, NULL, &error), "out_count");
-    for (int method = 0; method < METHODS; method++) {
-        if (method == NARC_METHOD_POLYGON_SAT)
-            continue; /* not of these shapes */
-        const narc_method_options o = {.method = (narc_method)method, .out_outcomes = outcomes};
-        const narc_methods *methods = f.call.methods;
-        const char *name = narc_method_name(o.method);
-        EXPECT(narc_find_overlaps_by(methods, &f.bodies, &f.pairs, &o, NULL, NULL, &error), "out_bits");
-        EXPECT(narc_find_contacts_by(methods, &f.bodies, &f.pairs, &o, NULL, NULL, 3, &count, &error),
-               has_contacts(o.method) ? "out_rows" : name);
-        EXPECT(narc_find_contacts_by(methods, &f.bodies, &f.pairs, &o, NULL, rows, 3, NULL, &error),
-               has_contacts(o.method) ? "out_count" : name);
+    struct outputs *out = make_junk(sizeof *out);
+    for (size_t q = 0; q < question_count; q++) {
+        const struct question *question = &questions[q];
+        struct asked asked = {f.call.shapes, &f.bodies, &f.pairs, NULL, NULL, 3, &out->count, out->outcomes};
+        narc_error error;
+        if (question->polygons)
+            continue; /* there are others */
+        expect_error(question->ask(question, &asked, &error), NARC_ERROR_ARGUMENT, &error,
+                     question->row_size ? "out_rows" : "out_bits");
+        asked.rows = out->rows;
+        asked.out_count = NULL;
+        if (question->row_size)
+            expect_error(question->ask(question, &asked, &error), NARC_ERROR_ARGUMENT, &error, "out_count");
     }
-#undef EXPECT
-    float angle = 0, cosine = 7, sine = 7;
-    assert_int_equal(narc_compute_poses(NULL, 1, &cosine, &sine, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_compute_poses(&angle, 1, NULL, &sine, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_compute_poses(&angle, 1, &cosine, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_true(cosine == 7 && sine == 7);
-    assert_true(is_junk(rows, sizeof rows) && is_junk(points, sizeof points) && is_junk(&count, sizeof count));
-    assert_true(is_junk(outcomes, sizeof outcomes));
-    destroy_scene(&f.scene);
-}
-
-/* The first pair whose shape is not a polygon is the one that is told, and the shape and the body. */
-TEST(test_not_a_polygon) {
-    struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
-    const struct shape box = box_of(1, 1, 0), round = box_of(1, 1, 0.1);
-    scene_add_shape(&scene, &box);
-    scene_add_shape(&scene, &round);
-    for (uint32_t k = 0; k < 40; k++) {
-        struct body body = turned_body(0.1 * k, 1);
-        body.shape = k == 23 || k == 31;
-        scene_add_body(&scene, body);
-    }
-    for (uint32_t k = 0; k < PAIRS; k++)
-        scene_add_pair(&scene, k % 20, (k + 1) % 20);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    const struct call call = {.methods = scene_methods(&scene),
-                              .bodies = &bodies,
-                              .pairs = &pairs,
-                              .options = {.method = NARC_METHOD_POLYGON_SAT}};
-    free(query_overlaps(&scene, &call.options, NULL));
-    scene.pairs[171].a = 31;
-    check_call(&call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("pair 171", "shape 1", "body 31"));
-    scene.pairs[66].b = 23;
-    check_call(&call, BY_METHODS, NARC_ERROR_ARGUMENT, NAMES("pair 66", "shape 1", "body 23"));
-    destroy_scene(&scene);
+    assert_true(is_junk(out, sizeof *out));
+    free(out);
+    tear_down(&f);
 }
 
 /* No pairs: nothing is needed, nothing is written. */
@@ -476,136 +385,72 @@ TEST(test_no_pairs) {
     struct fixture f;
     set_up(&f);
     struct outputs *out = make_junk(sizeof *out);
-    f.pairs.count = 0;
-    f.call.query.hints = NARC_HINT_ARRAY(out->hints);
-    f.call.options.out_outcomes = out->outcomes;
-    for (int method = 0; method < METHODS; method++) {
-        f.call.options.method = (narc_method)method;
-        for (int kind = 1; kind <= ALL; kind *= 2) {
-            if (!(ALL & kind) || (kind == BY * CONTACTS && !has_contacts(f.call.options.method)))
-                continue;
-            out->count = 12345;
-            assert_int_equal(run(&f.call, kind, out, NULL), NARC_OK);
-            if (kind & (LISTS | BY * CONTACTS))
-                assert_int_equal(out->count, 0);
-            memset(&out->count, 0xa5, sizeof out->count);
-            assert_true(is_junk(out, sizeof *out));
-        }
+    f.pairs = (narc_pairs){0};
+    for (size_t k = 0; k < 6 * question_count; k++) {
+        const struct question *question = &questions[k / 6];
+        const narc_workers workers = narc_openmp_workers((unsigned)(k % 3));
+        f.call.query = (narc_query){.dense = k % 2, .workers = &workers};
+        f.bodies.count = k % 6 < 3 ? 0 : BODIES;
+        out->skipped = 12345;
+        out->count = question->row_size ? 12345 : 0;
+        assert_int_equal(run(question, &f.call, out, NULL), NARC_OK);
+        assert_true(out->count == 0 && out->skipped == 0);
+        memset(&out->count, GUARD_JUNK, 2 * sizeof out->count);
+        assert_true(is_junk(out, sizeof *out));
     }
     free(out);
-    destroy_scene(&f.scene);
-}
-
-TEST(test_names) {
-    static const char *const names[METHODS] = {"sat", "sat-first", "polygon-sat", "gjk", "circle", "aabb", "obb"};
-    for (int method = 0; method < METHODS; method++)
-        assert_string_equal(narc_method_name((narc_method)method), names[method]);
-    assert_null(narc_method_name((narc_method)METHODS));
-    assert_null(narc_method_name((narc_method)-1));
+    tear_down(&f);
 }
 
 /* ------------------------------------------------------------------------------------------------ capacity */
 
-/* What fits is the start of the list; hints and outcomes are as with enough room. */
+/* What fits is the start of the list, the needed size is told, nothing behind the list is written; hints and outcomes
+ * are as with enough room. No list at all: the call counts. */
 TEST(test_capacity) {
     enum { MANY = 3000 };
-    struct test_random random = test_random_named("method capacity");
-    static const narc_method methods[] = {NARC_METHOD_SAT, NARC_METHOD_SAT_FIRST, NARC_METHOD_GJK};
-    for (int m = 0; m < 3; m++) {
-        struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, MANY);
+    struct test_random random = test_random_named("capacity");
+    for (size_t q = 0; q < question_count; q++) {
+        const struct question *question = &questions[q];
+        if (!question->row_size)
+            continue;
+        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 200, MANY);
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
-        uint32_t *hints = create_hints(MANY), *enough_hints = create_hints(MANY);
-        uint8_t *outcomes = create_outcomes(MANY), *enough_outcomes = create_outcomes(MANY);
-        const narc_method_options enough = {.method = methods[m], .out_outcomes = enough_outcomes};
-        const narc_method_options options = {.method = methods[m], .out_outcomes = outcomes};
-        struct contacts all = query_contacts(&scene, &enough, &(narc_query){.hints = NARC_HINT_ARRAY(enough_hints)});
+        const void *shapes = take_shapes(scene.store, NULL);
+        uint32_t *hints = create_hints(MANY);
+        uint8_t *outcomes = make_junk(MANY);
+        struct answer all = ask_scene(question, &scene, (narc_query){0}, hints);
+        const size_t fixed[] = {0, 1, 63, 64, 65, all.count - 1, all.count};
         assert_true(all.count > 100);
-        for (unsigned threads = 1; threads <= 2; threads++) {
-            const narc_workers workers = narc_openmp_workers(threads);
-            const size_t capacity = all.count - 1 - random_below(&random, all.count - 1);
-            narc_contact *shorter = guard_allocate(capacity * sizeof *shorter);
+        for (size_t trial = 0; trial < 24; trial++) {
+            const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
+            const size_t capacity = trial < 7 ? fixed[trial] : random_below(&random, all.count);
+            void *shorter = guard_allocate(answer_size(question, capacity));
             size_t skipped = 12345, needed;
-            const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &workers, .out_skipped = &skipped};
-            narc_error error;
+            narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &workers, .out_skipped = &skipped};
+            query.row_stride = trial % 2 ? (ptrdiff_t)question->row_size : 0;
+            const struct asked asked = {shapes,   &bodies, &pairs,  &query, trial ? shorter : NULL,
+                                        capacity, &needed, outcomes};
+            narc_error error = {0};
             memset(hints, 0, MANY * sizeof *hints);
-            expect_error(narc_find_contacts_by(scene_methods(&scene), &bodies, &pairs, &options, &query, shorter,
-                                               capacity, &needed, &error),
-                         NARC_ERROR_CAPACITY, &error, "rows");
+            const narc_status status = question->ask(question, &asked, &error);
+            if (capacity < all.count)
+                expect_error(status, NARC_ERROR_CAPACITY, &error, "rows");
+            else
+                expect_ok(status, &error);
             assert_int_equal(needed, all.count);
             assert_int_equal(skipped, 0);
-            assert_memory_equal(shorter, all.rows, capacity * sizeof *shorter);
-            assert_memory_equal(hints, enough_hints, MANY * sizeof *hints);
-            assert_memory_equal(outcomes, enough_outcomes, MANY);
+            assert_memory_equal(shorter, all.rows, answer_size(question, capacity));
+            assert_memory_equal(hints, all.hints, MANY * sizeof *hints);
+            assert_memory_equal(outcomes, all.outcomes, MANY);
             guard_release(shorter);
         }
         free(hints);
-        free(enough_hints);
         free(outcomes);
-        free(enough_outcomes);
-        free(all.rows);
+        destroy_answer(&all);
+        release_shapes(shapes);
         destroy_scene(&scene);
     }
-}
-
-/* --------------------------------------------------------------------------------------------- bodies that are none */
-
-/* All pairs of two squares in one place, one of them with a quantity spoilt. */
-static struct scene make_spoilt_scene(void) {
-    static const float spoilt[] = {NAN, INFINITY, -INFINITY};
-    struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 64);
-    const struct shape box = box_of(1, 1, 0);
-    scene_add_shape(&scene, &box);
-    const uint32_t good = scene_add_body(&scene, turned_body(0.5, 1));
-    for (int k = 0; k < 19; k++) {
-        const uint32_t bad = scene_add_body(&scene, turned_body(0.5, 1));
-        struct body *body = &scene.bodies[bad];
-        float *const values[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
-        if (k < 15)
-            *values[k / 3] = spoilt[k % 3];
-        else if (k == 15)
-            body->scale = 0;
-        else if (k == 16)
-            body->scale = -1;
-        else if (k == 17)
-            body->cosine = body->sine = 0;
-        else
-            body->cosine *= 1.01f;
-        scene_add_pair(&scene, good, bad);
-        scene_add_pair(&scene, bad, good);
-    }
-    return scene;
-}
-
-TEST(test_invalid_bodies) {
-    struct scene scene = make_spoilt_scene();
-    const size_t count = scene.pair_count;
-    for (int method = 0; method < METHODS; method++) {
-        uint8_t *outcomes = create_outcomes(count);
-        uint32_t *hints = create_hints(count);
-        size_t skipped = 0;
-        const narc_method_options options = {.method = (narc_method)method, .out_outcomes = outcomes};
-        narc_query query = {.hints = NARC_HINT_ARRAY(hints), .out_skipped = &skipped};
-        uint64_t *bits = query_overlaps(&scene, &options, &query);
-        assert_true(bits[0] == 0);
-        assert_int_equal(skipped, count);
-        for (int margin = 0; margin < 2 && has_contacts(options.method); margin++) {
-            query.margin = margin ? INFINITY : 1e30f;
-            struct contacts found = query_contacts(&scene, &options, &query);
-            assert_int_equal(found.count, margin ? count : 0);
-            assert_int_equal(skipped, count);
-            for (size_t k = 0; k < found.count; k++) {
-                const narc_contact none = {.pair = (uint32_t)k, .separation = INFINITY};
-                assert_int_equal(outcomes[k], NARC_OUTCOME_DONE);
-                assert_memory_equal(&found.rows[k], &none, sizeof none);
-            }
-            free(found.rows);
-        }
-        free(bits);
-        free(outcomes);
-        free(hints);
-    }
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("errors")

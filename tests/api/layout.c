@@ -25,6 +25,8 @@ static void check_numbers(void) {
     LAYOUT(narc_contact, 36,
            AT(pair, 0) && AT(feature, 4) && AT(count, 6) && AT(separation, 8) && AT(normal_x, 12) && AT(normal_y, 16) &&
                AT(point_x, 20) && AT(point_y, 24) && AT(radius_a, 28) && AT(radius_b, 32));
+    LAYOUT(narc_refined_contact, 40,
+           AT(separation, 0) && AT(normal_x, 8) && AT(normal_y, 16) && AT(point_x, 24) && AT(point_y, 32));
     LAYOUT(narc_manifold_point, 16, AT(x, 0) && AT(y, 4) && AT(separation, 8) && AT(feature, 12));
     LAYOUT(narc_manifold, 64,
            AT(pair, 0) && AT(count, 4) && AT(normal_x, 8) && AT(normal_y, 12) && AT(radius_a, 16) && AT(radius_b, 20) &&
@@ -90,6 +92,9 @@ static void check_pointers(void) {
                AT(hints, 32) && AT(selection, 48) && AT(selection_count, 64) && AT(first, 72) && AT(count, 80) &&
                AT(row_stride, 88) && AT(workers, 96) && AT(out_skipped, 104) && AT(front_only, 112) &&
                AT(reserved, 120));
+    LAYOUT(narc_refinement, 176,
+           AT(arcs, 0) && AT(cosine, 8) && AT(sine, 32) && AT(other_cosine, 56) && AT(other_sine, 80) &&
+               AT(shift_x, 104) && AT(shift_y, 128) && AT(workers, 152) && AT(reserved, 160));
     LAYOUT(narc_pair_options, 120,
            AT(margin, 0) && AT(skin, 4) && AT(motion_x, 8) && AT(motion_y, 24) && AT(reach, 40) && AT(id, 56) &&
                AT(filter, 72) && AT(workers, 80) && AT(reserved, 88));
@@ -105,10 +110,6 @@ static void check_pointers(void) {
                AT(reserved, 104));
     LAYOUT(narc_ray_options, 128,
            AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(reserved, 96));
-    LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
-    LAYOUT(narc_cast_options, 56,
-           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
-               AT(front_only, 40) && AT(reserved, 48));
     LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
     LAYOUT(narc_nearest_options, 120,
            AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));

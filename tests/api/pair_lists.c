@@ -54,9 +54,9 @@ typedef struct reference {
     narc_broad_phase *broads[OBJECTS];
 } reference;
 
-/* No more strays than there is room for. */
-static void check_strays(const narc_broad_phase *broad) {
-    assert_true(broad->stray_count <= narc_most_strays(broad->box_capacity));
+/* No more unsorted boxes than there is room for. */
+static void check_unsorted(const narc_broad_phase *broad) {
+    assert_true(broad->unsorted_count <= narc_most_unsorted(broad->box_capacity));
 }
 
 /* The calls where nothing fails. */
@@ -64,7 +64,7 @@ static const narc_pair_list *update_boxes(narc_broad_phase *broad, const narc_bo
                                           const narc_pair_options *options) {
     const narc_pair_list *list = NULL;
     assert_int_equal(narc_update_box_pairs(broad, boxes, count, options, &list, NULL), NARC_OK);
-    check_strays(broad);
+    check_unsorted(broad);
     return list;
 }
 
@@ -72,7 +72,7 @@ static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *
                                     const narc_pair_options *options) {
     const narc_pair_list *list = NULL;
     assert_int_equal(narc_update_pairs(broad, shapes, bodies, options, &list, NULL), NARC_OK);
-    check_strays(broad);
+    check_unsorted(broad);
     return list;
 }
 
@@ -335,8 +335,8 @@ static void check_step(reference *r, body *bodies, size_t count, bool with_ids, 
             sums->flipped += list->marks[k] >> 7;
     }
     sums->kept += !renew;
-    sums->few += renew && r->broads[0]->stray_count > 0;
-    assert_int_equal(r->broads[WHOLE]->stray_count, 0);
+    sums->few += renew && r->broads[0]->unsorted_count > 0;
+    assert_int_equal(r->broads[WHOLE]->unsorted_count, 0);
     sums->renewed += renew;
     known_pair *const last = r->pairs;
     r->pairs = r->next;

@@ -1,38 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * stack.c - every call of the library in a thread whose stack has NARC_STACK_SIZE bytes (other methods:
- * NARC_METHODS_STACK_SIZE), those of the C library among them, and the tasks of its workers in such threads, too. Below
- * each stack lies a forbidden megabyte: more ends the process, and the last line that it printed names the call. Stacks
- * are filled with junk before: what is left of it tells how much was used.
+ * stack.c - every call of the library in a thread whose stack has NARC_STACK_SIZE bytes, those of the C library among
+ * them, and the tasks of its workers in such threads, too.
  */
-#define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include <math.h>
-#include <pthread.h>
-#include <stdio.h>
-#include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
+#include <stdlib.h>
 
-#include "guard.h"
-#include "methods.h"
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
+#include "scene.h"
+#include "stacks.h"
 #include "turtle.h"
 
-/* Sanitizers make frames larger, and so does a compiler that does not optimise. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
-enum { LARGE_FRAMES = 1 };
-#elif defined(__has_feature)
-enum { LARGE_FRAMES = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) };
-#else
-enum { LARGE_FRAMES = 0 };
-#endif
+enum { BODIES = 1500, PAIRS = 30000, SHORT = PAIRS / 4, RING = 8 };
 
-enum { FORBIDDEN = 1 << 20, BODIES = 1500, PAIRS = 30000, SHORT = PAIRS / 4, RING = 8 };
-
-/* What calls work on: bodies of all shapes with columns for everything that pairs may have, polygons, and room for
- * answers; of lists too little, so that calls fill what they have for that. */
-static struct scene scene, polygons;
+/* What calls work on: bodies of all shapes with columns for everything that pairs may have, and room for answers; of
+ * lists too little, so that calls fill what they have for that. */
+static struct scene scene;
 static narc_shapes *store;
 static narc_bodies bodies, own, broken;
 static narc_pairs pairs;
@@ -44,10 +28,12 @@ static narc_broad_phase *broad;
 static const narc_pair_list *pair_list;
 static float margins[PAIRS], shifts[PAIRS], cosines[PAIRS], sines[PAIRS];
 static uint32_t hints[PAIRS], selection[PAIRS], indices[2][PAIRS * 2], match[PAIRS], shape;
-static uint8_t outcomes[PAIRS];
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
+static narc_refined_contact refined[PAIRS];
+static const narc_refinement refinement;
 static narc_manifold manifolds[PAIRS];
+static float separations[PAIRS];
 static narc_impact impacts[PAIRS];
 static narc_motions motions;
 static narc_cast_options cast_options;
@@ -69,21 +55,8 @@ static size_t arc_count, count, skipped;
 
 #define TRUE(expression) ((expression) ? NARC_OK : NARC_ERROR_ARGUMENT)
 
-/* Bits, and contacts of methods that have them. */
-static narc_status ask_method(narc_method method, narc_error *error) {
-    const struct scene *of = method == NARC_METHOD_POLYGON_SAT ? &polygons : &scene;
-    const narc_bodies all = scene_bodies(of);
-    const narc_pairs some = scene_pairs(of);
-    const narc_method_options options = {.method = method, .out_outcomes = outcomes};
-    const narc_status status = narc_find_overlaps_by(of->methods, &all, &some, &options, &query, bits, error);
-    if (status != NARC_OK || method >= NARC_METHOD_CIRCLE)
-        return status;
-    return narc_find_contacts_by(of->methods, &all, &some, &options, &query, contacts, SHORT, &count, error);
-}
-
 static narc_status keep_shapes(narc_error *error) {
     narc_shapes *shapes = NULL, *loaded = NULL;
-    narc_methods *methods = NULL;
     narc_broad_phase *other = NULL;
     const size_t size = narc_count_saved_bytes(store);
     const bool fine = narc_create_shapes(NULL, &shapes) == NARC_OK && narc_reserve_shapes(shapes, 2, 100) == NARC_OK &&
@@ -92,14 +65,11 @@ static narc_status keep_shapes(narc_error *error) {
                       narc_count_shapes(shapes) == 1 && narc_get_arcs(shapes, shape, arcs) == arc_count &&
                       narc_shape_flags(shapes, shape) != 0 && narc_get_aabb(shapes, shape, 1, 0, 1, &aabb) &&
                       narc_add_shape_at(shapes, shape + 2, arcs, arc_count, error) == NARC_OK &&
-                      narc_create_methods(shapes, NULL, &methods, error) == NARC_OK &&
                       narc_count_uses(shapes, shape) == 1 && narc_remove_shape(shapes, shape, error) == NARC_OK &&
-                      narc_refresh_methods(methods, error) == NARC_OK && size <= sizeof bytes &&
-                      narc_save_shapes(store, bytes, size, error) == NARC_OK &&
+                      size <= sizeof bytes && narc_save_shapes(store, bytes, size, error) == NARC_OK &&
                       narc_load_shapes(NULL, bytes, size, &loaded, error) == NARC_OK &&
                       narc_create_broad_phase(NULL, &other) == NARC_OK;
     narc_destroy_broad_phase(other);
-    narc_destroy_methods(methods);
     narc_destroy_shapes(loaded);
     narc_destroy_shapes(shapes);
     return TRUE(fine);
@@ -151,32 +121,28 @@ static narc_status ask_index(narc_error *error) {
 }
 
 /* All calls. Messages are printed on the stack. */
-#define CALLS(CALL, METHOD)                                                                                            \
+#define CALLS(CALL)                                                                                                    \
     CALL(overlaps, narc_find_overlaps(store, &bodies, &pairs, &query, bits, error))                                    \
     CALL(overlaps_selected, narc_find_overlaps(store, &bodies, &pairs, &selected, bits, error))                        \
     CALL(overlaps_range, narc_find_overlaps(store, &bodies, &pairs, &range, bits, error))                              \
+    CALL(separations, narc_find_separations(store, &bodies, &pairs, &query, separations, error))                       \
     CALL(contacts, narc_find_contacts(store, &bodies, &pairs, &query, contacts, SHORT, &count, error))                 \
     CALL(contacts_dense, narc_find_contacts(store, &bodies, &pairs, &dense, contacts, PAIRS, &count, error))           \
     CALL(contacts_selected, narc_find_contacts(store, &bodies, &pairs, &selected, contacts, SHORT, &count, error))     \
     CALL(contacts_range, narc_find_contacts(store, &bodies, &pairs, &range, contacts, 9, &count, error))               \
+    CALL(refine, narc_refine_contacts(store, &bodies, &pairs, &refinement, contacts, SHORT, refined, error))           \
     CALL(manifolds, narc_find_manifolds(store, &bodies, &pairs, &query, manifolds, SHORT, &count, error))              \
     CALL(manifolds_dense, narc_find_manifolds(store, &bodies, &pairs, &dense, manifolds, PAIRS, &count, error))        \
     CALL(manifolds_selected, narc_find_manifolds(store, &bodies, &pairs, &selected, manifolds, SHORT, &count, error))  \
     CALL(manifolds_range, narc_find_manifolds(store, &bodies, &pairs, &range, manifolds, 9, &count, error))            \
     CALL(one_overlap, narc_find_overlaps(store, &own, &one, NULL, bits, error))                                        \
+    CALL(one_separation, narc_find_separations(store, &own, &one, NULL, separations, error))                           \
     CALL(one_contact, narc_find_contacts(store, &own, &one, NULL, contacts, 1, &count, error))                         \
     CALL(one_manifold, narc_find_manifolds(store, &own, &one, NULL, manifolds, 1, &count, error))                      \
     CALL(cast_pairs, narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast_options, impacts, PAIRS, error))    \
     CALL(cast_shapes,                                                                                                  \
          narc_cast_shapes(scenery, store, &bodies, &bodies, &motions, &search, &cast_options, impacts, PAIRS, error))  \
     CALL(index, ask_index(error))                                                                                      \
-    METHOD(sat, ask_method(NARC_METHOD_SAT, error))                                                                    \
-    METHOD(sat_first, ask_method(NARC_METHOD_SAT_FIRST, error))                                                        \
-    METHOD(polygon_sat, ask_method(NARC_METHOD_POLYGON_SAT, error))                                                    \
-    METHOD(gjk, ask_method(NARC_METHOD_GJK, error))                                                                    \
-    METHOD(circle_filter, ask_method(NARC_METHOD_CIRCLE, error))                                                       \
-    METHOD(aabb_filter, ask_method(NARC_METHOD_AABB, error))                                                           \
-    METHOD(obb_filter, ask_method(NARC_METHOD_OBB, error))                                                             \
     CALL(poses, narc_compute_poses(margins, PAIRS, cosines, sines, error))                                             \
     CALL(parts, narc_place_parts(&bodies, &bodies, pairs.a, query.workers, placed, error))                             \
     CALL(names, TRUE(narc_set_isa(test_isa(), error) == NARC_OK && narc_get_isa() && narc_isa_name(0) &&               \
@@ -225,149 +191,21 @@ static narc_status ask_index(narc_error *error) {
         (void)error;                                                                                                   \
         return expression;                                                                                             \
     }
-CALLS(DEFINE, DEFINE)
+CALLS(DEFINE)
 
-/* With the stacks they are promised to do with: those of the core, and the larger ones of casts and other methods. */
-enum { CORE, METHODS, STACKS };
-static const size_t stack_size[STACKS] = {NARC_STACK_SIZE, NARC_METHODS_STACK_SIZE};
-#define LIST_CALL(name, expression)   {#name, call_##name, CORE},
-#define LIST_METHOD(name, expression) {#name, call_##name, METHODS},
-static const struct call {
-    const char *name;
-    narc_status (*run)(narc_error *error);
-    int stack;
-} calls[] = {CALLS(LIST_CALL, LIST_METHOD)};
+#define LIST_CALL(name, expression) {#name, call_##name},
+static const struct stack_call calls[] = {CALLS(LIST_CALL)};
 
-/* ------------------------------------------------------------------------------------------------ threads */
-
-/* What a thread is given: on some platforms none may have as little as calls are promised to need. */
-static size_t thread_size(size_t size) {
-    const long least = sysconf(_SC_THREAD_STACK_MIN);
-    return least > 0 && (size_t)least > size ? (size_t)least : size;
-}
-
-static unsigned char *map_stack(size_t size) {
-    size = thread_size(size);
-    unsigned char *map = mmap(NULL, FORBIDDEN + size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    assert_true(map != MAP_FAILED);
-    assert_int_equal(mprotect(map, FORBIDDEN, PROT_NONE), 0);
-    return map + FORBIDDEN;
-}
-
-/* Runs a thread that may use `promised` bytes of a stack and returns how much of that it used. */
-static size_t run_thread(unsigned char *stack, size_t promised, void *(*work)(void *), void *argument) {
-    const size_t size = thread_size(promised);
-    pthread_attr_t attributes;
-    pthread_t thread;
-    size_t left = 0;
-    memset(stack, GUARD_JUNK, size);
-    assert_int_equal(pthread_attr_init(&attributes), 0);
-    assert_int_equal(pthread_attr_setstack(&attributes, stack, size), 0);
-    assert_int_equal(pthread_create(&thread, &attributes, work, argument), 0);
-    assert_int_equal(pthread_join(thread, NULL), 0);
-    assert_int_equal(pthread_attr_destroy(&attributes), 0);
-    while (left < size && stack[left] == GUARD_JUNK)
-        left++;
-    if (size - left > promised)
-        fail_msg("%zu of %zu bytes", size - left, promised);
-    return size - left;
-}
-
-static unsigned char *call_stack[STACKS], *task_stack[STACKS];
-static int kind; /* of the call that runs */
-static size_t most[STACKS];
-
-struct job {
-    const struct call *call;
-    narc_error error;
-    narc_status status;
-};
-
-static void *run_job(void *argument) {
-    struct job *job = argument;
-    job->status = job->call->run(&job->error);
-    return NULL;
-}
-
-struct task {
-    void (*run)(void *argument, unsigned index);
-    void *argument;
-    unsigned index;
-};
-
-static void *run_task(void *argument) {
-    const struct task *task = argument;
-    task->run(task->argument, task->index);
-    return NULL;
-}
-
-static void keep_most(size_t used) { most[kind] = used > most[kind] ? used : most[kind]; }
-
-/* Workers whose tasks have threads of their own, one after the other. */
-static void run_tasks(void *context, unsigned task_count, void (*run)(void *argument, unsigned index), void *argument) {
-    (void)context;
-    for (unsigned index = 0; index < task_count; index++) {
-        struct task task = {run, argument, index};
-        keep_most(run_thread(task_stack[kind], stack_size[kind], run_task, &task));
-    }
-}
-
-/* Runs all calls, and tells how much each used. */
-static void run_calls(const narc_workers *workers) {
+static void set_workers(const narc_workers *workers) {
     query.workers = dense.workers = selected.workers = range.workers = box_options.workers = pair_options.workers =
         cast_options.workers = search.workers = workers;
-    memset(most, 0, sizeof most);
-    for (size_t k = 0; k < sizeof calls / sizeof *calls; k++) {
-        struct job job = {.call = &calls[k], .status = NARC_ERROR_CANCELLED};
-        printf("%s", calls[k].name);
-        fflush(stdout);
-        kind = calls[k].stack;
-        const size_t used = run_thread(call_stack[kind], stack_size[kind], run_job, &job);
-        printf(" %zu\n", used);
-        if (job.status != NARC_OK && job.status != NARC_ERROR_CAPACITY)
-            fail_msg("%s: %s", calls[k].name, job.error.message);
-        keep_most(used);
-    }
-    for (kind = 0; kind < STACKS; kind++) {
-        printf("at most %zu of %zu bytes\n", most[kind], stack_size[kind]);
-        assert_true(most[kind] > stack_size[kind] / 4); /* the measure works */
-    }
 }
 
-TEST(test_calling_thread) { run_calls(NULL); }
-
-/* The calling thread is one of them. */
-TEST(test_openmp) {
-    const narc_workers workers = narc_openmp_workers(3);
-    run_calls(&workers);
-}
-
-TEST(test_tasks) { run_calls(&(narc_workers){.count = 3, .run = run_tasks}); }
-
-static void make_polygons(struct test_random *random) {
-    polygons = create_scene(NARC_FLOAT32, RING, BODIES, PAIRS);
-    for (int k = 0; k < RING; k++) {
-        const struct shape polygon = make_shape(random, FAMILY_POLYGON);
-        scene_add_shape(&polygons, &polygon);
-    }
-    for (int k = 0; k < BODIES; k++) {
-        struct body body = scene.bodies[k];
-        body.shape = (uint32_t)(k % RING);
-        scene_add_body(&polygons, body);
-    }
-    for (int k = 0; k < PAIRS; k++)
-        scene_add_pair(&polygons, scene.pairs[k].a, scene.pairs[k].b);
-}
-
-static int set_up(void **state) {
-    (void)state;
+TEST(test_calls) {
     static const narc_body two[] = {{.cosine = 1, .scale = 1}, {.x = 0.5, .sine = 1, .scale = 1, .shape = 1}};
     static const narc_body bad[] = {{.x = NAN, .cosine = 1, .scale = 1}};
     struct test_random random = test_random_named("stack");
     scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
-    make_polygons(&random);
-    scene_methods(&scene);
-    scene_methods(&polygons);
     for (uint32_t k = 0; k < PAIRS; k++) {
         margins[k] = k % 3 ? INFINITY : 0.25f;
         shifts[k] = 0.125f * (float)(k % 4);
@@ -393,17 +231,11 @@ static int set_up(void **state) {
         const float x = (float)random_between(&random, 0, 60), y = (float)random_between(&random, 0, 60);
         spread[k] = (narc_box){x, y, x + 1, y + 1};
     }
-    for (int k = 0; k < STACKS; k++) {
-        call_stack[k] = map_stack(stack_size[k]);
-        task_stack[k] = map_stack(stack_size[k]);
-    }
-    if (narc_create_index(NULL, &scenery) || narc_build_index(scenery, spread, BODIES, NULL, NULL))
-        return 1;
-    return narc_create_broad_phase(NULL, &broad) || narc_build_ellipse(3, 1, 16, arcs, &arc_count, NULL, NULL);
+    assert_true(narc_create_index(NULL, &scenery) == NARC_OK &&
+                narc_build_index(scenery, spread, BODIES, NULL, NULL) == NARC_OK &&
+                narc_create_broad_phase(NULL, &broad) == NARC_OK &&
+                narc_build_ellipse(3, 1, 16, arcs, &arc_count, NULL, NULL) == NARC_OK);
+    run_on_stacks(calls, sizeof calls / sizeof *calls, NARC_STACK_SIZE, set_workers);
 }
 
-int main(void) {
-    if (LARGE_FRAMES || !test_begin())
-        return TEST_SKIPPED;
-    return test_run("stack", set_up, NULL);
-}
+int main(void) { return !large_frames && test_begin() ? test_run("stack", NULL, NULL) : TEST_SKIPPED; }

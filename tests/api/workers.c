@@ -90,7 +90,7 @@ static void watch_run(void *context, unsigned count, task_function *task, void *
 /* ------------------------------------------------------------------------------------------------ all calls */
 
 /* Of each answer a hash, and how often workers were asked to run. */
-enum { FEW_CONTACTS = 9, ANSWERS = 14 };
+enum { FEW_CONTACTS = 10, ANSWERS = 15 };
 typedef struct answers {
     uint64_t hash[ANSWERS], runs[ANSWERS];
     size_t count;
@@ -112,6 +112,7 @@ static uint32_t a[PAIRS], b[PAIRS], match[PAIRS], hints[PAIRS], selection[PAIRS]
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
 static narc_manifold manifolds[PAIRS];
+static float separations[PAIRS];
 static narc_ray_hit hits[2 * BODIES];
 
 static void place_bodies(size_t count) {
@@ -223,6 +224,8 @@ static answers ask(size_t count, const narc_workers *workers) {
     assert_true(skipped > 0);
     hash = test_hash(TEST_HASH_START, bits, NARC_BIT_WORDS(found) * sizeof *bits);
     note(&out, test_hash(hash, &skipped, sizeof skipped));
+    OK(narc_find_separations(shapes, &bodies, &pairs, &query, separations, NULL));
+    note(&out, test_hash(TEST_HASH_START, separations, found * sizeof *separations));
     for (uint32_t kind = 0; kind < 4; kind++) { /* contacts, manifolds; both dense */
         query.dense = kind / 2;
         query.hints = NARC_HINT_ARRAY(hints);

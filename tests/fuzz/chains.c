@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "methods.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "narc_scene.h"

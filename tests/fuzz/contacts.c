@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * contacts.c - overlaps, contacts and manifolds of bodies from arbitrary bytes: the same bits on every instruction set,
+ * contacts.c - overlaps, separations, contacts and manifolds of bodies from arbitrary bytes: the same bits on every instruction set,
  * the same answers from all three, and those of the reference where the bodies are sound.
  */
 #include <math.h>
@@ -9,7 +9,6 @@
 
 #include "check.h"
 #include "fuzz.h"
-#include "methods.h"
 #include "narc.h"
 
 enum { BODIES = 6, PAIRS = 24 };
@@ -26,6 +25,7 @@ struct answer {
     size_t contact_count, manifold_count, skipped;
     narc_contact contacts[PAIRS], far[PAIRS];
     narc_manifold manifolds[PAIRS];
+    float separations[PAIRS];
 };
 
 static void ask(const void *question, const narc_workers *workers, void *out_answer) {
@@ -50,6 +50,8 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     assert_int_equal(
         narc_find_manifolds(store, &bodies, &pairs, &query, answer->manifolds, PAIRS, &answer->manifold_count, NULL),
         NARC_OK);
+    query.out_skipped = NULL;
+    assert_int_equal(narc_find_separations(store, &bodies, &pairs, &query, answer->separations, NULL), NARC_OK);
     /* Behind the last row there may be anything. */
     memset(answer->contacts + answer->contact_count, 0, (PAIRS - answer->contact_count) * sizeof *answer->contacts);
     memset(answer->manifolds + answer->manifold_count, 0, (PAIRS - answer->manifold_count) * sizeof *answer->manifolds);
@@ -77,6 +79,8 @@ static void check(const struct question *q, const struct answer *answer) {
         skipped += contact->count == 0;
         if (contact->count != 0 && k == q->chosen)
             check_pair(q, answer, k);
+        const float told = contact->separation < q->query.margin ? contact->separation : INFINITY;
+        assert_memory_equal(&answer->separations[k], &told, sizeof told);
         if (contact->separation < q->query.margin) {
             assert_memory_equal(&answer->contacts[listed], contact, sizeof *contact);
             const narc_manifold *const manifold = &answer->manifolds[listed++];

@@ -90,27 +90,6 @@ TEST(test_margins) {
     destroy_scene(&scene);
 }
 
-TEST(test_no_pairs) {
-    struct scene scene = make_scene("no pairs", 1);
-    narc_bodies bodies = scene_bodies(&scene), no_bodies = {0};
-    narc_pairs none = {0};
-    narc_contact row;
-    uint64_t word = 42;
-    memset(&row, 0xa5, sizeof row);
-    for (unsigned threads = 0; threads < 3; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        const narc_query query = {.dense = threads % 2, .workers = &workers};
-        size_t found = 7;
-        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &none, &query, NULL, NULL), NARC_OK);
-        assert_int_equal(narc_find_overlaps(scene.store, &no_bodies, &none, &query, &word, NULL), NARC_OK);
-        assert_int_equal(word, 42);
-        assert_int_equal(narc_find_contacts(scene.store, &no_bodies, &none, &query, &row, 1, &found, NULL), NARC_OK);
-        assert_int_equal(found, 0);
-        assert_true(is_junk(&row, sizeof row));
-    }
-    destroy_scene(&scene);
-}
-
 /* A body and itself: as deep as it gets, and still an answer. (Only a segment has no depth, it touches itself.) */
 TEST(test_pairs_with_itself) {
     struct scene scene = make_scene("itself", 500);
@@ -315,44 +294,6 @@ TEST(test_places_of_rows) {
         }
         destroy_scene(&scene);
     }
-}
-
-/* Too short a list: what fits is there, the needed size is told, nothing behind the list is written. No list at all: the
- * call counts. */
-TEST(test_capacity) {
-    struct test_random random = test_random_named("capacity");
-    struct scene scene = make_scene("capacity", 4000);
-    for (int kind = 0; kind < 2; kind++) {
-        const struct asked asked = {&scene, kind == 1};
-        const size_t size = row_size(&asked);
-        unsigned char *const all = make_junk(4000 * size);
-        size_t count = 0, needed = 0;
-        assert_int_equal(ask(&asked, NULL, all, 4000, &count, NULL), NARC_OK);
-        assert_true(count > 100);
-        for (size_t trial = 0; trial < 60; trial++) {
-            static const size_t fixed[] = {0, 1, 63, 64, 65};
-            const size_t capacity = trial < 5 ? fixed[trial] : trial == 5 ? count - 1 : random_below(&random, count);
-            const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
-            const narc_query query = {.workers = &workers, .row_stride = trial % 2 ? (ptrdiff_t)size : 0};
-            unsigned char *const some = guard_allocate(capacity * size);
-            narc_error error = {0};
-            assert_int_equal(ask(&asked, &query, some, capacity, &needed, &error), NARC_ERROR_CAPACITY);
-            assert_int_equal(error.status, NARC_ERROR_CAPACITY);
-            assert_non_null(strstr(error.message, "rows"));
-            assert_int_equal(needed, count);
-            assert_memory_equal(some, all, capacity * size);
-            guard_release(some);
-        }
-        unsigned char *const exact = guard_allocate(count * size);
-        const narc_workers two = narc_openmp_workers(2);
-        assert_int_equal(ask(&asked, &(narc_query){.workers = &two}, exact, count, &needed, NULL), NARC_OK);
-        assert_memory_equal(exact, all, count * size);
-        guard_release(exact);
-        assert_int_equal(ask(&asked, NULL, NULL, 0, &needed, NULL), NARC_ERROR_CAPACITY);
-        assert_int_equal(needed, count);
-        free(all);
-    }
-    destroy_scene(&scene);
 }
 
 /* Dense rows need room up to the last pair, of a selection that of the batch: less is an error, and nothing is

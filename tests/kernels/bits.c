@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * bits.c - every method: one instruction set against scalar, to the last bit, with all counts, layouts, numbers of
- * threads and hints; guard pages on all sides. The calls of narc.h have the bits of the method sat: see methods.c.
+ * bits.c - every question: one instruction set against scalar, to the last bit, with all counts, layouts, numbers of
+ * threads, margins and hints; guard pages on all sides.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "corpus.h"
 #include "guard.h"
 #include "layouts.h"
-#include "methods.h"
+#include "questions.h"
+#include "store.h"
 
 /* Around a block of 128, and more than any vector is wide. */
 enum { SMALL_COUNTS = 132, BODIES = 67 };
@@ -17,205 +19,115 @@ enum { SMALL_COUNTS = 132, BODIES = 67 };
 static const float margins[] = {0.0f, 0.25f, -0.1f, INFINITY};
 enum { MARGINS = sizeof(margins) / sizeof(margins[0]) };
 
-static const narc_method_options settings[] = {
-    {.method = NARC_METHOD_SAT},
-    {.method = NARC_METHOD_SAT_FIRST},
-    {.method = NARC_METHOD_POLYGON_SAT},
-    {.method = NARC_METHOD_GJK},
-    {.method = NARC_METHOD_GJK, .tolerance = 1e-6f},
-    {.method = NARC_METHOD_GJK, .tolerance = 1e-2f, .iterations = 3},
-    {.method = NARC_METHOD_CIRCLE},
-    {.method = NARC_METHOD_AABB},
-    {.method = NARC_METHOD_OBB},
-};
-enum { SETTINGS = sizeof(settings) / sizeof(settings[0]) };
-
-static bool has_contacts(const narc_method_options *options) { return options->method < NARC_METHOD_CIRCLE; }
-
-/* Polygon-sat takes nothing else: gives every body a polygon of the scene's. */
-static void keep_polygons(struct scene *scene) {
-    uint32_t polygon[4 * FAMILY_COUNT], count = 0;
-    assert_true(scene->shape_count <= 4 * FAMILY_COUNT);
-    for (uint32_t k = 0; k < scene->shape_count; k++)
-        if (narc_shape_flags(scene->store, k) & NARC_SHAPE_POLYGON)
-            polygon[count++] = k;
-    assert_true(count > 3);
-    for (size_t k = 0; k < scene->body_count; k++)
-        scene->bodies[k].shape = polygon[k % count];
-}
-
-static struct scene make_query_scene(struct test_random *random, const narc_method_options *options,
-                                     narc_precision precision, size_t bodies, size_t pairs) {
-    struct scene scene = make_random_scene(random, precision, bodies, pairs);
-    if (options->method == NARC_METHOD_POLYGON_SAT)
-        keep_polygons(&scene);
-    return scene;
-}
+/* Bits have no margin. */
+static size_t margins_of(const struct question *question) { return question->row_size ? MARGINS : 1; }
 
 /* ------------------------------------------------------------------------------------------------ what is right */
 
-/* What a call leaves behind. */
-struct left {
-    uint32_t *hints;
-    uint8_t *outcomes;
-};
-
 /* What scalar says of all pairs of a scene, one thread. */
 struct expected {
-    const narc_method_options *options;
-    uint32_t *hints_before; /* NULL: a call without */
-    uint64_t *bits;
-    struct left of_bits;
-    struct contacts contacts[MARGINS];
-    struct left of_contacts[MARGINS];
+    const struct question *question;
+    const uint32_t *hints; /* before; NULL: a call without */
+    struct answer answers[MARGINS];
 };
 
-static narc_method_options set_outcomes(const narc_method_options *options, uint8_t *outcomes) {
-    narc_method_options set = *options;
-    set.out_outcomes = outcomes;
-    return set;
-}
-
-static struct left prepare(const struct expected *expected, size_t count) {
-    struct left left = {.outcomes = create_outcomes(count)};
-    if (expected->hints_before) {
-        left.hints = create_hints(count);
-        memcpy(left.hints, expected->hints_before, count * sizeof(uint32_t));
-    }
-    return left;
-}
-
-static struct expected expect(const struct scene *scene, const narc_method_options *options, uint32_t *hints) {
-    struct expected expected = {.options = options, .hints_before = hints};
+static struct expected expect(const struct scene *scene, const struct question *question, const uint32_t *hints) {
+    struct expected expected = {.question = question, .hints = hints};
     test_use_isa("scalar");
-    expected.of_bits = prepare(&expected, scene->pair_count);
-    narc_method_options set = set_outcomes(options, expected.of_bits.outcomes);
-    expected.bits = query_overlaps(scene, &set, &(narc_query){.hints = hint_column(expected.of_bits.hints)});
-    for (int m = 0; has_contacts(options) && m < MARGINS; m++) {
-        expected.of_contacts[m] = prepare(&expected, scene->pair_count);
-        set.out_outcomes = expected.of_contacts[m].outcomes;
-        const narc_query query = {.margin = margins[m], .hints = hint_column(expected.of_contacts[m].hints)};
-        expected.contacts[m] = query_contacts(scene, &set, &query);
-    }
+    for (size_t m = 0; m < margins_of(question); m++)
+        expected.answers[m] = ask_scene(question, scene, (narc_query){.margin = margins[m]}, hints);
     test_use_isa(test_isa());
     return expected;
 }
 
-static void destroy_left(struct left *left) {
-    free(left->hints);
-    free(left->outcomes);
+static void destroy_expected(struct expected *expected) {
+    for (size_t m = 0; m < margins_of(expected->question); m++)
+        destroy_answer(&expected->answers[m]);
 }
 
-static void destroy_expected(struct expected *expected) {
-    free(expected->bits);
-    destroy_left(&expected->of_bits);
-    for (int m = 0; has_contacts(expected->options) && m < MARGINS; m++) {
-        free(expected->contacts[m].rows);
-        destroy_left(&expected->of_contacts[m]);
-    }
+/* How many rows of an answer are of pairs before this one. */
+static size_t rows_before(const struct question *question, const struct answer *answer, size_t pair) {
+    size_t count = 0;
+    while (count < answer->count && *answer_pair(question, answer->rows, count) < pair)
+        count++;
+    return count;
 }
 
 /* ------------------------------------------------------------------------------------------------ a call */
 
-/* A scene's shapes in guarded memory, and what the methods make of them. */
-struct guarded {
-    narc_shapes *store;
-    narc_methods *methods;
-};
-
-static struct guarded guard_shapes(const struct scene *scene) {
-    struct guarded guarded = {.store = guard_store(scene)};
-    assert_int_equal(narc_create_methods(guarded.store, &guard_allocator, &guarded.methods, NULL), NARC_OK);
-    return guarded;
-}
-
-static void release_shapes(struct guarded *guarded) {
-    narc_destroy_methods(guarded->methods);
-    narc_destroy_shapes(guarded->store);
-}
-
 /* A part of a scene, in some layout. */
 struct part {
-    const narc_methods *methods;
+    const void *shapes; /* in guarded memory */
     struct columns columns;
     size_t first;
     narc_workers workers;
 };
 
-/* Hints and outcomes of a part between guard pages. */
-static struct left guard_left(const struct expected *expected, const struct part *part) {
+static void check_bits(const struct answer *all, const struct part *part, const uint64_t *bits, const char *name) {
     const size_t count = part->columns.pairs.count;
-    struct left left = {.outcomes = guard_allocate(count)};
-    if (expected->hints_before)
-        left.hints = guard_copy(expected->hints_before + part->first, count * sizeof(uint32_t));
-    return left;
-}
-
-static void check_left(const struct left *left, const struct left *expected, const struct part *part) {
-    const size_t count = part->columns.pairs.count;
-    assert_memory_equal(left->outcomes, expected->outcomes + part->first, count);
-    guard_release(left->outcomes);
-    if (left->hints) {
-        assert_memory_equal(left->hints, expected->hints + part->first, count * sizeof(uint32_t));
-        guard_release(left->hints);
+    for (size_t k = 0; k < 64 * NARC_BIT_WORDS(count); k++) {
+        const bool right = k < count && bit_is_set(all->rows, part->first + k);
+        if (bit_is_set(bits, k) != right)
+            fail_msg("%s: %zu pairs from %zu, %u workers: bit %zu is not %d", name, count, part->first,
+                     part->workers.count, k, right);
     }
 }
 
-static void check_overlaps(const struct expected *expected, const struct part *part) {
-    const size_t count = part->columns.pairs.count, words = NARC_BIT_WORDS(count);
-    const struct left left = guard_left(expected, part);
-    const narc_method_options options = set_outcomes(expected->options, left.outcomes);
-    const narc_query query = {.hints = hint_column(left.hints), .workers = &part->workers};
-    uint64_t *out = guard_allocate(words * sizeof(uint64_t));
-    assert_int_equal(
-        narc_find_overlaps_by(part->methods, &part->columns.bodies, &part->columns.pairs, &options, &query, out, NULL),
-        NARC_OK);
-    for (size_t k = 0; k < 64 * words; k++) {
-        const bool right = k < count && bit_is_set(expected->bits, part->first + k);
-        if (bit_is_set(out, k) != right) {
-            fail_msg("%s: %zu pairs from %zu, %u workers: bit %zu is not %d", narc_method_name(options.method), count,
-                     part->first, part->workers.count, k, right);
-        }
+static void check_answer(const struct expected *expected, const struct part *part, size_t m) {
+    const struct question *question = expected->question;
+    const struct answer *all = &expected->answers[m];
+    const size_t count = part->columns.pairs.count, from = rows_before(question, all, part->first),
+                 found = rows_before(question, all, part->first + count) - from;
+    /* No longer than what is found: the guard then lies right behind the last row. */
+    void *const rows = guard_allocate(answer_size(question, question->row_size ? found : count));
+    uint8_t *const outcomes = guard_allocate(count);
+    uint32_t *const hints = expected->hints ? guard_copy(expected->hints + part->first, count * sizeof *hints) : NULL;
+    size_t told = found;
+    const narc_query query = {.margin = margins[m], .hints = hint_column(hints), .workers = &part->workers};
+    const struct asked asked = {part->shapes, &part->columns.bodies, &part->columns.pairs, &query, rows, found, &told,
+                                outcomes};
+    assert_int_equal(question->ask(question, &asked, NULL), NARC_OK);
+    assert_int_equal(told, found);
+    if (!question->row_size)
+        check_bits(all, part, rows, question->name);
+    for (size_t k = 0; k < found; k++) {
+        *answer_pair(question, rows, k) += (uint32_t)part->first;
+        if (memcmp(answer_row(question, rows, k), answer_row(question, all->rows, from + k), question->row_size) != 0)
+            fail_msg("%s, margin %g: %zu pairs from %zu, %u workers: row %zu differs", question->name,
+                     (double)margins[m], count, part->first, part->workers.count, k);
     }
-    check_left(&left, &expected->of_bits, part);
-    guard_release(out);
+    assert_memory_equal(outcomes, all->outcomes + part->first, count);
+    guard_release(rows);
+    guard_release(outcomes);
+    if (hints) {
+        assert_memory_equal(hints, all->hints + part->first, count * sizeof *hints);
+        guard_release(hints);
+    }
 }
 
-static void check_contacts(const struct expected *expected, const struct part *part, int m) {
-    const struct contacts *all = &expected->contacts[m];
-    const size_t count = part->columns.pairs.count;
-    size_t from = 0, found = 0;
-    while (from < all->count && all->rows[from].pair < part->first)
-        from++;
-    while (from + found < all->count && all->rows[from + found].pair < part->first + count)
-        found++;
-    const struct left left = guard_left(expected, part);
-    const narc_method_options options = set_outcomes(expected->options, left.outcomes);
-    const narc_query query = {.margin = margins[m], .hints = hint_column(left.hints), .workers = &part->workers};
-    /* No longer than what is found: the guard then lies right behind the last contact. */
-    struct contacts out = {guard_allocate(found * sizeof *out.rows), SIZE_MAX};
-    assert_int_equal(narc_find_contacts_by(part->methods, &part->columns.bodies, &part->columns.pairs, &options, &query,
-                                           out.rows, found, &out.count, NULL),
-                     NARC_OK);
-    assert_int_equal(out.count, found);
-    for (size_t k = 0; k < found; k++)
-        out.rows[k].pair += (uint32_t)part->first;
-    check_same_contacts(&out, &(struct contacts){all->rows + from, found}, narc_method_name(options.method));
-    check_left(&left, &expected->of_contacts[m], part);
-    guard_release(out.rows);
-}
-
-static void check_part(const struct scene *scene, const struct guarded *guarded, const struct expected *expected,
+static void check_part(const struct scene *scene, const void *shapes, const struct expected *expected,
                        enum layout layout, size_t first, size_t count, unsigned threads) {
-    struct part part = {guarded->methods, create_columns(scene, layout, first, count), first,
-                        narc_openmp_workers(threads)};
-    check_overlaps(expected, &part);
-    for (int m = 0; has_contacts(expected->options) && m < MARGINS; m++)
-        check_contacts(expected, &part, m);
+    struct part part = {shapes, create_columns(scene, layout, first, count), first, narc_openmp_workers(threads)};
+    for (size_t m = 0; m < margins_of(expected->question); m++)
+        check_answer(expected, &part, m);
     destroy_columns(&part.columns);
 }
 
-/* ------------------------------------------------------------------------------------------------ tests */
+/* A scene's shapes in guarded memory, and what the questions want of them. */
+struct guarded {
+    narc_shapes *store;
+    const void *shapes;
+};
+
+static struct guarded guard_shapes(const struct scene *scene) {
+    narc_shapes *const store = guard_store(scene);
+    return (struct guarded){store, take_shapes(store, &guard_allocator)};
+}
+
+static void release_guarded(struct guarded *guarded) {
+    release_shapes(guarded->shapes);
+    narc_destroy_shapes(guarded->store);
+}
 
 static uint32_t *random_hints(struct test_random *random, size_t count) {
     uint32_t *hints = create_hints(count);
@@ -224,69 +136,57 @@ static uint32_t *random_hints(struct test_random *random, size_t count) {
     return hints;
 }
 
-/* Every count, each in the next layout; of the exact test, which more kernels answer, each in all of them. */
-static void check_all_counts(const narc_method_options *options, narc_precision precision, bool hinted) {
-    struct test_random random = test_random_named(narc_method_name(options->method));
-    struct scene scene = make_query_scene(&random, options, precision, BODIES, 2 * SMALL_COUNTS);
+/* ------------------------------------------------------------------------------------------------ tests */
+
+/* Numbers of pairs from 0 on, each in the next of some layouts or in all of them. */
+static void check_counts(const struct question *question, narc_precision precision, bool hinted, enum layout layout,
+                         size_t layouts, size_t grow) {
+    struct test_random random = test_random_named(question->name);
+    struct scene scene = make_question_scene(&random, question, precision, BODIES, 2 * SMALL_COUNTS);
+    suit_layout(&scene, layout);
     struct guarded guarded = guard_shapes(&scene);
     uint32_t *hints = hinted ? random_hints(&random, scene.pair_count) : NULL;
-    struct expected expected = expect(&scene, options, hints);
-    static const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
-    const size_t each = options->method == NARC_METHOD_SAT ? 3 : 1;
-    for (size_t k = 0; k < each * SMALL_COUNTS; k++) {
-        const size_t count = k / each;
-        check_part(&scene, &guarded, &expected, layouts[k % 3], random_below(&random, SMALL_COUNTS), count, 1);
-    }
+    struct expected expected = expect(&scene, question, hints);
+    const size_t each = question->every_layout ? layouts : 1;
+    for (size_t count = 0; count < SMALL_COUNTS; count += 1 + count / grow)
+        for (size_t k = 0; k < each; k++)
+            check_part(&scene, guarded.shapes, &expected, layout + (enum layout)((count + k) % layouts),
+                       random_below(&random, SMALL_COUNTS), count, 1);
     destroy_expected(&expected);
     free(hints);
-    release_shapes(&guarded);
+    release_guarded(&guarded);
     destroy_scene(&scene);
 }
 
 TEST(test_all_counts) {
-    for (size_t q = 0; q < SETTINGS; q++) {
-        check_all_counts(&settings[q], NARC_FLOAT32, q % 2);
-        check_all_counts(&settings[q], NARC_FLOAT64, q % 2 == 0);
-    }
+    for (size_t q = 0; q < 2 * question_count; q++)
+        check_counts(&questions[q / 2], q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, (q + 1) % 4 / 2, LAYOUT_ARRAYS, 3,
+                     SMALL_COUNTS);
 }
 
 /* Values that are one for all bodies, and no scales. */
 TEST(test_shared_values) {
-    for (size_t q = 0; q < SETTINGS; q++) {
-        for (enum layout layout = LAYOUT_SHARED; layout <= LAYOUT_UNSCALED; layout++) {
-            struct test_random random = test_random_named("shared");
-            const narc_precision precision = (q + (size_t)layout) % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
-            struct scene scene = make_query_scene(&random, &settings[q], precision, BODIES, 2 * SMALL_COUNTS);
-            suit_layout(&scene, layout);
-            struct guarded guarded = guard_shapes(&scene);
-            struct expected expected = expect(&scene, &settings[q], NULL);
-            for (size_t count = 1; count < SMALL_COUNTS; count += 1 + count / 4)
-                check_part(&scene, &guarded, &expected, layout, random_below(&random, SMALL_COUNTS), count, 1);
-            destroy_expected(&expected);
-            release_shapes(&guarded);
-            destroy_scene(&scene);
-        }
-    }
+    for (size_t q = 0; q < 2 * question_count; q++)
+        check_counts(&questions[q / 2], (q + 1) % 4 / 2 ? NARC_FLOAT64 : NARC_FLOAT32, false,
+                     q % 2 ? LAYOUT_SHARED : LAYOUT_UNSCALED, 1, 4);
 }
 
 /* Several threads, each with several chunks. */
 TEST(test_threads) {
     static const size_t counts[] = {1000, 1025, 5003, 20000};
-    struct test_random random = test_random_named("threads of methods");
-    for (size_t q = 0; q < SETTINGS; q++) {
-        const size_t sizes = settings[q].method == NARC_METHOD_SAT ? 4 : 3;
-        for (size_t k = 0; k < sizes; k++) {
-            const size_t count = counts[k];
-            struct scene scene =
-                make_query_scene(&random, &settings[q], k % 2 ? NARC_FLOAT64 : NARC_FLOAT32, 300, count);
+    struct test_random random = test_random_named("threads");
+    for (size_t q = 0; q < question_count; q++) {
+        for (size_t k = 0; k < (questions[q].every_layout ? 4 : 3); k++) {
+            const narc_precision precision = k % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+            struct scene scene = make_question_scene(&random, &questions[q], precision, 300, counts[k]);
             struct guarded guarded = guard_shapes(&scene);
-            uint32_t *hints = k % 2 ? NULL : random_hints(&random, count);
-            struct expected expected = expect(&scene, &settings[q], hints);
+            uint32_t *hints = k % 2 ? NULL : random_hints(&random, counts[k]);
+            struct expected expected = expect(&scene, &questions[q], hints);
             for (unsigned threads = 0; threads <= 3; threads++)
-                check_part(&scene, &guarded, &expected, LAYOUT_STRUCTURES, 0, count, threads);
+                check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, counts[k], threads);
             destroy_expected(&expected);
             free(hints);
-            release_shapes(&guarded);
+            release_guarded(&guarded);
             destroy_scene(&scene);
         }
     }
@@ -296,26 +196,25 @@ TEST(test_threads) {
 static void check_corpus(const char *name, narc_precision precision, bool polygons) {
     struct test_random random = test_random_named(name);
     struct corpus corpus = make_corpus(name, precision, 0.5, polygons);
-    struct scene *scene = &corpus.scene;
+    const struct scene *scene = &corpus.scene;
     struct guarded guarded = guard_shapes(scene);
-    for (size_t q = 0; q < SETTINGS; q++) {
-        if (settings[q].method == NARC_METHOD_POLYGON_SAT && !polygons)
+    for (size_t q = 0; q < question_count; q++) {
+        if (questions[q].polygons && !polygons)
             continue;
         uint32_t *hints = random_hints(&random, scene->pair_count);
-        for (int hinted = 0; hinted < 2; hinted++) {
-            struct expected expected = expect(scene, &settings[q], hinted ? hints : NULL);
-            check_part(scene, &guarded, &expected, LAYOUT_STRUCTURES, 0, scene->pair_count, 1 + (unsigned)hinted);
-            if (hinted) { /* and with what that leaves */
-                memcpy(hints, expected.of_bits.hints, scene->pair_count * sizeof *hints);
-                struct expected next = expect(scene, &settings[q], hints);
-                check_part(scene, &guarded, &next, LAYOUT_ARRAYS, 0, scene->pair_count, 1);
-                destroy_expected(&next);
-            }
+        struct expected expected = expect(scene, &questions[q], NULL);
+        check_part(scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene->pair_count, 1);
+        destroy_expected(&expected);
+        for (unsigned round = 0; round < 2; round++) { /* then with what that leaves */
+            expected = expect(scene, &questions[q], hints);
+            check_part(scene, guarded.shapes, &expected, round ? LAYOUT_ARRAYS : LAYOUT_STRUCTURES, 0,
+                       scene->pair_count, 2 - round);
+            memcpy(hints, expected.answers[0].hints, scene->pair_count * sizeof *hints);
             destroy_expected(&expected);
         }
         free(hints);
     }
-    release_shapes(&guarded);
+    release_guarded(&guarded);
     destroy_corpus(&corpus);
 }
 
@@ -326,43 +225,90 @@ TEST(test_hard_places) {
 
 /* A pair's answer depends on that pair alone: not on those in the other lanes, nor on how many there are. */
 TEST(test_neighbours) {
-    struct test_random random = test_random_named("neighbours of methods");
-    for (size_t q = 0; q < SETTINGS; q++) {
-        if (!has_contacts(&settings[q]))
+    enum { PAIRS = 60, MOST = 40 };
+    struct test_random random = test_random_named("neighbours");
+    for (size_t q = 0; q < question_count; q++) {
+        const struct question *question = &questions[q];
+        if (!question->row_size)
             continue;
-        struct scene scene = make_query_scene(&random, &settings[q], NARC_FLOAT32, BODIES, 60);
-        uint8_t *outcomes = create_outcomes(60), *again = create_outcomes(40);
-        const narc_method_options once = set_outcomes(&settings[q], outcomes);
-        const narc_method_options repeat = set_outcomes(&settings[q], again);
-        struct contacts all = query_contacts(&scene, &once, &(narc_query){.margin = INFINITY});
-        for (uint32_t k = 0; k < 60; k++) {
-            struct pair pairs[40];
+        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, BODIES, PAIRS);
+        struct answer all = ask_scene(question, &scene, (narc_query){.margin = INFINITY}, NULL);
+        for (uint32_t k = 0; k < PAIRS; k++) {
+            struct pair pairs[MOST];
             struct scene repeated = scene;
-            for (size_t i = 0; i < 40; i++)
+            for (size_t i = 0; i < MOST; i++)
                 pairs[i] = scene.pairs[k];
             repeated.pairs = pairs;
-            repeated.pair_count = 1 + k % 40;
-            struct contacts same = query_contacts(&repeated, &repeat, &(narc_query){.margin = INFINITY});
+            repeated.pair_count = 1 + k % MOST;
+            struct answer same = ask_scene(question, &repeated, (narc_query){.margin = INFINITY}, NULL);
             assert_int_equal(same.count, repeated.pair_count);
             for (size_t i = 0; i < same.count; i++) {
-                assert_int_equal(again[i], outcomes[k]);
-                same.rows[i].pair = k;
-                assert_memory_equal(&same.rows[i], &all.rows[k], sizeof same.rows[i]);
+                assert_int_equal(same.outcomes[i], all.outcomes[k]);
+                *answer_pair(question, same.rows, i) = k;
+                assert_memory_equal(answer_row(question, same.rows, i), answer_row(question, all.rows, k),
+                                    question->row_size);
             }
-            free(same.rows);
+            destroy_answer(&same);
         }
-        free(outcomes);
-        free(again);
-        free(all.rows);
+        destroy_answer(&all);
         destroy_scene(&scene);
     }
 }
 
-/* Any bits at all as bodies, scales and margins: equal bits, no crash, and no endless loop. */
+/* Pairs with margins of their own against calls with one margin. Pairs with a NaN there are skipped. */
+TEST(test_margins_of_pairs) {
+    enum { PAIRS = 2000 };
+    struct test_random random = test_random_named("margins");
+    const narc_workers workers = narc_openmp_workers(2); /* so that chunks meet */
+    for (size_t q = 0; q < question_count; q++) {
+        const struct question *question = &questions[q];
+        if (!question->row_size)
+            continue;
+        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 150, PAIRS);
+        struct answer each[MARGINS];
+        float margin[PAIRS];
+        size_t skipped = 0;
+        for (size_t m = 0; m < MARGINS; m++)
+            each[m] = ask_scene(question, &scene, (narc_query){.margin = margins[m], .workers = &workers}, NULL);
+        for (size_t k = 0; k < PAIRS; k++) {
+            const size_t m = (k * k + k / 3) % (MARGINS + 1);
+            margin[k] = m < MARGINS ? margins[m] : NAN;
+            skipped += m == MARGINS;
+        }
+        uint32_t *hints = create_hints(PAIRS);
+        for (int hinted = 0; hinted < 2; hinted++) {
+            size_t at = 0, next[MARGINS + 1] = {0};
+            const narc_query query = {.margin = -1000, .margins = NARC_ARRAY(margin), .workers = &workers};
+            struct answer found = ask_scene(question, &scene, query, hinted ? hints : NULL);
+            assert_int_equal(found.skipped, skipped);
+            for (size_t k = 0; k < PAIRS; k++) {
+                for (size_t m = 0; m < MARGINS; m++)
+                    next[m] += next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) < k;
+                const size_t m = (k * k + k / 3) % (MARGINS + 1);
+                const bool wanted =
+                    m < MARGINS && next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) == k;
+                const bool there = at < found.count && *answer_pair(question, found.rows, at) == k;
+                assert_int_equal(there, wanted);
+                if (there)
+                    assert_memory_equal(answer_row(question, found.rows, at),
+                                        answer_row(question, each[m].rows, next[m]), question->row_size);
+                at += there;
+            }
+            assert_int_equal(at, found.count);
+            destroy_answer(&found);
+        }
+        free(hints);
+        for (size_t m = 0; m < MARGINS; m++)
+            destroy_answer(&each[m]);
+        destroy_scene(&scene);
+    }
+}
+
+/* Any bits at all as bodies: equal bits, no crash, and no endless loop. */
 TEST(test_garbage_bodies) {
-    struct test_random random = test_random_named("garbage of methods");
-    for (size_t q = 0; q < SETTINGS; q++) {
-        struct scene scene = make_query_scene(&random, &settings[q], NARC_FLOAT32, 200, 1000);
+    struct test_random random = test_random_named("garbage");
+    for (size_t q = 0; q < question_count; q++) {
+        struct scene scene = make_question_scene(&random, &questions[q], NARC_FLOAT32, 200, 1000);
         for (size_t k = 0; k < scene.body_count; k++) {
             struct body *body = &scene.bodies[k];
             float *const values[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
@@ -375,84 +321,128 @@ TEST(test_garbage_bodies) {
         }
         struct guarded guarded = guard_shapes(&scene);
         uint32_t *hints = random_hints(&random, scene.pair_count);
-        struct expected expected = expect(&scene, &settings[q], q % 2 ? hints : NULL);
-        check_part(&scene, &guarded, &expected, LAYOUT_STRUCTURES, 0, scene.pair_count, 1);
+        struct expected expected = expect(&scene, &questions[q], q % 3 ? hints : NULL);
+        check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene.pair_count, 1);
         destroy_expected(&expected);
         free(hints);
-        release_shapes(&guarded);
+        release_guarded(&guarded);
         destroy_scene(&scene);
     }
 }
 
-/* Spoils a body so that no pair with it has an answer. */
-static void break_body(struct body *body, size_t way) {
-    switch (way % 5) {
-    case 0: /* off by 0.03 % */
+/* ------------------------------------------------------------------------------------------- bodies that are none */
+
+/* The ways to spoil a body, so that no pair with it has an answer. */
+enum { WAYS = 20 };
+static void spoil(struct body *body, size_t way) {
+    static const float spoilt[] = {NAN, INFINITY, -INFINITY};
+    float *const values[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
+    if (way < 15) {
+        *values[way / 3] = spoilt[way % 3];
+    } else if (way < 18) {
+        body->scale = (const float[]){0, -1, 1e12f}[way - 15];
+    } else if (way == 18) {
+        body->cosine = body->sine = 0;
+    } else { /* off by 0.03 % */
         body->cosine *= 1.0003f;
         body->sine *= 1.0003f;
-        break;
-    case 1:
-        body->sine = NAN;
-        break;
-    case 2:
-        body->x = body->x_single = -INFINITY;
-        break;
-    case 3:
-        body->scale = 1e12f;
-        break;
-    default:
-        body->scale = 0;
     }
+    body->x = (double)body->x_single;
+    body->y = (double)body->y_single;
 }
 
-static void check_skipped(const struct scene *scene, const narc_method_options *options, size_t expected,
-                          unsigned threads) {
+/* Has the pair no answer? Rows with an infinite margin, and bits. */
+static bool has_none(const struct question *question, const struct answer *answer, uint32_t pair) {
+    const narc_contact contact = {.pair = pair, .separation = INFINITY};
+    const narc_manifold manifold = {.pair = pair, .point = {{.separation = INFINITY}}};
+    if (!question->row_size)
+        return !bit_is_set(answer->rows, pair);
+    return memcmp(answer_row(question, answer->rows, pair),
+                  question->row_size == sizeof contact ? (const void *)&contact : &manifold, question->row_size) == 0;
+}
+
+static void check_skipped(const struct scene *scene, const struct question *question, const bool *broken,
+                          size_t expected, unsigned threads) {
     const narc_workers workers = narc_openmp_workers(threads);
-    size_t skipped = 12345;
-    narc_query query = {.workers = &workers, .out_skipped = &skipped};
-    free(query_overlaps(scene, options, &query));
-    assert_int_equal(skipped, expected);
-    for (int m = 0; m < MARGINS && has_contacts(options); m++) {
-        skipped = 12345;
-        query.margin = margins[m];
-        struct contacts found = query_contacts(scene, options, &query);
-        assert_int_equal(skipped, expected);
-        free(found.rows);
+    for (size_t m = 0; m < margins_of(question); m++) {
+        struct answer answer =
+            ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers}, NULL);
+        assert_int_equal(answer.skipped, expected);
+        for (uint32_t k = 0; k < scene->pair_count && (!question->row_size || isinf(margins[m])); k++)
+            assert_true(has_none(question, &answer, k) || !(broken[scene->pairs[k].a] || broken[scene->pairs[k].b]));
+        destroy_answer(&answer);
     }
 }
 
-/* A body off by a little collides with nothing: every method counts the pairs that it is in, whatever the number of
- * threads and the split. */
+/* Every question counts the pairs with a spoilt body, whatever the number of threads and the split. */
 TEST(test_skipped_pairs) {
     enum { MANY = 6001 };
     struct test_random random = test_random_named("skipped pairs");
-    for (size_t q = 0; q < SETTINGS; q++) {
-        struct scene scene = make_query_scene(&random, &settings[q], q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, MANY);
-        check_skipped(&scene, &settings[q], 0, 2);
-        for (size_t k = 0; k < BODIES; k += 7)
-            break_body(&scene.bodies[k], k / 7);
+    for (size_t q = 0; q < question_count; q++) {
+        const narc_precision precision = q % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+        struct scene scene = make_question_scene(&random, &questions[q], precision, BODIES, MANY), part = scene;
+        bool broken[BODIES] = {false};
+        check_skipped(&scene, &questions[q], broken, 0, 2);
+        for (size_t k = 0; k < BODIES; k += 3) {
+            spoil(&scene.bodies[k], k / 3 % WAYS);
+            broken[k] = true;
+        }
         size_t expected = 0, sum = 0;
         for (size_t k = 0; k < MANY; k++)
-            expected += scene.pairs[k].a % 7 == 0 || scene.pairs[k].b % 7 == 0;
+            expected += broken[scene.pairs[k].a] || broken[scene.pairs[k].b];
         assert_true(0 < expected && expected < MANY);
         for (unsigned threads = 1; threads <= 3; threads++)
-            check_skipped(&scene, &settings[q], expected, threads);
-        const narc_bodies bodies = scene_bodies(&scene);
-        for (size_t first = 0, count; first < MANY; first += count) {
-            count = 1 + random_below(&random, MANY / 4);
-            count = count < MANY - first ? count : MANY - first;
-            const struct pair *from = scene.pairs + first;
-            const narc_pairs pairs = {.count = count, .a = NARC_COLUMN(from, a), .b = NARC_COLUMN(from, b)};
-            uint64_t bits[NARC_BIT_WORDS(MANY)];
-            size_t skipped;
-            assert_int_equal(narc_find_overlaps_by(scene_methods(&scene), &bodies, &pairs, &settings[q],
-                                                   &(narc_query){.out_skipped = &skipped}, bits, NULL),
-                             NARC_OK);
-            sum += skipped;
+            check_skipped(&scene, &questions[q], broken, expected, threads);
+        for (size_t first = 0; first < MANY; first += part.pair_count) {
+            const size_t left = MANY - first, count = 1 + random_below(&random, MANY / 4);
+            part.pairs = scene.pairs + first;
+            part.pair_count = count < left ? count : left;
+            struct answer answer = ask_scene(&questions[q], &part, (narc_query){0}, NULL);
+            sum += answer.skipped;
+            destroy_answer(&answer);
         }
         assert_int_equal(sum, expected);
         destroy_scene(&scene);
     }
+}
+
+/* Asks of three bodies in one place; `removed`: of the pairs with the second one there is no answer. */
+static void ask_of_three(const struct question *question, const struct scene *scene, bool removed) {
+    struct answer answer = ask_scene(question, scene, (narc_query){.margin = INFINITY}, NULL);
+    assert_int_equal(answer.skipped, removed ? 3 : 0);
+    assert_int_equal(answer.count, question->row_size ? 4 : 0);
+    for (uint32_t k = 0; k < 4 && removed; k++)
+        assert_true(k == 2 || has_none(question, &answer, k));
+    destroy_answer(&answer);
+}
+
+/* The shape of the second is removed, its block is overwritten, and it comes back. */
+TEST(test_removed_shapes) {
+    static const struct pair pairs[] = {{0, 1}, {1, 2}, {0, 2}, {1, 2}};
+    const struct shape box = box_of(1, 1, 0);
+    struct shape large;
+    assert_int_equal(narc_build_regular_polygon(64, 1, 0, large.arcs, &large.count, NULL), NARC_OK);
+    struct scene scene = create_scene(NARC_FLOAT32, 3, 3, 4);
+    narc_shapes *const store = scene.store;
+    for (uint32_t k = 0; k < 3; k++) {
+        struct body body = turned_body(0, 1);
+        body.shape = scene_add_shape(&scene, &box);
+        scene_add_body(&scene, body);
+    }
+    for (size_t k = 0; k < 4; k++)
+        scene_add_pair(&scene, pairs[k].a, pairs[k].b);
+    for (size_t q = 0; q < question_count; q++) {
+        ask_of_three(&questions[q], &scene, false);
+        assert_int_equal(narc_remove_shape(store, 1, NULL), NARC_OK);
+        ask_of_three(&questions[q], &scene, true);
+        while (store->headers[1].first_record > 0) { /* until its block is gone */
+            assert_int_equal(narc_replace_shape(store, 2, large.arcs, large.count, NULL), NARC_OK);
+            assert_int_equal(narc_replace_shape(store, 2, box.arcs, box.count, NULL), NARC_OK);
+        }
+        ask_of_three(&questions[q], &scene, true);
+        assert_int_equal(narc_add_shape_at(store, 1, box.arcs, box.count, NULL), NARC_OK);
+    }
+    destroy_scene(&scene);
 }
 
 TEST_MAIN("bits")

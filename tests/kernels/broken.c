@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "expect.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "scene.h"
@@ -21,6 +20,7 @@ enum asked {
     CONTACT,
     ONE_CONTACT,
     OVERLAP,
+    SEPARATION,
     MANIFOLD,
     CAST_OF_A,
     CAST_OF_B,
@@ -36,15 +36,15 @@ enum asked {
     MOVER,
     ASKED
 };
-static const char *const names[ASKED] = {"validate",  "contacts",  "one contact", "overlaps", "manifolds", "cast of a",
-                                         "cast of b", "distances", "owner",       "part",     "boxes",     "pairs",
-                                         "regions",   "rays",      "nearest",     "casts at", "mover"};
+static const char *const names[ASKED] = {"validate",  "contacts",  "one contact", "overlaps",  "separations",
+                                         "manifolds", "cast of a", "cast of b",   "distances", "owner",
+                                         "part",      "boxes",     "pairs",       "regions",   "rays",
+                                         "nearest",   "casts at",  "mover"};
 
 enum { MOST = 1500, SHAPES = 6, FAN = 4 };
 
 struct trial {
     narc_shapes *store;
-    narc_methods *methods;
     double radius[SHAPES]; /* of the bounding circles */
     size_t count;
     double reach; /* at least the largest bounding radius; nobody else is as near as four of it */
@@ -67,12 +67,10 @@ static struct trial *create_trial(size_t count) {
         narc_compute_bounding_circle(shapes[k].arcs, shapes[k].count, &circle);
         t->radius[k] = circle.radius;
     }
-    assert_int_equal(narc_create_methods(t->store, NULL, &t->methods, NULL), NARC_OK);
     return t;
 }
 
 static void destroy_trial(struct trial *t) {
-    narc_destroy_methods(t->methods);
     narc_destroy_shapes(t->store);
     free(t);
 }
@@ -81,6 +79,7 @@ static void ask_pairs(struct trial *t) {
     static narc_contact contacts[MOST];
     static narc_manifold manifolds[MOST];
     static narc_impact impacts[MOST];
+    static float separations[MOST];
     static uint64_t bits[NARC_BIT_WORDS(MOST)];
     static uint32_t odd[MOST], even[MOST];
     const size_t count = t->count;
@@ -88,13 +87,15 @@ static void ask_pairs(struct trial *t) {
     const narc_pairs pairs = {.count = count}, swapped = {.count = count, .a = NARC_ARRAY(odd), .b = NARC_ARRAY(even)};
     const float turn = 0.5f;
     const narc_motions turning = {.angle = {&turn, 0}};
-    size_t found, skipped[5] = {0}, broken = 0;
+    size_t found, skipped[6] = {0}, broken = 0;
     narc_query query = {.margin = INFINITY, .dense = 1, .out_skipped = &skipped[0]};
     assert_int_equal(narc_find_contacts(t->store, &both, &pairs, &query, contacts, count, &found, NULL), NARC_OK);
     query.out_skipped = &skipped[1];
     assert_int_equal(narc_find_manifolds(t->store, &both, &pairs, &query, manifolds, count, &found, NULL), NARC_OK);
     query.out_skipped = &skipped[2];
     assert_int_equal(narc_find_overlaps(t->store, &both, &pairs, &query, bits, NULL), NARC_OK);
+    query.out_skipped = &skipped[5];
+    assert_int_equal(narc_find_separations(t->store, &both, &pairs, &query, separations, NULL), NARC_OK);
     narc_cast_options options = {.out_skipped = &skipped[3]};
     assert_int_equal(narc_cast_pairs(t->store, &both, NULL, &pairs, NULL, &options, impacts, count, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++) {
@@ -103,6 +104,7 @@ static void ask_pairs(struct trial *t) {
         t->fine[CONTACT][k] = contacts[k].count != 0;
         t->fine[MANIFOLD][k] = manifolds[k].count != 0;
         t->fine[OVERLAP][k] = bit_is_set(bits, k);
+        t->fine[SEPARATION][k] = separations[k] < INFINITY;
         t->fine[CAST_OF_A][k] = impacts[k].count == NARC_CAST_HIT;
         const narc_bodies own = narc_view_bodies(t->both + 2 * k, 2);
         assert_int_equal(narc_find_contacts(t->store, &own, &(narc_pairs){.count = 1}, NULL, contacts, 1, &found, NULL),
@@ -117,14 +119,6 @@ static void ask_pairs(struct trial *t) {
         t->fine[CAST_OF_B][k] = impacts[k].count == NARC_CAST_HIT;
     for (int k = 0; k < 5; k++)
         assert_int_equal(skipped[k], broken);
-    for (narc_method method = NARC_METHOD_SAT_FIRST; method <= NARC_METHOD_OBB; method++) {
-        const narc_method_options by = {.method = method};
-        query.out_skipped = &skipped[0];
-        if (method == NARC_METHOD_POLYGON_SAT) /* of polygons alone */
-            continue;
-        assert_int_equal(narc_find_overlaps_by(t->methods, &both, &pairs, &by, &query, bits, NULL), NARC_OK);
-        assert_int_equal(skipped[0], broken);
-    }
 }
 
 static void ask_poses(struct trial *t) {
@@ -381,7 +375,6 @@ TEST(shapes_that_were_removed) {
     }
     for (uint32_t shape = 0; shape < SHAPES; shape += 2)
         assert_int_equal(narc_remove_shape(t->store, shape, NULL), NARC_OK);
-    assert_int_equal(narc_refresh_methods(t->methods, NULL), NARC_OK);
     ask_all(t);
     assert_int_equal(expect_agreement(t, false), t->count / 2);
     destroy_trial(t);
@@ -407,6 +400,7 @@ struct answers {
     narc_impact movers[NEAR], casts[ASKING];
     narc_contact contacts[ASKING];
     narc_manifold manifolds[ASKING];
+    float separations[ASKING];
     uint64_t bits[NARC_BIT_WORDS(ASKING)];
     size_t regions, pairs, kept;
     uint32_t region[2 * MOST_PAIRS], pair[2 * MOST_PAIRS], kept_pair[2 * MOST_PAIRS];
@@ -469,6 +463,7 @@ static void ask_near(const struct flown *f, struct test_random random, struct an
                      NARC_OK);
     assert_int_equal(narc_find_manifolds(store, &f->bodies, &pairs, &query, out->manifolds, ASKING, &count, NULL),
                      NARC_OK);
+    assert_int_equal(narc_find_separations(store, &f->bodies, &pairs, &query, out->separations, NULL), NARC_OK);
     assert_int_equal(narc_find_overlaps(store, &f->bodies, &pairs, NULL, out->bits, NULL), NARC_OK);
     assert_int_equal(narc_query_index(f->index, f->boxes, NEAR, NULL, &found, NULL), NARC_OK);
     out->regions = take_near(&found, out->region);

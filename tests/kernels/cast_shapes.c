@@ -276,8 +276,8 @@ TEST(test_errors) {
             (&(narc_cast_options){.target = NAN}));
     REFUSED(NARC_ERROR_NOT_FINITE, "tolerance", s.index, store, &bodies, &movers, &motions, NULL,
             (&(narc_cast_options){.tolerance = INFINITY}));
-    REFUSED(NARC_ERROR_ARGUMENT, "options.reserved[1]", s.index, store, &bodies, &movers, &motions, NULL,
-            (&(narc_cast_options){.reserved = {NULL, rows}}));
+    REFUSED(NARC_ERROR_ARGUMENT, "options.reserved[0]", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.reserved = {rows}}));
     s.targets[7] = NAN;
     REFUSED(NARC_ERROR_NOT_FINITE, "options.targets[7] is nan", s.index, store, &bodies, &movers, &motions, NULL,
             (&(narc_cast_options){.targets = NARC_ARRAY(s.targets)}));

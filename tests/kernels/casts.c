@@ -628,4 +628,68 @@ TEST(test_divisions) {
     assert_true(hits > 0);
 }
 
+/* Rows do not depend on where bodies lie in memory, nor on who numbers them: in all layouts, in rows of floats and of
+ * doubles, as pairs' own bodies, and as two sets. */
+TEST(test_layouts) {
+    struct test_random random = test_random_named("layouts");
+    for (size_t k = 0; k < LAYOUT_COUNT * (1 + test_trials(2)); k++) {
+        const enum layout layout = (enum layout)(k % LAYOUT_COUNT);
+        const narc_precision precision = (narc_precision)(k / LAYOUT_COUNT % 2);
+        struct scene scene = make_placed_scene(&random, precision, (enum family)random_below(&random, FAMILY_COUNT),
+                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 3);
+        suit_layout(&scene, layout);
+        struct moving m = set_in_motion(&random, scene, k % 3 ? 3 : 0);
+        suit_layout(&m.scene, layout);
+        const size_t count = m.scene.pair_count, body_count = m.scene.body_count;
+        struct columns columns = create_columns(&m.scene, layout, 0, count);
+        float(*const rows)[4] = guard_allocate(body_count * sizeof *rows);
+        narc_body *const wide = guard_allocate(body_count * sizeof *wide);
+        float *const shift = guard_allocate(count * sizeof *shift);
+        for (size_t b = 0; b < body_count; b++) {
+            const struct body *const body = &m.scene.bodies[b];
+            wide[b] = (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
+            memcpy(rows[b], (const float[4]){(float)body->x, (float)body->y, body->cosine, body->sine}, sizeof *rows);
+        }
+        for (size_t pair = 0; pair < count; pair++) {
+            assert_true(m.scene.pairs[pair].a == 2 * pair && m.scene.pairs[pair].b == 2 * pair + 1);
+            shift[pair] = (float)random_between(&random, -1, 1);
+        }
+        narc_bodies narrow = scene_bodies(&m.scene);
+        if (precision == NARC_FLOAT32) {
+            narrow.x = (narc_position_column){&rows[0][0], sizeof *rows, NARC_FLOAT32};
+            narrow.y = (narc_position_column){&rows[0][1], sizeof *rows, NARC_FLOAT32};
+            narrow.cosine = (narc_float_column){&rows[0][2], sizeof *rows};
+            narrow.sine = (narc_float_column){&rows[0][3], sizeof *rows};
+        }
+        const narc_bodies sets[] = {scene_bodies(&m.scene), columns.bodies, narc_view_bodies(wide, body_count), narrow};
+        const narc_motions motions = motions_of(&m);
+        narc_impact *const expected = guard_allocate(count * sizeof *expected), *const found = guard_allocate(
+                                                                                    count * sizeof *found);
+        for (int way = 0; way < 4 * 3 * 2; way++) {
+            const narc_bodies *const bodies = &sets[way % 4], *const others = &sets[way % 4 ? (way + 1) % 4 : 0];
+            const bool first = way % 12 == 0;
+            narc_pairs pairs = way % 12 < 4 ? scene_pairs(&m.scene) : columns.pairs;
+            if (way % 12 >= 8) /* its own */
+                pairs = (narc_pairs){.count = count};
+            else if (way % 12 >= 4)
+                pairs.other_bodies = others;
+            if (way >= 12)
+                pairs.shift_x = pairs.shift_y = (narc_float_column){shift, sizeof *shift};
+            narc_error error;
+            expect_ok(narc_cast_pairs(m.scene.store, bodies, &motions, &pairs, pairs.other_bodies ? &motions : NULL,
+                                      NULL, first ? expected : found, count, &error),
+                      &error);
+            if (!first)
+                assert_memory_equal(found, expected, count * sizeof *found);
+        }
+        guard_release(found);
+        guard_release(expected);
+        guard_release(shift);
+        guard_release(wide);
+        guard_release(rows);
+        destroy_columns(&columns);
+        destroy_moving(&m);
+    }
+}
+
 TEST_MAIN("casts")

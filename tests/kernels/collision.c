@@ -18,11 +18,11 @@ enum { SHOWN = 5 };
 static const double expected_part = 0.2;
 
 struct report {
-    struct contact_tally family[FAMILY_COUNT], placement[PLACE_COUNT];
+    struct contact_summary family[FAMILY_COUNT], placement[PLACE_COUNT];
     size_t wrong;
 };
 
-static void print_tally(const char *name, const struct contact_tally *tally) {
+static void print_tally(const char *name, const struct contact_summary *tally) {
     printf("  %-11s %8zu %9zu %7zu %12.3f %7.3f %7.3f\n", name, tally->pairs, tally->colliding, tally->inside_band,
            tally->worst.separation, tally->worst.normal, tally->worst.point);
 }

@@ -547,16 +547,16 @@ static void check_formula(const struct ground *g, const struct contacts *right) 
                               .count = pairs.count,
                               .asked = pairs.count};
     narc_contact *rows = make_junk(NARC_ROW_GROUP * sizeof *rows);
-    size_t skipped = 0, further = 0, row = 0, all = 0;
+    size_t skipped = 0, more = 0, row = 0, all = 0;
     for (size_t first = 0; first < pairs.count; first += NARC_ROW_GROUP) {
         const size_t left = pairs.count - first;
-        const narc_rows out = {.base = (char *)rows, .stride = sizeof *rows, .further = &further};
+        const narc_rows out = {.base = (char *)rows, .stride = sizeof *rows, .more = &more};
         const size_t found =
             narc_kernels_plain.contact(&batch, first, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
         for (size_t k = 0; k < found; k++) {
             const narc_contact *deepest = find_deepest(right, row, rows[k].pair);
             assert_non_null(deepest);
-            rows[k].count %= NARC_FURTHER_ROW;
+            rows[k].count %= NARC_MORE_ROW;
             assert_memory_equal(&rows[k], deepest, sizeof *deepest);
             while (row < right->count && right->rows[row].pair == rows[k].pair)
                 row++;
@@ -564,7 +564,7 @@ static void check_formula(const struct ground *g, const struct contacts *right) 
         all += found;
     }
     assert_int_equal(row, right->count);
-    assert_int_equal(all + further, right->count);
+    assert_int_equal(all + more, right->count);
     uint64_t *bits = scene_overlaps(&g->scene), *plain = make_junk(NARC_BIT_WORDS(pairs.count) * sizeof *plain);
     narc_kernels_plain.overlap(&batch, 0, pairs.count, &skipped, plain);
     assert_memory_equal(bits, plain, NARC_BIT_WORDS(pairs.count) * sizeof *bits);

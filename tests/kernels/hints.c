@@ -14,12 +14,6 @@
 static const float margins[] = {0, 0.2f, -0.1f, INFINITY};
 enum { MARGINS = sizeof margins / sizeof *margins };
 
-static uint32_t *create_hints(size_t count) {
-    uint32_t *hints = calloc(count + 1, sizeof *hints);
-    assert_non_null(hints);
-    return hints;
-}
-
 /* A scene of everything: random pairs, and some in hard places. */
 static struct scene make_scene(struct test_random *random, size_t pairs) {
     enum { HARD_SHAPES = 40 };
@@ -59,6 +53,9 @@ static void check_hints(const struct scene *scene, const uint32_t *hints, uint32
         const narc_query query = {.margin = margins[m], .hints = NARC_HINT_ARRAY(other), .workers = &two};
         memcpy(other, hints, size);
         check_plain_contacts(&batch, &query);
+        assert_memory_equal(left, other, size);
+        memcpy(other, hints, size); /* those of manifolds are the same */
+        free(find_manifolds(scene->store, &bodies, &pairs, &query).rows);
         assert_memory_equal(left, other, size);
         test_use_isa("scalar");
         memcpy(other, hints, size);
@@ -251,46 +248,6 @@ TEST(test_selections) {
     free(whole);
     free(all.rows);
     free(found.rows);
-    destroy_scene(&scene);
-}
-
-TEST(test_errors) {
-    enum { PAIRS = 3000 };
-    struct test_random random = test_random_named("hint errors");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    uint32_t *hints = create_hints(PAIRS), *before = create_hints(PAIRS), *enough = create_hints(PAIRS);
-    narc_contact *rows = make_junk(PAIRS * sizeof *rows);
-    size_t needed = 12345;
-    narc_error error;
-    for (size_t k = 0; k < PAIRS; k++)
-        hints[k] = before[k] = enough[k] = (uint32_t)random_bits(&random);
-    scene.pairs[PAIRS - 1].b = 200;
-    narc_query query = {.hints = NARC_HINT_ARRAY(hints)};
-    assert_int_equal(ask_contacts(&scene, &query, rows, PAIRS, &needed, &error), NARC_ERROR_INDEX);
-    assert_memory_equal(hints, before, PAIRS * sizeof *hints);
-    assert_int_equal(needed, 12345);
-    scene.pairs[PAIRS - 1].b = 0;
-
-    /* Too short a list: what fits is the start of the whole list, and hints are as with enough room. */
-    struct contacts all = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.hints = NARC_HINT_ARRAY(enough)});
-    assert_true(all.count > 100);
-    for (unsigned threads = 1; threads <= 2; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        const size_t capacity = all.count - 1 - random_below(&random, all.count - 1);
-        memcpy(hints, before, PAIRS * sizeof *hints);
-        query.workers = &workers;
-        assert_int_equal(ask_contacts(&scene, &query, rows, capacity, &needed, &error), NARC_ERROR_CAPACITY);
-        assert_int_equal(needed, all.count);
-        assert_memory_equal(rows, all.rows, capacity * sizeof *rows);
-        assert_memory_equal(hints, enough, PAIRS * sizeof *hints);
-    }
-    free(all.rows);
-    free(rows);
-    free(hints);
-    free(before);
-    free(enough);
     destroy_scene(&scene);
 }
 

@@ -15,7 +15,7 @@
 enum { SHOWN = 5 };
 
 struct manifold_report {
-    struct manifold_tally checked;
+    struct manifold_summary checked;
     size_t swaps_skipped, wrong;
 };
 
@@ -82,7 +82,7 @@ static void check_scene(const struct scene *scene, const char *families, struct 
 static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
     struct test_random random = test_random_named(name);
     struct manifold_report tally = {0};
-    const struct manifold_tally *const checked = &tally.checked;
+    const struct manifold_summary *const checked = &tally.checked;
     const size_t pairs = PLACE_COUNT * test_trials(rounds);
     for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
         for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * reference.c - is the reference itself right? Against closed forms, and against points sampled on two outlines.
+ * reference.c - is the reference itself right? Against closed forms, and one way against another; formula.c compares it
+ * with the formula.
  */
 #include <math.h>
 #include <stdio.h>
 
 #include "chains.h"
-#include "methods.h"
+#include "corpus.h"
 #include "placements.h"
 
 /* What the reference claims, relative to sizes near 1. */
@@ -132,57 +133,6 @@ TEST(test_capsules) {
         }
         /* The segments never cross: one stays below y = sin(1) - 1, the other above 1 - sin(1). */
         check_gap(&body[0], &body[1], distance - radii);
-    }
-}
-
-enum { OUTLINE_POINTS = 1500 };
-
-/* Points spread evenly over the length of an outline, and the largest step between two of them. */
-static double sample_outline(const struct reference_body *body, narc_point out[OUTLINE_POINTS]) {
-    size_t per_arc = OUTLINE_POINTS / body->count, n = 0;
-    double step = 0;
-    for (size_t i = 0; i < body->count; i++) {
-        const narc_arc *arc = &body->arcs[i];
-        double sweep = arc->end - arc->start;
-        sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
-        for (size_t k = 0; k < per_arc; k++) {
-            double angle = arc->start + sweep * (double)k / (double)(per_arc - 1);
-            double x = arc->center_x + arc->radius * cos(angle), y = arc->center_y + arc->radius * sin(angle);
-            out[n].x = body->x + body->cosine * x - body->sine * y;
-            out[n].y = body->y + body->sine * x + body->cosine * y;
-            n++;
-        }
-        step = fmax(step, arc->radius * sweep / (double)(per_arc - 1));
-    }
-    for (; n < OUTLINE_POINTS; n++)
-        out[n] = out[0];
-    return step;
-}
-
-/* Disjoint smooth shapes: the closest of all sampled points are further apart than the gap, by at most what the steps
- * along the outlines can cost. */
-TEST(test_sampled_points) {
-    static const enum family families[] = {FAMILY_SMOOTH, FAMILY_UNEQUAL, FAMILY_LENS, FAMILY_FITTED};
-    static narc_point point_a[OUTLINE_POINTS], point_b[OUTLINE_POINTS];
-    struct test_random random = test_random_named("sampled points");
-    for (size_t trial = 0; trial < test_trials(40); trial++) {
-        struct shape shape_a = make_shape(&random, families[trial % 4]);
-        struct shape shape_b = make_shape(&random, families[trial / 4 % 4]);
-        struct body body_a = turned_body(random_between(&random, -PI, PI), 1), body_b = turned_body((double)trial, 1);
-        place_at_gap(&shape_a, &shape_b, random_between(&random, -PI, PI), 0.3, &body_a, &body_b);
-        struct reference_body a = pose_shape(&shape_a, &body_a), b = pose_shape(&shape_b, &body_b);
-        double gap = reference_find_gap(&a, &b).gap, least = INFINITY;
-        double step = sample_outline(&a, point_a) + sample_outline(&b, point_b);
-        for (size_t i = 0; i < OUTLINE_POINTS; i++) {
-            for (size_t j = 0; j < OUTLINE_POINTS; j++) {
-                double x = point_b[j].x - point_a[i].x, y = point_b[j].y - point_a[i].y;
-                least = fmin(least, x * x + y * y);
-            }
-        }
-        least = sqrt(least);
-        /* cosines and sines in the pose are floats: lengths are off by that much. */
-        if (least < gap - 1e-6 || least > gap + step)
-            fail_msg("points %.9g apart, gap %.9g, step %.3g", least, gap, step);
     }
 }
 

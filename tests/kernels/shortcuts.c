@@ -10,7 +10,6 @@
 
 #include "hard.h"
 #include "layouts.h"
-#include "methods.h"
 #include "placements.h"
 #include "plain.h"
 
@@ -339,68 +338,11 @@ TEST(test_specks) {
     }
 }
 
-/* A shape of the given size, `shift` away from its origin. */
-static struct shape move_away(struct test_random *random, struct shape shape, double size, double shift) {
-    narc_circle bound;
-    assert_true(narc_compute_bounding_circle(shape.arcs, shape.count, &bound));
-    const double angle = random_between(random, -PI, PI), factor = size / bound.radius;
-    for (size_t i = 0; i < shape.count; i++) {
-        narc_arc *arc = &shape.arcs[i];
-        arc->center_x = (arc->center_x - bound.x) * factor + shift * cos(angle);
-        arc->center_y = (arc->center_y - bound.y) * factor + shift * sin(angle);
-        arc->radius *= factor;
-    }
-    return shape;
-}
-
-/* Adds a body somewhere within `reach` of the world's origin, seen from the middle of its shape. */
-static uint32_t add_near_origin(struct test_random *random, struct scene *scene, uint32_t shape, double reach) {
-    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -PI, PI), 1);
-    const double c = (double)body.cosine, s = (double)body.sine;
-    narc_circle bound;
-    assert_true(narc_compute_bounding_circle(scene->shapes[shape].arcs, scene->shapes[shape].count, &bound));
-    body.x = reach * random_between(random, -1, 1) - (c * bound.x - s * bound.y);
-    body.y = reach * random_between(random, -1, 1) - (s * bound.x + c * bound.y);
-    body.shape = shape;
-    return scene_add_body(scene, body);
-}
-
-/* No filter says no where the exact method says yes. */
-static void check_filters(const struct scene *scene) {
-    uint64_t *exact = scene_overlaps(scene);
-    for (narc_method method = NARC_METHOD_CIRCLE; method <= NARC_METHOD_OBB; method++) {
-        uint64_t *passed = query_overlaps(scene, &(narc_method_options){.method = method}, NULL);
-        for (size_t k = 0; k < NARC_BIT_WORDS(scene->pair_count); k++)
-            assert_true((exact[k] & ~passed[k]) == 0);
-        free(passed);
-    }
-    free(exact);
-}
-
-/* Shapes ever further from their own origin: up to 1e18 times their radius, the smallest radius and the largest shift
- * that a store takes. From 2e5 on the room for rounding is larger than the shape, and from 2e7 on single precision
- * leaves nothing of it but a speck. From 1e10 on only circles still join up. */
 TEST(test_far_from_origin) {
-    enum { SHAPES = 40, PAIRS = 4000, DECADES = 18 };
     struct test_random random = test_random_named("far from origin");
-    for (int decade = 3; decade <= DECADES; decade++) {
-        const double size = 1.000001 * fmin(1, pow(10, 9 - decade)), shift = fmin(pow(10, decade), 0.999999e9);
-        struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
-        for (size_t k = 0; k < SHAPES; k++) {
-            const bool joins = decade < 10 || k % 2;
-            const struct shape shape =
-                make_any_shape(&random, joins ? random_below(&random, ALL_FAMILIES - 1) : FAMILY_CIRCLE);
-            const struct shape moved = move_away(&random, shape, size, k % 2 ? 0 : shift);
-            scene_add_shape(&scene, &moved);
-        }
-        for (size_t k = 0; k < PAIRS; k++) {
-            const double reach = size * random_log_between(&random, 0.1, 2);
-            const uint32_t first = add_near_origin(&random, &scene, (uint32_t)random_below(&random, SHAPES), reach);
-            scene_add_pair(&scene, first,
-                           add_near_origin(&random, &scene, (uint32_t)random_below(&random, SHAPES), reach));
-        }
+    for (int decade = FIRST_FAR; decade <= LAST_FAR; decade++) {
+        struct scene scene = make_far_scene(&random, decade);
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "far from origin");
-        check_filters(&scene);
         destroy_scene(&scene);
     }
 }

@@ -14,8 +14,8 @@
 #include <time.h>
 
 #include "check.h"
+#include "corpus.h"
 #include "everywhere.h"
-#include "methods.h"
 #include "narc.h"
 #include "placements.h"
 #include "ray_reference.h"
@@ -33,8 +33,8 @@ enum { SHOWN = 10 };
 enum { SEARCHED = 64 };
 
 struct report {
-    struct contact_tally contacts[ALL_FAMILIES];
-    struct manifold_tally manifolds[ALL_FAMILIES];
+    struct contact_summary contacts[ALL_FAMILIES];
+    struct manifold_summary manifolds[ALL_FAMILIES];
     uint64_t pairs, searched, moved, casts, rays, points, wrong;
     size_t round;
     double unlike; /* between solving and searching, as a fraction of the bound */
@@ -59,7 +59,7 @@ static void print_table(const struct report *report) {
     printf("%-10s %11s %10s %9s %10s %6s %6s %8s %9s   (largest errors, as fractions of what is allowed)\n", "",
            "pairs", "colliding", "in band", "separation", "normal", "point", "manifold", "doubtful");
     for (size_t k = 0; k < ALL_FAMILIES; k++) {
-        const struct contact_tally *const row = &report->contacts[k];
+        const struct contact_summary *const row = &report->contacts[k];
         printf("%-10s %11zu %10zu %9zu %10.3f %6.3f %6.3f %8.3f %9zu\n", any_family_name(k), row->pairs, row->colliding,
                row->inside_band, row->worst.separation, row->worst.normal, row->worst.point, report->manifolds[k].worst,
                report->manifolds[k].doubtful);
@@ -85,7 +85,7 @@ static const char *check_exact(struct corpus *corpus, size_t k, bool overlap, co
             return "solution, by search";
     }
     struct fractions errors = {0};
-    struct manifold_tally tally = {0};
+    struct manifold_summary tally = {0};
     const char *wrong = check_answer(&pair->a, &pair->b, pair->gap, k, overlap, contact, &errors);
     wrong = wrong ? wrong : check_manifold(&pair->a, &pair->b, contact, manifold, &tally);
     for (int side = 0; side < 2; side++) {

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Includes go one way. A file includes headers of its own folder, and of the layers below that stand in the list; those
 # in `public_only` just the public headers, and soa/error.h, soa/memory.h, soa/compiler.h and soa/elementary.h. The public
-# headers of the other libraries are for these and what stands on them. Tests are a layer, wherever they stand. Run as
+# headers of the other libraries are for these and what stands on them: of the tests for those beside them, and for
+# `of_all_libraries`. Tests are a layer, wherever they stand. Run as
 #   cmake -D SOURCE=<the project's folder> -P layers.cmake
 cmake_minimum_required(VERSION 3.22)
 set(root "${SOURCE}")
@@ -23,6 +24,7 @@ set(below_tests include soa kernels dispatch methods files fit tools examples)
 set(below_bench include soa kernels dispatch methods files fit tools examples)
 set(public_only files fit tools examples apps)
 set(without_libraries include soa kernels dispatch)
+set(of_all_libraries "^tests/(fuzz/|package/consumer/|api/layout\\.c)")
 
 # The files of a layer; beside some folders stand their tests.
 function(list_files out layer)
@@ -65,6 +67,12 @@ set(wrong "")
 foreach(layer ${layers})
   list_files(files ${layer} ${sources_of_${layer}})
   foreach(file ${files})
+    set(below ${below_${layer}})
+    set(without ${without_libraries})
+    if(file MATCHES "^tests/" AND NOT file MATCHES "${of_all_libraries}")
+      list(REMOVE_ITEM below methods files fit tools)
+      list(APPEND without tests)
+    endif()
     file(STRINGS "${root}/${file}" lines REGEX "^ *# *include +[\"<]")
     foreach(line ${lines})
       string(REGEX REPLACE "^.*[\"</]([^\"<>/]+)[\">].*$" "\\1" name "${line}")
@@ -72,13 +80,13 @@ foreach(layer ${layers})
         continue() # a system's or a generated one
       endif()
       math(EXPR checked "${checked} + 1")
-      set(allowed ${layer} ${below_${layer}})
+      set(allowed ${layer} ${below})
       if(layer IN_LIST public_only AND name IN_LIST open_private)
         list(APPEND allowed soa)
       endif()
       set(found FALSE)
       foreach(owner ${layers_of_${name}})
-        if(owner IN_LIST allowed AND NOT (layer IN_LIST without_libraries AND name IN_LIST libraries))
+        if(owner IN_LIST allowed AND NOT (layer IN_LIST without AND name IN_LIST libraries))
           set(found TRUE)
         endif()
       endforeach()

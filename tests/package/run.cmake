@@ -64,10 +64,6 @@ if(STEP STREQUAL "install")
 elseif(STEP MATCHES "^cmake_")
   build_and_test("${SOURCE}/tests/package/consumer")
 
-elseif(STEP STREQUAL "app_dem")
-  set(TESTS ^dem_program)
-  build_and_test("${SOURCE}/apps/dem")
-
 elseif(STEP MATCHES "^(pkgconfig|example)_")
   if(TOOLCHAIN OR NOT PKG_CONFIG)
     skip("pkg-config answers for this machine only, or is not there")

@@ -9,7 +9,6 @@
 
 #include "families.h"
 #include "ledger.h"
-#include "narc_methods.h"
 #include "store.h"
 #include "tests.h"
 #include "turtle.h"
@@ -811,11 +810,6 @@ TEST(keeps_pieces_as_shapes) {
     assert_int_equal(narc_shape_flags(shapes, plain),
                      narc_shape_flags(shapes, first[run].shape) & ~(unsigned)NARC_SHAPE_RUN);
     assert_int_equal(shapes->piece_count, shape_count);
-    /* Other methods have no answer for pieces. */
-    narc_methods *methods = NULL;
-    narc_error error;
-    expect_error(narc_create_methods(shapes, NULL, &methods, &error), NARC_ERROR_ARGUMENT, &error, "pieces of chains");
-    assert_null(methods);
     /* A piece may be replaced by a shape, once it has one use. */
     const uint32_t uses = narc_count_uses(shapes, first[run].shape);
     for (uint32_t k = 1; k < uses; k++)

@@ -4,9 +4,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "copy.h"
 #include "families.h"
 #include "ledger.h"
 #include "oracle.h"
@@ -61,55 +59,11 @@ TEST(keeps_many_shapes) {
     free(kinds);
 }
 
-static double height_of(const struct shape *shape, double x, double y) {
-    narc_point p;
-    assert_true(narc_find_support(shape->arcs, shape->count, x, y, &p, NULL));
-    return p.x * x + p.y * y;
-}
-
-/* Half the sides of the box whose first side lies along a unit vector. */
-static void find_half_sides(const struct shape *shape, double x, double y, double *out_half_x, double *out_half_y) {
-    *out_half_x = (height_of(shape, x, y) + height_of(shape, -x, -y)) / 2;
-    *out_half_y = (height_of(shape, -y, x) + height_of(shape, y, -x)) / 2;
-}
-
 static double extent_of(const struct shape *shape) {
     double extent = 0;
     for (size_t i = 0; i < shape->count; i++)
         extent = fmax(extent, hypot(shape->arcs[i].center_x, shape->arcs[i].center_y) + shape->arcs[i].radius);
     return extent;
-}
-
-/* The box behind the arcs of the methods' copy: along a junction's normal, of a polygon an edge's; none along another
- * junction's is smaller; it holds the shape with the room that is promised, but for the rounding of its numbers, and
- * hardly more. */
-static void expect_box(const struct shape *shape, const narc_shape_header *header, const narc_record *arcs) {
-    const narc_oriented_box *box = (const narc_oriented_box *)&arcs[header->count];
-    const double x = (double)box->axis_x, y = (double)box->axis_y, extent = extent_of(shape);
-    const double least = (NARC_ROUNDING_ROOM - 8 * ulp) * extent, most = (NARC_ROUNDING_ROOM + 8 * ulp) * extent;
-    double half_x, half_y, area = INFINITY, least_area = INFINITY;
-    narc_mass mass;
-    assert_true(narc_compute_mass(shape->arcs, shape->count, &mass));
-    expect_near((double)box->centroid_x, mass.centroid_x, ulp * extent, "centroid x");
-    expect_near((double)box->centroid_y, mass.centroid_y, ulp * extent, "centroid y");
-    for (size_t i = 0; i < header->count; i++) {
-        const double start = shape->count == 1 ? shape->arcs[0].start + PI * (double)i
-                                               : shape->arcs[(i + header->first_arc) % header->count].start;
-        find_half_sides(shape, cos(start), sin(start), &half_x, &half_y);
-        if (box->axis_x == arcs[i].arc.start_x && box->axis_y == arcs[i].arc.start_y)
-            area = half_x * half_y;
-        least_area = fmin(least_area, half_x * half_y);
-    }
-    /* Of equal ones it is the first; what was stored is rounded, of both sides. Infinite: along no junction's normal. */
-    assert_true(area <= least_area * (1 + 1.001e-6) + 4 * ulp * extent * extent);
-    const double from_x = (double)box->center_x * x + (double)box->center_y * y,
-                 from_y = (double)box->center_y * x - (double)box->center_x * y;
-    const double room[4] = {(double)box->half_x - (height_of(shape, x, y) - from_x),
-                            (double)box->half_x - (height_of(shape, -x, -y) + from_x),
-                            (double)box->half_y - (height_of(shape, -y, x) - from_y),
-                            (double)box->half_y - (height_of(shape, y, -x) + from_y)};
-    for (int k = 0; k < 4; k++)
-        assert_true(room[k] >= least && room[k] <= most);
 }
 
 /* The layout that the kernels rely on. */
@@ -147,34 +101,6 @@ TEST(lays_out_blocks) {
         assert_true(header.extent_ratio == 255 || header.extent_ratio * (double)header.bound_radius >= extent);
         assert_true((header.extent_ratio - 1) * (double)header.bound_radius <= extent * 1.001);
     }
-    narc_destroy_shapes(shapes);
-}
-
-/* Other methods have a copy of each shape, and its box. */
-TEST(methods_have_boxes) {
-    enum { SHAPES = 40 * FAMILY_COUNT };
-    struct test_random random = test_random_named("blocks");
-    narc_methods *methods = NULL;
-    narc_shapes *shapes = empty_store();
-    for (size_t k = 0; k < SHAPES; k++) {
-        const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-        assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
-    }
-    assert_int_equal(narc_create_methods(shapes, NULL, &methods, NULL), NARC_OK);
-    assert_int_equal(methods->shapes.count, SHAPES);
-    for (size_t k = 0; k < SHAPES; k++) {
-        narc_shape_header header = methods->shapes.headers[k];
-        const narc_record *arcs = narc_arcs_of(&methods->shapes, &header);
-        assert_memory_equal(&methods->shapes.records[header.first_record],
-                            &shapes->records[shapes->headers[k].first_record],
-                            narc_count_records(&header) * sizeof *arcs);
-        struct shape stored;
-        stored.count = narc_get_arcs(shapes, (uint32_t)k, stored.arcs);
-        expect_box(&stored, &header, arcs);
-        header.first_record = shapes->headers[k].first_record;
-        assert_memory_equal(&header, &shapes->headers[k], sizeof header);
-    }
-    narc_destroy_methods(methods);
     narc_destroy_shapes(shapes);
 }
 

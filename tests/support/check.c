@@ -61,8 +61,7 @@ static const char *check_arcs(const struct reference_body *a, const struct refer
     return fabs((u_x * x + u_y * y) - radii - gap) > bound ? "the arcs have another gap" : NULL;
 }
 
-/* Signed distance from a point in world axes, relative to A's position, to a body. */
-static double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y) {
+double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y) {
     double length = hypot(body->cosine, body->sine), scale = body->scale * length, distance = NAN;
     double c = body->cosine / length, s = body->sine / length;
     x -= body->x - a->x;
@@ -131,13 +130,13 @@ const char *check_answer(const struct reference_body *a, const struct reference_
     return contact->pair != k ? "pair index" : wrong;
 }
 
-void count_pair(struct contact_tally *tally, double gap, double bound, const struct fractions *errors) {
-    tally->pairs++;
-    tally->colliding += gap < 0;
-    tally->inside_band += fabs(gap) <= bound;
-    tally->worst.separation = fmax(tally->worst.separation, errors->separation);
-    tally->worst.normal = fmax(tally->worst.normal, errors->normal);
-    tally->worst.point = fmax(tally->worst.point, errors->point);
+void count_pair(struct contact_summary *summary, double gap, double bound, const struct fractions *errors) {
+    summary->pairs++;
+    summary->colliding += gap < 0;
+    summary->inside_band += fabs(gap) <= bound;
+    summary->worst.separation = fmax(summary->worst.separation, errors->separation);
+    summary->worst.normal = fmax(summary->worst.normal, errors->normal);
+    summary->worst.point = fmax(summary->worst.point, errors->point);
 }
 
 /* ------------------------------------------------------------------------------------------------ manifolds */
@@ -195,7 +194,7 @@ static bool is_reach(const struct reference_body *body, unsigned feature, double
 
 /* A manifold found with an infinite margin against the contact and the reference. */
 const char *check_manifold(const struct reference_body *a, const struct reference_body *b, const narc_contact *found,
-                           const narc_manifold *m, struct manifold_tally *tally) {
+                           const narc_manifold *m, struct manifold_summary *summary) {
     const struct exact_contact contact = {(double)found->separation, (double)found->normal_x, (double)found->normal_y,
                                           (double)found->point_x,    (double)found->point_y,  arc_of_a(found->feature),
                                           arc_of_b(found->feature)};
@@ -224,15 +223,15 @@ const char *check_manifold(const struct reference_body *a, const struct referenc
     if (!is_reach(a, found->feature & 0xff, contact.normal_x, contact.normal_y, 1, m->reach_a) ||
         !is_reach(b, found->feature >> 8, contact.normal_x, contact.normal_y, -1, m->reach_b))
         return "reach";
-    tally->pairs++;
-    tally->two += m->count == 2;
+    summary->pairs++;
+    summary->two += m->count == 2;
     if (right.doubtful) {
-        tally->doubtful++;
+        summary->doubtful++;
         return NULL;
     }
     if (m->count != right.count)
         return "number of points";
-    tally->stretches += right.stretch;
+    summary->stretches += right.stretch;
     if (!exact_place && !right.stretch)
         return "the deepest place";
     /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
@@ -240,7 +239,7 @@ const char *check_manifold(const struct reference_body *a, const struct referenc
         struct reference_point point = right.point[i];
         if (right.stretch)
             point.separation = fmax(point.separation, contact.separation);
-        const char *wrong = check_manifold_point(&point, &m->point[i], bound, &tally->worst);
+        const char *wrong = check_manifold_point(&point, &m->point[i], bound, &summary->worst);
         if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && m->count == 1))
             return wrong;
     }

@@ -18,6 +18,9 @@ struct fractions {
 /* The documented bound of a separation's error. */
 double separation_bound(const struct reference_body *a, const struct reference_body *b);
 
+/* Signed distance from a point in world axes, relative to A's position, to a body. */
+double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y);
+
 /* Checks a contact against the exact gap of its pair: separation, normal, point, arcs and radii. Raises `worst` to this
  * contact's errors where they are larger. Returns NULL, or what is wrong (static storage). */
 const char *check_contact(const struct reference_body *a, const struct reference_body *b, double gap,
@@ -30,11 +33,11 @@ void print_answer(const struct reference_body *a, const struct reference_body *b
                   const narc_contact *contact);
 
 /* Pairs of a kind: how many collide, how many are too near to touching to be sure, and the largest errors. */
-struct contact_tally {
+struct contact_summary {
     size_t pairs, colliding, inside_band;
     struct fractions worst;
 };
-void count_pair(struct contact_tally *tally, double gap, double bound, const struct fractions *errors);
+void count_pair(struct contact_summary *summary, double gap, double bound, const struct fractions *errors);
 
 /* A point of a manifold and its separation may be off by that many bounds of a separation: both edges' ends, a rotated
  * normal, and the slope of an edge at the flat angle. */
@@ -42,7 +45,7 @@ extern const double manifold_bounds;
 
 /* Of manifolds: `doubtful` ones have choices within rounding, so that the contact in them is all that is certain. `worst`
  * is the largest error of a point as a fraction of what is allowed. */
-struct manifold_tally {
+struct manifold_summary {
     size_t pairs, two, stretches, doubtful;
     double worst;
 };
@@ -50,6 +53,6 @@ struct manifold_tally {
 /* A manifold found with an infinite margin against the pair's contact, found so too, and the reference. NULL, or what is
  * wrong. */
 const char *check_manifold(const struct reference_body *a, const struct reference_body *b, const narc_contact *found,
-                           const narc_manifold *m, struct manifold_tally *tally);
+                           const narc_manifold *m, struct manifold_summary *summary);
 
 #endif

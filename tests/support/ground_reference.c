@@ -108,9 +108,9 @@ static struct ground *walk_pieces(const struct chain *chain) {
     ground->open = !chain->closed;
     ground->ends[0] = on_arc(&chain->arcs[0], chain->arcs[0].start);
     ground->ends[1] = on_arc(&chain->arcs[chain->count - 1], chain->arcs[chain->count - 1].end);
-    size_t hollows = 0, run = 0; /* concave arcs: of all, and before arc k */
+    size_t concave_count = 0, run = 0; /* concave arcs: of all, and before arc k */
     for (size_t k = 0; k < chain->count; k++)
-        hollows += signbit(chain->arcs[k].radius) != 0;
+        concave_count += signbit(chain->arcs[k].radius) != 0;
     for (size_t k = 0; k < chain->count; k++) {
         const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
         struct piece edge = {
@@ -126,7 +126,7 @@ static struct ground *walk_pieces(const struct chain *chain) {
             add_piece(ground, edge);
         add_arc(ground, arc, run);
         run += signbit(arc->radius) != 0;
-        run = chain->closed && run == hollows ? 0 : run; /* the last one is the first one */
+        run = chain->closed && run == concave_count ? 0 : run; /* the last one is the first one */
     }
     return ground;
 }

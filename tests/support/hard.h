@@ -50,4 +50,10 @@ enum { HARD_BODIES = 64 };
 void add_hard_pairs(struct test_random *random, struct scene *scene, enum hard_placement placement, uint32_t shape_a,
                     uint32_t shape_b);
 
+/* Pairs of shapes, half of which lie 10^decade times their radius from their own origin: up to 1e18 times, the smallest
+ * radius and the largest shift that a store takes. From 2e5 on the room for rounding is larger than the shape, and from 2e7
+ * on single precision leaves nothing of it but a speck. From 1e10 on only circles still join up. */
+enum { FIRST_FAR = 3, LAST_FAR = 18 };
+struct scene make_far_scene(struct test_random *random, int decade);
+
 #endif

@@ -198,3 +198,48 @@ void add_hard_pairs(struct test_random *random, struct scene *scene, enum hard_p
         break;
     }
 }
+
+/* A shape of the given size, `shift` away from its origin. */
+static struct shape move_away(struct test_random *random, struct shape shape, double size, double shift) {
+    narc_circle bound;
+    assert_true(narc_compute_bounding_circle(shape.arcs, shape.count, &bound));
+    const double angle = random_between(random, -PI, PI), factor = size / bound.radius;
+    for (size_t i = 0; i < shape.count; i++) {
+        narc_arc *arc = &shape.arcs[i];
+        arc->center_x = (arc->center_x - bound.x) * factor + shift * cos(angle);
+        arc->center_y = (arc->center_y - bound.y) * factor + shift * sin(angle);
+        arc->radius *= factor;
+    }
+    return shape;
+}
+
+/* Adds a body somewhere within `reach` of the world's origin, seen from the middle of its shape. */
+static uint32_t add_near_origin(struct test_random *random, struct scene *scene, uint32_t shape, double reach) {
+    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -PI, PI), 1);
+    const double c = (double)body.cosine, s = (double)body.sine;
+    narc_circle bound;
+    assert_true(narc_compute_bounding_circle(scene->shapes[shape].arcs, scene->shapes[shape].count, &bound));
+    body.x = reach * random_between(random, -1, 1) - (c * bound.x - s * bound.y);
+    body.y = reach * random_between(random, -1, 1) - (s * bound.x + c * bound.y);
+    body.shape = shape;
+    return scene_add_body(scene, body);
+}
+
+struct scene make_far_scene(struct test_random *random, int decade) {
+    enum { SHAPES = 40, PAIRS = 4000 };
+    const double size = 1.000001 * fmin(1, pow(10, 9 - decade)), shift = fmin(pow(10, decade), 0.999999e9);
+    struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
+    for (size_t k = 0; k < SHAPES; k++) {
+        const bool joins = decade < 10 || k % 2;
+        const struct shape shape =
+            make_any_shape(random, joins ? random_below(random, ALL_FAMILIES - 1) : FAMILY_CIRCLE);
+        const struct shape moved = move_away(random, shape, size, k % 2 ? 0 : shift);
+        scene_add_shape(&scene, &moved);
+    }
+    for (size_t k = 0; k < PAIRS; k++) {
+        const double reach = size * random_log_between(random, 0.1, 2);
+        const uint32_t first = add_near_origin(random, &scene, (uint32_t)random_below(random, SHAPES), reach);
+        scene_add_pair(&scene, first, add_near_origin(random, &scene, (uint32_t)random_below(random, SHAPES), reach));
+    }
+    return scene;
+}

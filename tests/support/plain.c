@@ -14,13 +14,12 @@
 #include "plain_kernels.h"
 
 /* Finds a batch's rows group by group; returns how many. */
-static size_t find_rows(const narc_batch *batch, void *rows) {
-    const size_t size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
+static size_t find_rows(narc_row_kernel *kernel, const narc_batch *batch, size_t size, void *rows) {
     size_t found = 0, skipped = 0;
     for (size_t k = 0; k < batch->asked; k += NARC_ROW_GROUP) {
         const size_t left = batch->asked - k;
         const narc_rows out = {.base = (char *)rows + found * size, .stride = (ptrdiff_t)size};
-        found += narc_kernels_plain.contact(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
+        found += kernel(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
     }
     return found;
 }
@@ -45,7 +44,7 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
     const size_t count = pairs->count;
     struct contacts plain = {make_junk(count * sizeof *plain.rows), count};
     uint64_t *bits = make_junk(NARC_BIT_WORDS(count) * sizeof *bits);
-    assert_int_equal(find_rows(&batch, plain.rows), count);
+    assert_int_equal(find_rows(narc_kernels_plain.contact, &batch, sizeof *plain.rows, plain.rows), count);
     narc_kernels_plain.overlap(&batch, 0, count, &skipped, bits);
     for (size_t k = 0; k < count; k++) {
         assert_int_equal(plain.rows[k].pair, k);
@@ -57,10 +56,9 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
 
 struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                       const narc_query *query) {
-    narc_batch batch = begin_plain(shapes, bodies, pairs, query);
-    batch.manifolds = true;
+    const narc_batch batch = begin_plain(shapes, bodies, pairs, query);
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
-    plain.count = find_rows(&batch, plain.rows);
+    plain.count = find_rows(narc_kernels_plain.manifold, &batch, sizeof *plain.rows, plain.rows);
     return plain;
 }
 

@@ -24,12 +24,10 @@ struct scene create_scene(narc_precision precision, size_t shapes, size_t bodies
                           .bodies = allocate(bodies, sizeof(struct body)),
                           .pairs = allocate(pairs, sizeof(struct pair))};
     assert_int_equal(narc_create_shapes(NULL, &scene.store), NARC_OK);
-    assert_int_equal(narc_create_methods(scene.store, NULL, &scene.methods, NULL), NARC_OK);
     return scene;
 }
 
 void destroy_scene(struct scene *scene) {
-    narc_destroy_methods(scene->methods);
     narc_destroy_shapes(scene->store);
     free(scene->shapes);
     free(scene->bodies);
@@ -197,11 +195,7 @@ struct manifolds scene_manifolds(const struct scene *scene, float margin) {
     return find_manifolds(scene->store, &bodies, &pairs, &(narc_query){.margin = margin});
 }
 
-const narc_methods *scene_methods(const struct scene *scene) {
-    narc_error error;
-    expect_ok(narc_refresh_methods(scene->methods, &error), &error);
-    return scene->methods;
-}
+uint32_t *create_hints(size_t count) { return allocate(count, sizeof(uint32_t)); }
 
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs) {
     const size_t shapes_per_family = 4;

@@ -6,7 +6,7 @@
 #define NARC_TEST_SCENE_H
 
 #include "families.h"
-#include "narc_methods.h"
+#include "narc.h"
 #include "narc_scene.h"
 #include "reference.h"
 
@@ -26,7 +26,6 @@ struct pair {
 
 struct scene {
     narc_shapes *store;
-    narc_methods *methods; /* of the store: see scene_methods() */
     struct shape *shapes;
     size_t shape_count;
     struct body *bodies;
@@ -101,8 +100,11 @@ uint64_t *scene_overlaps(const struct scene *scene);
 struct contacts scene_contacts(const struct scene *scene, float margin);
 struct manifolds scene_manifolds(const struct scene *scene, float margin);
 
-/* What the calls of narc_methods.h want, of the shapes as they are now. */
-const narc_methods *scene_methods(const struct scene *scene);
+/* Zeros, as hints of as many pairs. */
+uint32_t *create_hints(size_t count);
+
+/* A plain array of hints; NULL: none. */
+static inline narc_hint_column hint_column(uint32_t *hints) { return (narc_hint_column){hints, sizeof *hints}; }
 
 /* Pairs of random bodies of random families, about half of which collide; no special placements, so it is fast. */
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs);

@@ -79,27 +79,3 @@ TEST(test_wall_across_border) {
         dem_destroy(&d);
     }
 }
-
-static void expect_refusal(dem *d, const char *message) {
-    expect_start_error(d, message);
-    dem_destroy(d);
-}
-
-/* A cell in which two images of a grain could both touch another one is refused, and so is what crosses a border. */
-TEST(test_refusals) {
-    dem_settings settings = plain_settings();
-    settings.periodic_x = true;
-    settings.high.x = 4.3; /* two discs of width 2, and the skin 0.2 for each */
-    dem small = make_world(settings, plain_law());
-    add_grain(&small, DISC, 1, 0, 0, 0);
-    expect_refusal(&small, "the periodic cell is too small");
-    settings.high.x = 4.5;
-    dem enough = make_world(settings, plain_law());
-    add_grain(&enough, DISC, 1, 0, 0, 0);
-    dem_start(&enough);
-    dem_destroy(&enough);
-    dem tilted = make_world(settings, plain_law());
-    add_grain(&tilted, DISC, 1, 0, 0, 0);
-    add_plate(&tilted, "ramp", 0, 0, 1, 1);
-    expect_refusal(&tilted, "wall 'ramp': a plate with normal");
-}

@@ -42,7 +42,8 @@ static double angular_momentum(const dem *d) {
     const dem_body *b = d->bodies;
     double sum = 0;
     for (size_t k = 0; k < 2; k++)
-        sum += b[k].mass * (b[k].place.x * b[k].velocity.y - b[k].place.y * b[k].velocity.x) + b[k].inertia * b[k].spin;
+        sum += b[k].mass * (b[k].position.x * b[k].velocity.y - b[k].position.y * b[k].velocity.x) +
+               b[k].inertia * b[k].spin;
     return sum;
 }
 
@@ -193,7 +194,7 @@ TEST(test_restitution_of_shapes) {
         const double angle_a = cases[k / 2].angle_a, angle_b = cases[k / 2].angle_b;
         dem_add_grain(&d, (dem_grain){.shape = shape, .angle = angle_a, .scale = 1, .velocity.x = 1});
         dem_add_grain(&d,
-                      (dem_grain){.shape = shape, .angle = angle_b, .place.x = reach, .scale = 1, .velocity.x = -1});
+                      (dem_grain){.shape = shape, .angle = angle_b, .position.x = reach, .scale = 1, .velocity.x = -1});
         dem_start(&d);
         collide(&d);
         const double found = 0.5 * (d.bodies[1].velocity.x - d.bodies[0].velocity.x);
@@ -217,7 +218,7 @@ TEST(test_hertz_has_one_radius) {
         const double depth = 1e-3, reach = corner ? sqrt(0.5) : 0.5, h = corner ? depth : sqrt(2) * depth;
         const dem_grain left = {.shape = SQUARE, .scale = 1};
         const dem_grain right = {
-            .shape = SQUARE, .place.x = 0.5 + reach - depth, .angle = corner ? PI / 4 : 0, .scale = 1};
+            .shape = SQUARE, .position.x = 0.5 + reach - depth, .angle = corner ? PI / 4 : 0, .scale = 1};
         dem_add_grain(&d, left);
         dem_add_grain(&d, right);
         dem_start(&d);
@@ -236,9 +237,9 @@ TEST(test_hertz_has_one_radius) {
 static double find_error(double step_angle) {
     const double rate = sqrt(1e5 / (0.5 * PI)), speed = 8;
     dem d = make_collision(DISC, DEM_LINEAR, plain_law(), step_angle / rate, speed, 0);
-    d.bodies[1].place.x = 2;
+    d.bodies[1].position.x = 2;
     step(&d, (size_t)lround(2 / step_angle));
-    const double depth = 2 - (d.bodies[1].place.x - d.bodies[0].place.x);
+    const double depth = 2 - (d.bodies[1].position.x - d.bodies[0].position.x);
     dem_destroy(&d);
     return fabs(depth / (speed / rate * sin(2)) - 1);
 }
@@ -272,8 +273,8 @@ static double spin_at(uint32_t shape, double friction, size_t steps) {
     dem_contact_law law = plain_law();
     law.friction = friction;
     dem d = make_collision(shape, DEM_LINEAR, law, end / (double)steps, 6, 4);
-    d.bodies[1].place.y = shape == DISC ? 0 : 0.4;
-    d.bodies[1].place.x = find_place(&d, shape, d.bodies[1].place.y);
+    d.bodies[1].position.y = shape == DISC ? 0 : 0.4;
+    d.bodies[1].position.x = find_place(&d, shape, d.bodies[1].position.y);
     step(&d, steps);
     assert_int_equal(d.contact_count, 1);
     const double spin = d.bodies[1].spin;

@@ -65,8 +65,8 @@ TEST(test_gas_keeps_its_energy) {
         const gas_case *at = &cases[k / 2];
         const dem_law kind = k % 2 ? DEM_HERTZ : DEM_LINEAR;
         size_t contacts;
-        const double coarse = find_drift(at->shape, kind, 100000, 1e-4, &contacts);
-        const double fine = find_drift(at->shape, kind, 100000, 5e-5, &contacts);
+        const double coarse = find_drift(at->shape, kind, 30000, 1e-4, &contacts);
+        const double fine = find_drift(at->shape, kind, 30000, 5e-5, &contacts);
         print_message("%s, %s: largest drift %.3g and %.3g, up to %zu contacts at a time\n", at->name,
                       k % 2 ? "Hertz" : "linear", coarse, fine, contacts);
         assert_true(contacts > 4);

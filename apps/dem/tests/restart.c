@@ -42,8 +42,8 @@ static void check_same_walls(const dem *d, const dem *other) {
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
 TEST(test_bit_for_bit) {
     dem d = make_busy_world(1), again = make_busy_world(2);
-    const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3};
-    dem_place found = {.input = 5};
+    const dem_progress progress = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3};
+    dem_progress found = {.input = 5};
     d.walls[2].velocity = (vec){0.01, 0.02};
     d.walls[2].spin = 2.5;
     d.walls[2].idle_way = 1;
@@ -52,9 +52,9 @@ TEST(test_bit_for_bit) {
     dem_start(&d);
     dem_start(&again);
     step(&d, 3000);
-    dem_write_restart(&d, &place, path);
+    dem_write_restart(&d, &progress, path);
     dem_read_restart(&again, &found, path);
-    assert_memory_equal(&place, &found, sizeof place);
+    assert_memory_equal(&progress, &found, sizeof progress);
     assert_true(dem_hash(&d) == dem_hash(&again));
     check_same_measures(&d, &again);
     check_same_walls(&d, &again);
@@ -78,10 +78,10 @@ static void write_file(const char *bytes, size_t size) {
 
 static void expect_refusal(const char *message, uint64_t input) {
     dem d = make_busy_world(1);
-    dem_place place = {.input = input};
+    dem_progress progress = {.input = input};
     dem_start(&d);
     const uint64_t before = dem_hash(&d);
-    EXPECT_ERROR(&d, message, dem_read_restart(&d, &place, path));
+    EXPECT_ERROR(&d, message, dem_read_restart(&d, &progress, path));
     check_error(&d, path);
     assert_true(dem_hash(&d) == before);
     dem_destroy(&d);
@@ -98,7 +98,7 @@ TEST(test_damage) {
     size_t size;
     dem_start(&d);
     step(&d, 10);
-    dem_write_restart(&d, &(dem_place){.input = 5}, path);
+    dem_write_restart(&d, &(dem_progress){.input = 5}, path);
     char *bytes = dem_read_file(path, &size);
     for (size_t i = 0; i < sizeof flips / sizeof flips[0]; i++) {
         bytes[flips[i].offset] ^= 1;
@@ -124,7 +124,7 @@ TEST(test_foreign_bodies) {
     dem d = make_busy_world(1);
     dem_start(&d);
     d.bodies[0].inverse_mass = 0;
-    dem_write_restart(&d, &(dem_place){.input = 5}, path);
+    dem_write_restart(&d, &(dem_progress){.input = 5}, path);
     expect_refusal("its bodies do not fit the input", 5);
     dem_destroy(&d);
 }
@@ -133,7 +133,7 @@ TEST(test_foreign_bodies) {
 TEST(test_no_place_to_write) {
     dem d = make_busy_world(1);
     dem_start(&d);
-    const dem_place place = {.input = 1};
-    EXPECT_ERROR(&d, "/nonexistent/folder/file: ", dem_write_restart(&d, &place, "/nonexistent/folder/file"));
+    const dem_progress progress = {.input = 1};
+    EXPECT_ERROR(&d, "/nonexistent/folder/file: ", dem_write_restart(&d, &progress, "/nonexistent/folder/file"));
     dem_destroy(&d);
 }

@@ -23,7 +23,7 @@ static dem make_slope(uint32_t shape, double friction, double rolling_friction, 
     d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "slope", 0, 0, 0, 1);
     add_grain(&d, shape, 0, 1, 0, 0);
-    d.bodies[0].place.y = 1 - find_depth(&d);
+    d.bodies[0].position.y = 1 - find_depth(&d);
     dem_start(&d);
     return d;
 }
@@ -41,7 +41,7 @@ static void check_rolling(uint32_t shape, bool periodic) {
                   speed + d.bodies[0].spin * arm);
     assert_true(fabs(speed / time / expected - 1) < 1e-5);
     assert_true(fabs(speed + d.bodies[0].spin * arm) < 1e-4 * speed);
-    const double way = d.bodies[0].place.x + (periodic ? 7.0 * d.bodies[0].cell_x : 0);
+    const double way = d.bodies[0].position.x + (periodic ? 7.0 * d.bodies[0].cell_x : 0);
     assert_true(fabs(way / (0.5 * expected * time * time) - 1) < 1e-4);
     dem_destroy(&d);
 }
@@ -85,7 +85,7 @@ TEST(test_rolling_friction) {
     const double before = slower.bodies[0].velocity.x;
     step(&slower, 10000);
     const double found = slower.bodies[0].velocity.x - before; /* in a second */
-    assert_true(fabs(held.bodies[0].velocity.x) < 0.01 && fabs(held.bodies[0].place.x) < 0.01);
+    assert_true(fabs(held.bodies[0].velocity.x) < 0.01 && fabs(held.bodies[0].position.x) < 0.01);
     const double arm = 1 - 0.5 * find_depth(&slower), mass = slower.bodies[0].mass;
     const double torque = mass * GRAVITY * sin(ANGLE) * arm - 0.5 * tan(ANGLE) * mass * GRAVITY * cos(ANGLE);
     const double expected = torque * arm / (mass * arm * arm + slower.bodies[0].inertia);

@@ -97,6 +97,19 @@ TEST(test_depth_never_jumps) {
     dem_destroy(&d);
 }
 
+/* Two circles of radius 1 and 0.5 and their tangents: the library says how deep they are. */
+TEST(test_edges_between_unequal_arcs) {
+    const double turn = acos(0.25);
+    const narc_arc arcs[] = {{0, 0, 1, turn, PI}, {0, 0, 1, PI, 2 * PI - turn}, {2, 0, 0.5, -turn, turn}};
+    dem d;
+    dem_create(&d, plain_settings());
+    const uint32_t shape = dem_add_shape(&d, "drop", arcs, 3);
+    uint64_t random = 4;
+    for (int trial = 0; trial < 1000; trial++)
+        draw_pose(&d, shape, &random);
+    dem_destroy(&d);
+}
+
 /* What a force of 1 does in a small motion is what the depth loses: by central differences of 1e-6. */
 TEST(test_force_is_the_gradient_of_the_depth) {
     dem d = plain_world();
@@ -177,7 +190,7 @@ TEST(test_bricks_stand_still) {
     dem_start(&d);
     step(&d, 60000);
     const size_t contacts = d.contact_count;
-    const double x = d.bodies[22].place.x, y = d.bodies[22].place.y;
+    const double x = d.bodies[22].position.x, y = d.bodies[22].position.y;
     for (int i = 0; i < 20000; i++) {
         step(&d, 1);
         assert_int_equal(d.contact_count, contacts);
@@ -185,9 +198,9 @@ TEST(test_bricks_stand_still) {
     dem_measures m;
     dem_measure(&d, NULL, &m);
     print_message("%zu contacts, fastest %.3g, moved by %.3g\n", contacts, m.fastest,
-                  hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y));
+                  hypot(d.bodies[22].position.x - x, d.bodies[22].position.y - y));
     assert_int_equal(contacts, 5 + 4 * 9);
     assert_true(m.fastest < 1e-12 && m.energy.kinetic < 1e-22);
-    assert_true(hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y) < 1e-10);
+    assert_true(hypot(d.bodies[22].position.x - x, d.bodies[22].position.y - y) < 1e-10);
     dem_destroy(&d);
 }

@@ -21,7 +21,7 @@ TEST(test_work_of_a_wall) {
     assert_int_equal(d.contact_count, 0);
     assert_true(fabs(d.bodies[0].velocity.x - 4) < 4e-3);
     assert_true(fabs(d.walls[0].work - energies(&d).kinetic) < 1e-4); /* 1e-7 of a depth, in each of some steps */
-    assert_true(fabs(d.bodies[1].place.x + 4 * (d.grain_reach + d.settings.skin) - 2 * d.time) < 1e-9);
+    assert_true(fabs(d.bodies[1].position.x + 4 * (d.grain_reach + d.settings.skin) - 2 * d.time) < 1e-9);
     dem_destroy(&d);
 }
 
@@ -55,11 +55,11 @@ TEST(test_turning_wall) {
     dem_start(&d);
     step(&d, 250);
     /* A quarter of a turn: 2 atan(h) for each step of 2 h, less by a third of h^2, 3.3e-6. */
-    assert_true(fabs(d.bodies[1].place.x - 2) < 1e-4 && fabs(d.bodies[1].place.y - 4.25) < 1e-4);
+    assert_true(fabs(d.bodies[1].position.x - 2) < 1e-4 && fabs(d.bodies[1].position.y - 4.25) < 1e-4);
     assert_true(fabs(d.bodies[1].velocity.x + 3 * 2 * PI) < 1e-3 && fabs(d.bodies[1].velocity.y - 1) < 1e-3);
     assert_true(fabs(atan2(d.bodies[1].turn.y, d.bodies[1].turn.x) - 0.25 - PI / 2) < 1e-4);
     step(&d, 750);
-    assert_true(fabs(d.bodies[1].place.x - 5) < 1e-3 && fabs(d.bodies[1].place.y - 2) < 1e-3);
+    assert_true(fabs(d.bodies[1].position.x - 5) < 1e-3 && fabs(d.bodies[1].position.y - 2) < 1e-3);
     assert_true(fabs(hypot(d.bodies[1].turn.x, d.bodies[1].turn.y) - 1) < 1e-14);
     dem_destroy(&d);
 }
@@ -138,9 +138,9 @@ TEST(test_servo_touches_in_time) {
 /* Who is to press with no force, and touches nothing, stays. */
 TEST(test_servo_of_no_force) {
     dem d = make_press(-1, 0, 5e-4, 0.5, 0);
-    const double before = d.bodies[4].place.y;
+    const double before = d.bodies[4].position.y;
     step(&d, 1000);
-    assert_true(d.bodies[4].place.y == before);
+    assert_true(d.bodies[4].position.y == before);
     dem_destroy(&d);
 }
 
@@ -158,6 +158,6 @@ TEST(test_conveyor) {
     dem_start(&d);
     step(&d, 20000);
     assert_true(fabs(d.bodies[0].velocity.x + 2) < 0.02);
-    assert_true(fabs(d.bodies[1].place.x) < 1e-12); /* the plate's body stays */
+    assert_true(fabs(d.bodies[1].position.x) < 1e-12); /* the plate's body stays */
     dem_destroy(&d);
 }

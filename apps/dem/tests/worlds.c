@@ -91,8 +91,6 @@ static void add_shapes(dem *d) {
     assert_int_equal(dem_add_compound(d, "ell", arcs, bars, 2), ELL);
 }
 
-void expect_start_error(dem *d, const char *message) { EXPECT_ERROR(d, message, dem_start(d)); }
-
 dem make_world(dem_settings settings, dem_contact_law law) {
     dem d;
     dem_create(&d, settings);
@@ -105,12 +103,12 @@ dem make_world(dem_settings settings, dem_contact_law law) {
 dem plain_world(void) { return make_world(plain_settings(), plain_law()); }
 
 void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy) {
-    dem_add_grain(d, (dem_grain){.shape = shape, .place = {x, y}, .scale = 1, .velocity = {vx, vy}});
+    dem_add_grain(d, (dem_grain){.shape = shape, .position = {x, y}, .scale = 1, .velocity = {vx, vy}});
 }
 
 void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y) {
     dem_wall wall = {
-        .kind = DEM_PLATE, .place = {x, y}, .normal = {normal_x, normal_y}, .servo = {.between = {-1, -1}}};
+        .kind = DEM_PLATE, .position = {x, y}, .normal = {normal_x, normal_y}, .servo = {.between = {-1, -1}}};
     snprintf(wall.name, sizeof wall.name, "%s", name);
     dem_add_wall(d, wall);
 }
@@ -120,7 +118,7 @@ dem_wall *add_box(dem *d, uint32_t shape, double scale, double x, double y) {
                                .kind = DEM_BOX,
                                .shape = shape,
                                .scale = scale,
-                               .place = {x, y},
+                               .position = {x, y},
                                .pivot = {x, y},
                                .servo = {.between = {-1, -1}}});
     return &d->walls[d->wall_count - 1];

@@ -65,6 +65,5 @@ double total_energy(const dem *d);
 extern jmp_buf error_place;
 void watch_errors(dem *d);
 void check_error(const dem *d, const char *message);
-void expect_start_error(dem *d, const char *message);
 
 #endif

@@ -103,7 +103,7 @@ void check_restitution(const std::string &shape, double radius, bool turned) {
 }
 
 /* The larger disc comes from the left and meets the smaller one, with the restitution that is given, whatever the
- * masses and the speed. 200 steps a contact and more leave 1e-2: see the cases of apps/dem. */
+ * masses and the speed. 200 steps a contact and more leave 1e-2. */
 void check_given(const char *law, double speed) {
     Packing packing = {10, 10, {{1, 4, 5, 0.7, 0, speed, 0, 0}, {1, 5.11, 5, 0.4, 0, 0, 0, 0}}};
     Simulation pair(MPI_COMM_WORLD);

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * list.c - which rows there are: each word of a group's queries with each of its shapes, scenes and who answers.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common.h"
+#include "rows.h"
+
+enum { MAX_ROWS = 4096, WORD = 48 };
+
+/* BEST: the best instruction set; EACH: each of those that run here. */
+struct group {
+    const char *queries, *families, *layouts, *who;
+};
+
+#define QUERIES "overlap contact hinted manifold"
+#define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
+#define STEPS   "boxes pairs match step kept"
+#define STACKS  "pyramid pyramid-templates lattice lattice-templates"
+#define PARTS                                                                                                          \
+    "BEST/64pairs BEST/256pairs BEST/1024pairs BEST/4096pairs BEST/16384pairs BEST/65536pairs BEST/262144pairs"
+#define PARTS_2                                                                                                        \
+    "BEST/2threads/64pairs BEST/2threads/256pairs BEST/2threads/1024pairs BEST/2threads/4096pairs "                    \
+    "BEST/2threads/16384pairs BEST/2threads/65536pairs BEST/2threads/262144pairs"
+#define SCENES  "pile-1000 sparse-1000 pile sparse pile-1000000 sparse-1000000"
+#define STILL   "pile-1100 sparse-1100 pile-33000 sparse-33000 pile-1100000 sparse-1100000"
+#define FLIGHTS "impact-straight impact-straight-anywhere impact-turning impact-turning-anywhere impact-turning-6"
+
+static const struct group groups[] = {
+    {QUERIES, KINDS, "pile pile-unlike", "BEST"},
+    {"contact", "n4 n8 boxes capsules", "pile pile-unlike", "box2d"},
+    {"contact", "n8 boxes capsules", "pile pile-unlike", "chipmunk"},
+    {"contact", "discs", "pile", "loop"},
+    {"contact hinted", "n4 n8", "pile", "avx2"},
+    {"contact manifold", "capsules", "pile", "avx2"},
+    {"contact", "n8", "pile", "BEST/by1 BEST/by4 BEST/by16 BEST/by64 BEST/by256 BEST/by65536"},
+    {STEPS, "n8", "pile-2000 pile pile-1000000", "BEST"},
+    {STEPS " overlap", "n8", "pile-1000000", "BEST BEST/2threads"},
+    {"manifold", "n8", "pile-1000000", "BEST"},
+    {"overlap", "n8", "pile-1000000", PARTS},
+    {"overlap", "n8", "pile-1000000", PARTS_2},
+    {"step", "n8", "pile-2000 pile", "box2d chipmunk"},
+    {"update", "n8", "pile-10000", "BEST/1of1 BEST/1of20 BEST/1of100 BEST/1of0"},
+    {"overlap contact manifold", "squares", STACKS, "BEST"},
+    {"contact", "squares", STACKS, "box2d"},
+    {"overlap contact", "n4 n6 n8 n12 n16 kinds general capsules", "mixed", "EACH"},
+    {"overlap contact", "n8", "mixed-templates mixed-sorted mixed-templates-sorted", "EACH"},
+    {"overlap", "bounds8", "mixed mixed-templates", "EACH"},
+    {"unhinted hinted", "n8", "mixed-templates", "EACH"},
+    {"overlap", "n4 n6 n8 n12 n16", "mixed", "box2d ccd-gjk ccd-mpr"},
+    {"contact", "n4 n6 n8 n12 n16", "mixed", "box2d chipmunk"},
+    {"ray-fan ray-long ray-short", "gons8", SCENES, "BEST BEST/by1 box2d chipmunk"},
+    {"ray-fan ray-long ray-short", "n8", SCENES, "BEST"},
+    {"region-48 region-3", "gons8", SCENES, "BEST BEST/by1 BEST/2threads box2d chipmunk geos"},
+    {"nearest", "gons8", SCENES, "BEST BEST/by1 chipmunk geos"},
+    {"nearest", "n8", SCENES, "BEST BEST/by1 BEST/2threads"},
+    {"nearest-inside distance distance-of-one", "n8", SCENES, "BEST"},
+    {"impact-contact " FLIGHTS, "squares slabs gons8 n8", "flights", "BEST"},
+    {FLIGHTS, "squares slabs gons8 n8", "flights", "BEST/by1 box2d"},
+    {"index-good index-fast index-refit", "gons8", SCENES, "BEST BEST/2threads"},
+    {"still-all still-index still-all-kept still-index-kept", "gons8", STILL, "BEST"},
+    {"ground-none ground-among ground-index", "boxes", "hills short-hills", "BEST"},
+};
+
+static const struct group all_groups[] = {
+    {QUERIES, KINDS, "pile pile-unlike", "EACH"},
+    {"boxes pairs", "n8", "pile", "EACH"},
+    {"overlap contact", "n4 n6 n8 n12 n16", "mixed-templates mixed-sorted mixed-templates-sorted", "EACH"},
+    {"overlap", "n4 n6 n8 n12 n16", "mixed-templates pile", "box2d ccd-gjk ccd-mpr"},
+    {"contact", "n4 n6 n8 n12 n16", "mixed-templates pile", "box2d chipmunk"},
+};
+
+static struct row *rows[MAX_ROWS];
+static size_t row_count;
+static const char *best;
+
+const struct row *get_row(size_t index) { return index < row_count ? rows[index] : NULL; }
+
+size_t batch_of(const struct row *row, size_t done) {
+    const size_t left = row->bench.count - done;
+    return row->batch > 0 && row->batch < left ? row->batch : left;
+}
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+static const struct question *find_question(const char *query) {
+    static const struct question *const lists[] = {pair_questions,   step_questions,  scene_questions,
+                                                   impact_questions, index_questions, ground_questions};
+    for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
+        for (const struct question *question = lists[k]; question->name; question++)
+            if (strcmp(question->name, query) == 0)
+                return question;
+    fail("no query is called %s", query);
+}
+
+static void prepare(struct bench_row *bench_row) {
+    struct row *row = (struct row *)bench_row;
+    narc_error error;
+    if (!row->peer)
+        must(narc_set_isa(row->isa, &error), &error);
+    if (row->state)
+        return;
+    row->scene = row->layout ? get_scene(row->family, row->layout, false) : NULL;
+    row->question->prepare(row);
+}
+
+static void run(struct bench_row *bench_row) {
+    struct row *row = (struct row *)bench_row;
+    row->question->run(row);
+}
+
+/* What stands behind who answers. */
+static void read_suffix(struct row *row, const char *suffix) {
+    size_t number;
+    row->threads = 1;
+    row->one_of = 1;
+    for (; *suffix; suffix += strcspn(suffix, "/")) {
+        suffix++;
+        if (sscanf(suffix, "by%zu", &number) == 1)
+            row->batch = number;
+        else if (sscanf(suffix, "1of%zu", &number) == 1)
+            row->one_of = number;
+        else if (strcmp(suffix + strspn(suffix, "0123456789"), "pairs") == 0)
+            row->first = strtoul(suffix, NULL, 10);
+        else
+            row->threads = 2;
+    }
+}
+
+/* The shapes that a peer has in the place of these. */
+static const struct family *family_for(const struct peer *peer, const struct family *family) {
+    char polygons[WORD];
+    if (family->form == FORM_N_ARC && !peer->arcs) {
+        snprintf(polygons, sizeof polygons, "gons%u", family->edges);
+        return find_family(polygons);
+    }
+    return family->form == FORM_CAPSULE && !peer->capsules ? find_family("capsule-boxes") : family;
+}
+
+/* Whatever the row lacks to run here, or NULL. */
+static const char *find_missing(const struct row *row) {
+    if (row->peer && row->peer->missing)
+        return row->peer->missing;
+    if (!row->peer && !narc_isa_supported(row->isa))
+        return "not supported here";
+    return row->threads > narc_openmp_workers(0).count ? "fewer threads here" : NULL;
+}
+
+static bool is_listed(const char *name) {
+    for (size_t k = 0; k < row_count; k++)
+        if (strcmp(rows[k]->bench.name, name) == 0)
+            return true;
+    return false;
+}
+
+static void add_row(const char *query, const char *family, const char *layout, const char *who) {
+    const char *const suffix = who + strcspn(who, "/");
+    char answers[WORD], name[BENCH_NAME];
+    snprintf(answers, sizeof answers, "%.*s", (int)(suffix - who), who);
+    if (strcmp(answers, "BEST") == 0)
+        snprintf(answers, sizeof answers, "%s", best);
+    snprintf(name, sizeof name, "%s/%s/%s/%s%s", query, family, layout, answers, suffix);
+    struct row row = {.question = find_question(query),
+                      .family = find_family(family),
+                      .layout = find_layout(layout),
+                      .peer = find_peer(query, answers)};
+    for (size_t k = 0; !row.peer && narc_isa_name(k); k++)
+        if (strcmp(narc_isa_name(k), answers) == 0)
+            row.isa = narc_isa_name(k);
+    read_suffix(&row, suffix);
+    const char *missing = find_missing(&row);
+    if (!row.peer && !row.isa)
+        fail("nobody is called %s", answers);
+    if (is_listed(name) || (row.first && row.first >= scaled(row.layout->size)) ||
+        (row.peer && row.family && row.family->edges > row.peer->max_edges && !missing))
+        return;
+    if (missing) {
+        bench_skip(name, missing);
+        return;
+    }
+    if (row.peer && row.family)
+        row.family = family_for(row.peer, row.family);
+    row.workers = narc_openmp_workers(row.threads);
+    row.bench = (struct bench_row){.prepare = prepare,
+                                   .run = run,
+                                   .threaded = row.threads > 1,
+                                   .own_clock = row.question->own_clock || (row.peer && row.peer->own_clock),
+                                   .must_be_right = !row.peer};
+    memcpy(row.bench.name, name, sizeof name);
+    if (row_count == MAX_ROWS)
+        fail("more than %d rows", MAX_ROWS);
+    rows[row_count] = allocate(1, sizeof row);
+    *rows[row_count] = row;
+    bench_add(&rows[row_count++]->bench);
+}
+
+/* ------------------------------------------------------------------------------------------------ groups */
+
+/* The first word; false behind the last one. */
+static bool next_word(const char **words, char out[WORD]) {
+    *words += strspn(*words, " ");
+    const size_t length = strcspn(*words, " ");
+    snprintf(out, WORD, "%.*s", (int)length, *words);
+    *words += length;
+    return length > 0;
+}
+
+static void add_group(const struct group *group) {
+    char query[WORD], family[WORD], layout[WORD], who[WORD];
+    for (const char *q = group->queries; next_word(&q, query);)
+        for (const char *f = group->families; next_word(&f, family);)
+            for (const char *l = group->layouts; next_word(&l, layout);)
+                for (const char *w = group->who; next_word(&w, who);) {
+                    if (strcmp(who, "EACH") != 0)
+                        add_row(query, family, layout, who);
+                    else
+                        for (size_t k = 0; narc_isa_name(k); k++)
+                            if (narc_isa_supported(narc_isa_name(k)))
+                                add_row(query, family, layout, narc_isa_name(k));
+                }
+}
+
+void list_rows(const char *best_isa, bool all) {
+    best = best_isa;
+    for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++)
+        add_group(&groups[k]);
+    for (size_t k = 0; all && k < sizeof all_groups / sizeof all_groups[0]; k++)
+        add_group(&all_groups[k]);
+    for (size_t k = 0; narc_isa_name(k); k++) /* the others, as skipped */
+        add_row("overlap", "n8", "mixed", narc_isa_name(k));
+}

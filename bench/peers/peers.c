@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * peers.c - the table of peers, those that are not in this build as well.
+ */
+#include "peers.h"
+
+#include <string.h>
+
+#define MISSING(id, query, who, library)                                                                               \
+    const struct peer id = {.question = query, .name = who, .missing = "built without " library}
+#ifndef BENCH_BOX2D
+const char *box2d_name(void) { return "no Box2D"; }
+MISSING(box2d_collide, "contact", "box2d", "Box2D");
+MISSING(box2d_overlap, "overlap", "box2d", "Box2D");
+MISSING(box2d_world, "step", "box2d", "Box2D");
+MISSING(box2d_rays, "ray", "box2d", "Box2D");
+MISSING(box2d_regions, "region", "box2d", "Box2D");
+MISSING(box2d_impacts, "impact", "box2d", "Box2D");
+#endif
+#ifndef BENCH_CHIPMUNK
+MISSING(chipmunk_collide, "contact", "chipmunk", "Chipmunk");
+MISSING(chipmunk_space, "step", "chipmunk", "Chipmunk");
+MISSING(chipmunk_rays, "ray", "chipmunk", "Chipmunk");
+MISSING(chipmunk_regions, "region", "chipmunk", "Chipmunk");
+MISSING(chipmunk_nearest, "nearest", "chipmunk", "Chipmunk");
+#endif
+#ifndef BENCH_CCD
+MISSING(ccd_gjk, "overlap", "ccd-gjk", "libccd");
+MISSING(ccd_mpr, "overlap", "ccd-mpr", "libccd");
+#endif
+#ifndef BENCH_GEOS
+MISSING(geos_regions, "region", "geos", "GEOS");
+MISSING(geos_nearest, "nearest", "geos", "GEOS");
+#endif
+
+static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap,    &box2d_world,      &box2d_rays,
+                                           &box2d_regions, &box2d_impacts,    &chipmunk_collide, &chipmunk_space,
+                                           &chipmunk_rays, &chipmunk_regions, &chipmunk_nearest, &ccd_gjk,
+                                           &ccd_mpr,       &geos_regions,     &geos_nearest,     &disc_loop};
+
+const struct peer *find_peer(const char *query, const char *name) {
+    for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)
+        if (strncmp(query, peers[k]->question, strcspn(query, "-")) == 0 && strcmp(peers[k]->name, name) == 0)
+            return peers[k];
+    return NULL;
+}

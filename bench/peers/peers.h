@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * peers.h - what this library is compared with, behind one C interface.
+ */
+#ifndef NARC_BENCH_PEERS_H
+#define NARC_BENCH_PEERS_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct ray {
+    float x, y, motion_x, motion_y;
+};
+
+/* How far a body moves and turns. */
+struct motion {
+    float x, y, angle;
+};
+
+/* What a run asks; a peer looks at its part. */
+struct asked {
+    size_t count;
+    bool checks;              /* outside the time: answers that a peer does not keep are wanted */
+    const struct pair *pairs; /* "contact", "overlap": uint8_t, do they collide? */
+    const struct ray *rays;   /* "ray": float, the fraction of the first hit, above 1 if there is none. Bodies that it
+                                 * starts in do not count */
+    const narc_box *regions;  /* "region": uint64_t, pairs region << 32 | body; returns how many */
+    const float *x, *y;       /* "nearest": float, the separation of the nearest body within a distance */
+    float within;
+    const struct outline *polygon; /* "impact" of bodies 2 k and 2 k + 1: float, when they meet, above 1 if never */
+    const narc_body *bodies;
+    const struct motion *motions;
+};
+
+/* A library's answer to one question. */
+struct peer {
+    const char *question, *name; /* of its rows; a query's name up to the first "-" */
+    const char *missing;         /* NULL, or why it can't run */
+    bool arcs, capsules;         /* it has these; else polygons of the junctions and boxes as large stand for them */
+    unsigned max_edges;
+    void *(*create)(struct scene *scene); /* shapes and poses in the form it wants them */
+    size_t (*ask)(void *context, const struct asked *asked, void *out);
+
+    /* "step" in the place of `ask`: boxes, pairs and contacts of bodies at rest. With a clock of its own it does more, and
+     * returns the seconds of these alone. */
+    bool own_clock;
+    double (*step)(void *context);
+    size_t (*count_touching)(void *context);
+};
+
+/* By the words of a row; NULL if there is none. */
+const struct peer *find_peer(const char *query, const char *name);
+
+const char *box2d_name(void); /* with its version */
+
+extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_rays, box2d_regions, box2d_impacts;
+extern const struct peer chipmunk_collide, chipmunk_space, chipmunk_rays, chipmunk_regions, chipmunk_nearest;
+extern const struct peer ccd_gjk, ccd_mpr;
+extern const struct peer geos_regions, geos_nearest;
+extern const struct peer disc_loop;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * stages.inl - the search for the highest local maximum of the gap (search.inl), stage by stage: a probe along the axis
+ * between the inscribed circles, or of the arcs of a hint; another along u; a climb. How a probe is judged, and what
+ * becomes of what is certain, is not theirs: rows (search.c) want all of a contact, overlaps (overlap.c) a sign.
+ */
+#ifndef NARC_SAT_STAGES_INL
+#define NARC_SAT_STAGES_INL
+
+#include <stdbool.h>
+
+#include "base/call.inl"
+#include "base/question.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "polygon/polygon_edges.inl"
+#include "sat/arc_lookup.inl"
+#include "sat/certificates.inl"
+#include "sat/search.inl"
+#include "simd/simd.h"
+
+/* What a probe of the arcs that a stage has found tells. */
+struct verdict {
+    vec2 u; /* where to probe next */
+    vf length, separation;
+    vm settled; /* known is all that is asked for, */
+    vm wanted;  /* and it is to be told */
+};
+
+enum probing { ALONG_AXIS, OF_HINTS, ALONG_U };
+
+/* How a search ends: constants. */
+struct search {
+    int fields; /* what a pair needs in the queues */
+    bool rows;  /* are there margins and hints? */
+    struct verdict (*judge)(const struct call *call, struct queue *queue, int k, vm live, enum probing how);
+    /* Pairs k ... of a queue in the lanes `which` touch along n, with the arcs in these records. */
+    void (*settle)(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
+                   vf separation, vec2 n, vi record_a, vi record_b);
+};
+
+/* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. If u of these arcs lies
+ * between their junctions, it is the direction of a local maximum, mostly the highest: that of smooth pairs becomes
+ * DIRECTION. Returns the lanes without an answer. */
+INLINE vm probe(const struct search *search, const struct call *call, struct queue *queues, struct queue *queue, int k,
+                vm live, enum probing how) {
+    const struct verdict v = search->judge(call, queue, k, live, how);
+    if (vm_any(v.wanted))
+        search->settle(call, queues, queue, k, v.wanted, v.separation, v2_divide(v.u, v.length),
+                       vi_load(queue->record_a + k), vi_load(queue->record_b + k));
+    const vec2 next = how == ALONG_U ? v.u : v2_select(find_smooth(queue, k), v.u, get_vec2(queue, DIRECTION, k));
+    store_vec2(queue, DIRECTION, k, next);
+    return vm_and_not(live, v.settled);
+}
+
+/* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
+ * without an answer. In *out_lost, those that are not even near a local maximum; DIRECTION leads to the others'. */
+INLINE vm climb_to(const struct search *search, const struct call *call, struct queue *queues, struct queue *queue,
+                   int k, vm live, vm *out_lost) {
+    const vf margin = search->rows ? get_margins(call, queue, k) : v_set(0);
+    const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
+    const struct local_maximum *m = &top.maximum;
+    if (search->rows)
+        store_hints(call, queue, k, vm_or(top.apart, top.certain), m->record_a, m->record_b);
+    const vm wanted =
+        vm_and(top.certain, search->rows ? is_below(top.separation, margin) : v_lt(top.separation, margin));
+    if (vm_any(wanted))
+        search->settle(call, queues, queue, k, wanted, top.separation, top.normal, m->record_a, m->record_b);
+    const vm near = vm_or(m->found, m->turned);
+    *out_lost = vm_and_not(live, near);
+    if (search->rows)
+        store_vec2(queue, DIRECTION, k, v2_select(near, m->direction, get_vec2(queue, DIRECTION, k)));
+    return vm_and_not(live, vm_or(top.apart, top.certain));
+}
+
+/* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
+ * other pairs go to the climb, which begins along the axis again. */
+INLINE void probe_axis(const struct search *search, const struct call *call, struct queue *queues, int begin) {
+    struct queue *const queue = &queues[PROBE];
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
+        const vm left = probe(search, call, queues, queue, k, live, ALONG_AXIS);
+        const vm edged = vm_and_not(left, smooth);
+        const vm polygons = POLYGONS > 0 ? select_polygons(queue, k, edged) : vm_front(0);
+        pass_on(queue, k, vm_and(left, smooth), search->fields, &queues[PROBE_AGAIN]);
+        pass_on(queue, k, vm_and_not(edged, polygons), search->fields, &queues[CLIMB]);
+        if (POLYGONS > 0)
+            pass_on(queue, k, polygons, search->fields, &queues[POLYGONS]);
+        count_edged(queue, vm_and_not(live, smooth), edged);
+    }
+}
+
+/* Probes along DIRECTION. */
+INLINE void probe_again(const struct search *search, const struct call *call, struct queue *queues, int begin) {
+    struct queue *const queue = &queues[PROBE_AGAIN];
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH)
+        pass_on(queue, k, probe(search, call, queues, queue, k, vm_front(queue->count - k), ALONG_U), search->fields,
+                &queues[CLIMB]);
+}
+
+/* Climbs from the arcs that hold DIRECTION. */
+INLINE void climb_from(const struct search *search, const struct call *call, struct queue *queues, int begin) {
+    struct queue *const queue = &queues[CLIMB];
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    vm lost;
+    for (int k = begin; k < queue->count; k += V_WIDTH)
+        pass_on(queue, k, climb_to(search, call, queues, queue, k, vm_front(queue->count - k), &lost), search->fields,
+                &queues[DECIDE]);
+}
+
+#endif

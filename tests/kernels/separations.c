@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * separations.c - one float a pair: to the last bit what contacts tell, and the reference; broken bodies, pieces of
+ * ground, parts; strides, ranges, selections, hints and workers.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chains.h"
+#include "check.h"
+#include "corpus.h"
+#include "expect.h"
+#include "guard.h"
+#include "layouts.h"
+#include "narc.h"
+#include "narc_chains.h"
+#include "scene.h"
+
+/* What dense contacts tell, as floats. */
+static float *find_expected(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
+                            const narc_query *query) {
+    narc_query dense = *query;
+    dense.dense = 1;
+    struct contacts contacts = find_contacts(store, bodies, pairs, &dense);
+    float *out = malloc(pairs->count * sizeof *out);
+    for (size_t k = 0; k < pairs->count; k++)
+        out[k] = contacts.rows[k].count ? contacts.rows[k].separation : INFINITY;
+    free(contacts.rows);
+    return out;
+}
+
+/* Asks with a query in a stride, and without; both by several workers. Returns how many are told. */
+static size_t check_separations(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
+                                narc_query query) {
+    enum { STRIDE = 3 };
+    float *const expected = find_expected(store, bodies, pairs, &query);
+    float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
+    uint32_t *const hints = calloc(pairs->count, sizeof *hints);
+    size_t told = 0, skipped = 0, contacts_skipped = 0;
+    for (unsigned threads = 1; threads <= 3; threads++) {
+        const narc_workers workers = narc_openmp_workers(threads);
+        float *const found = guard_allocate(pairs->count * sizeof *found);
+        query.workers = &workers;
+        query.row_stride = 0;
+        query.out_skipped = &skipped;
+        query.hints =
+            threads > 1 ? hint_column(hints) : (narc_hint_column){0}; /* the third time they are those of the second */
+        assert_int_equal(narc_find_separations(store, bodies, pairs, &query, found, NULL), NARC_OK);
+        assert_memory_equal(found, expected, pairs->count * sizeof *found);
+        query.row_stride = -STRIDE * (ptrdiff_t)sizeof *strided;
+        memset(strided, GUARD_JUNK, pairs->count * STRIDE * sizeof *strided);
+        assert_int_equal(
+            narc_find_separations(store, bodies, pairs, &query, strided + STRIDE * (pairs->count - 1), NULL), NARC_OK);
+        for (size_t k = 0; k < pairs->count; k++) {
+            const float *const place = strided + STRIDE * (pairs->count - 1 - k);
+            assert_memory_equal(place, &expected[k], sizeof *place);
+            assert_true(is_junk(place + 1, (STRIDE - 1) * sizeof *place));
+        }
+        guard_release(found);
+    }
+    query.row_stride = 0;
+    query.out_skipped = &contacts_skipped;
+    free(find_expected(store, bodies, pairs, &query));
+    assert_int_equal(skipped, contacts_skipped);
+    for (size_t k = 0; k < pairs->count; k++)
+        told += expected[k] < INFINITY;
+    free(hints);
+    guard_release(strided);
+    free(expected);
+    return told;
+}
+
+TEST(test_contacts) {
+    struct test_random random = test_random_named("separations of contacts");
+    static const float margins[] = {0, 0.25f, INFINITY, -0.25f};
+    for (size_t trial = 0; trial < test_trials(2 * LAYOUT_COUNT); trial++) {
+        const enum layout layout = (enum layout)(trial % LAYOUT_COUNT);
+        struct scene scene =
+            make_random_scene(&random, trial % 2 ? NARC_FLOAT32 : NARC_FLOAT64, 300, trial % 5 ? 500 : 3000);
+        for (size_t k = 0; k < scene.body_count; k += 17) /* broken ones */
+            *(k % 2 ? &scene.bodies[k].sine : &scene.bodies[k].scale) = NAN;
+        suit_layout(&scene, layout);
+        struct columns columns = create_columns(&scene, layout, 0, scene.pair_count);
+        for (size_t m = 0; m < sizeof margins / sizeof margins[0]; m++)
+            check_separations(scene.store, &columns.bodies, &columns.pairs, (narc_query){.margin = margins[m]});
+        float *const own = malloc(scene.pair_count * sizeof *own);
+        for (size_t k = 0; k < scene.pair_count; k++)
+            own[k] = k % 11 ? (float)random_between(&random, -1, 1) : k % 2 ? NAN : INFINITY;
+        check_separations(scene.store, &columns.bodies, &columns.pairs, (narc_query){.margins = {own, sizeof *own}});
+        free(own);
+        destroy_columns(&columns);
+        destroy_scene(&scene);
+    }
+}
+
+TEST(test_reference) {
+    struct test_random random = test_random_named("separations and the reference");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT64, 100, test_trials(2000));
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    const narc_query query = {.margin = INFINITY};
+    float *const found = malloc(pairs.count * sizeof *found);
+    double worst = 0;
+    assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, found, NULL), NARC_OK);
+    for (size_t k = 0; k < pairs.count; k++) {
+        const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
+                                    b = scene_reference(&scene, scene.pairs[k].b);
+        const double error = fabs((double)found[k] - reference_find_gap(&a, &b).gap) / separation_bound(&a, &b);
+        worst = fmax(worst, error);
+        if (!(error <= 1))
+            print_pair(&a, &b);
+        assert_true(error <= 1);
+    }
+    printf("  the largest error is %.3f of the bound\n", worst);
+    free(found);
+    destroy_scene(&scene);
+}
+
+/* Pairs with a concave arc have several contacts: the deepest one's separation is told. */
+TEST(test_ground) {
+    enum { RIDERS = 40, MOST = 2000 };
+    struct test_random random = test_random_named("separations on ground");
+    for (size_t trial = 0; trial < test_trials(CHAIN_FAMILIES); trial++) {
+        const enum chain_family family = (enum chain_family)(trial % CHAIN_FAMILIES);
+        narc_arc arcs[CHAIN_ARCS];
+        static narc_chain_entry entries[MOST];
+        static narc_body pieces[MOST];
+        const struct chain chain = make_chain(&random, family, arcs);
+        narc_shapes *store = NULL;
+        narc_error error;
+        size_t count = 0, told = 0;
+        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        const narc_chain_options options = {.closed = chain.closed};
+        expect_ok(narc_add_chain(store, chain.arcs, chain.count, &options, entries, MOST, &count, &error), &error);
+        for (size_t k = 0; k < count; k++)
+            pieces[k] =
+                (narc_body){.x = entries[k].x, .y = entries[k].y, .cosine = 1, .scale = 1, .shape = entries[k].shape};
+        uint32_t *const a = malloc(RIDERS * count * sizeof *a), *const b = malloc(RIDERS * count * sizeof *b);
+        narc_body riders[RIDERS];
+        for (uint32_t k = 0; k < RIDERS; k++) {
+            const struct shape shape = make_rider(&random, &chain, family);
+            const struct body body = ride_chain(&random, &chain, &shape, 0.1);
+            riders[k] = (narc_body){body.x, body.y, body.cosine, body.sine, body.scale, 0};
+            expect_ok(narc_add_shape(store, shape.arcs, shape.count, &riders[k].shape, &error), &error);
+            for (uint32_t i = 0; i < count; i++) {
+                a[k * count + i] = k;
+                b[k * count + i] = i;
+            }
+        }
+        const narc_bodies bodies = narc_view_bodies(riders, RIDERS), ground = narc_view_bodies(pieces, count);
+        const narc_pairs pairs = {
+            .count = RIDERS * count, .a = {a, sizeof *a}, .b = {b, sizeof *b}, .other_bodies = &ground};
+        told += check_separations(store, &bodies, &pairs, (narc_query){.margin = 0.125f});
+        told += check_separations(store, &bodies, &pairs, (narc_query){.margin = INFINITY, .front_only = 1});
+        assert_true(told > 0);
+        free(a);
+        free(b);
+        narc_destroy_shapes(store);
+    }
+}
+
+TEST(test_parts) {
+    enum { OWNERS = 50, PARTS = 3 * OWNERS, PAIRS = 400 };
+    struct test_random random = test_random_named("separations of parts");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT64, OWNERS + PARTS, 1);
+    narc_bodies owners = scene_bodies(&scene), parts = owners;
+    narc_body placed[PARTS];
+    uint32_t owner[PARTS], a[PAIRS], b[PAIRS];
+    owners.count = OWNERS;
+    parts.count = PARTS;
+    for (uint32_t k = 0; k < PARTS; k++)
+        owner[k] = k % OWNERS;
+    for (size_t k = 0; k < PAIRS; k++) {
+        a[k] = (uint32_t)random_below(&random, PARTS);
+        b[k] = (uint32_t)random_below(&random, PARTS);
+    }
+    assert_int_equal(narc_place_parts(&owners, &parts, NARC_ARRAY(owner), NULL, placed, NULL), NARC_OK);
+    const narc_bodies bodies = narc_view_bodies(placed, PARTS);
+    const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    assert_int_equal(check_separations(scene.store, &bodies, &pairs, (narc_query){.margin = INFINITY}), PAIRS);
+    destroy_scene(&scene);
+}
+
+TEST(test_some_of_a_batch) {
+    enum { CHOSEN = 300 };
+    struct test_random random = test_random_named("separations of some");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 3000);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    float *const all = find_expected(scene.store, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+    float *const found = make_junk(pairs.count * sizeof *found), *const junk = make_junk(pairs.count * sizeof *junk);
+    uint32_t chosen[CHOSEN];
+    for (uint32_t k = 0; k < CHOSEN; k++)
+        chosen[k] = 7 * (CHOSEN - 1 - k) + 1;
+    narc_query query = {
+        .margin = INFINITY, .selection = NARC_ARRAY(chosen), .selection_count = CHOSEN, .first = 10, .count = 250};
+    assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, found, NULL), NARC_OK);
+    for (size_t k = 0; k < 250; k++) {
+        const uint32_t pair = chosen[10 + k];
+        assert_memory_equal(&found[pair], &all[pair], sizeof *all);
+        found[pair] = junk[pair];
+    }
+    assert_memory_equal(found, junk, pairs.count * sizeof *found);
+    query = (narc_query){.margin = INFINITY, .first = 1000, .count = 1500};
+    assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, found, NULL), NARC_OK);
+    assert_memory_equal(found, junk, 1000 * sizeof *found);
+    assert_memory_equal(found + 1000, all + 1000, 1500 * sizeof *found);
+    assert_memory_equal(found + 2500, junk + 2500, 500 * sizeof *found);
+    for (uint32_t k = 0; k < 100; k++) { /* one alone */
+        const narc_query one = {.margin = INFINITY, .first = 10 * k, .count = 1};
+        assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &one, found, NULL), NARC_OK);
+        assert_memory_equal(&found[10 * k], &all[10 * k], sizeof *all);
+    }
+    free(found);
+    free(junk);
+    free(all);
+    destroy_scene(&scene);
+}
+
+TEST(test_errors) {
+    struct test_random random = test_random_named("errors of separations");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 10, 20);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene), none = {.count = 0};
+    narc_error error;
+    float found[20];
+    expect_error(narc_find_separations(scene.store, &bodies, &pairs, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
+                 "out_separations");
+    expect_error(narc_find_separations(scene.store, &bodies, &pairs, &(narc_query){.row_stride = 6}, found, &error),
+                 NARC_ERROR_ARGUMENT, &error, "row_stride");
+    expect_error(narc_find_separations(NULL, &bodies, &pairs, NULL, found, &error), NARC_ERROR_ARGUMENT, &error,
+                 "shapes");
+    assert_int_equal(narc_find_separations(scene.store, &bodies, &none, NULL, NULL, NULL), NARC_OK);
+    destroy_scene(&scene);
+}
+
+TEST_MAIN("separations")
