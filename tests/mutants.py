@@ -16,7 +16,8 @@ FOLDER = ROOT + "/build/mutants"
 OPTIONS = ["-GNinja", "--no-warn-unused-cli", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG",
            "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", "-DNARC_SLEEF=OFF", "-DNARC_BUILD_FILES=OFF", "-DNARC_BUILD_FIT=OFF",
            "-DNARC_BUILD_TOOLS=OFF", "-DNARC_INSTALL=OFF"]
-OPTIONS += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ("avx512", "avx2", "sse41", "neon", "wasm128")]
+ISAS = re.findall(r"^NARC_ISA\((\w+)", open(ROOT + "/kernels/isa.def").read(), re.M)
+OPTIONS += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ISAS if isa != "scalar"]
 # A shared library of what tests share, so that programs need not be linked for each mutant.
 SUPPORT, STATIC = "tests/support/CMakeLists.txt", "add_library(narc_test_support STATIC"
 SHARED = "set(CMAKE_C_VISIBILITY_PRESET default)\nadd_library(narc_test_support SHARED"

@@ -91,8 +91,7 @@ static void check_each(const struct scene *scene, const narc_body *rows) {
     free(bits);
 }
 
-static void own_poses(void **state) {
-    (void)state;
+TEST(own_poses) {
     struct test_random random = test_random_named("own poses");
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_random_scene(&random, precision ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
@@ -117,8 +116,7 @@ static void own_poses(void **state) {
 }
 
 /* The point less half the separation along the normal lies on A, and plus that on B, near and far: check_contact(). */
-static void one_pair_is_right(void **state) {
-    (void)state;
+TEST(one_pair_is_right) {
     struct test_random random = test_random_named("one contact, reference");
     struct fractions worst = {0};
     struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
@@ -144,8 +142,7 @@ static void one_pair_is_right(void **state) {
 }
 
 /* The bodies that `b` names are in another set, in another order there; or body k of each set is of pair k. */
-static void two_sets(void **state) {
-    (void)state;
+TEST(two_sets) {
     struct test_random random = test_random_named("two sets");
     struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
     narc_body others[BODIES], of_a[PAIRS], of_b[PAIRS];
@@ -214,8 +211,7 @@ static narc_bodies find_side(const struct scene *scene, size_t first, bool shape
 }
 
 /* Shapes by pair, one side or both without poses. */
-static void sets_at_the_origin(void **state) {
-    (void)state;
+TEST(sets_at_the_origin) {
     struct test_random random = test_random_named("sets at the origin");
     for (int sides = 1; sides < 4; sides++) {
         struct scene scene = make_origin_scene(&random, sides & 1, sides & 2);
@@ -266,8 +262,7 @@ static void sets_at_the_origin(void **state) {
 }
 
 /* Two boxes, by hand. */
-static void boxes(void **state) {
-    (void)state;
+TEST(boxes) {
     narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count, found;
@@ -301,13 +296,4 @@ static void boxes(void **state) {
     narc_destroy_shapes(shapes);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(own_poses), cmocka_unit_test(one_pair_is_right),
-        cmocka_unit_test(two_sets),  cmocka_unit_test(sets_at_the_origin),
-        cmocka_unit_test(boxes),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("pair", tests, NULL, NULL);
-}
+TEST_MAIN("pair")

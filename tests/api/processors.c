@@ -51,9 +51,6 @@ static void read_register(unsigned number, unsigned *out_low, unsigned *out_high
 #define __get_cpuid_count(leaf, part, a, b, c, d) ask(leaf, part, a, b, c, d)
 #undef READ_CONTROL_REGISTER
 #define READ_CONTROL_REGISTER(number, out_low, out_high) read_register(number, out_low, out_high)
-#define NARC_BUILT_sse41                                 0
-#define NARC_BUILT_neon                                  0
-#define NARC_BUILT_wasm128                               0
 #define narc_detect_cpu                                  detect
 #define narc_cpu_feature                                 name_feature
 #include "cpu.c" /* NOLINT(bugprone-suspicious-include) */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * team.c - the built-in workers: who calls waits for nobody who has not begun; several callers share the helpers; the
- * child of a fork has its own.
+ * child of a fork has its own. With NARC_TEST_CALLERS, another program: the callers alone.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <pthread.h>
@@ -40,6 +40,39 @@ static bool is_answered(unsigned threads) {
     free(rows);
     return same;
 }
+
+/* ------------------------------------------------------------------------------------------------ callers */
+
+static void *call(void *argument) {
+    bool *right = argument;
+    *right = true;
+    for (unsigned k = 0; k < 40; k++)
+        *right = *right && is_answered(2 + k % 3);
+    return NULL;
+}
+
+static void join_callers(pthread_t thread[CALLERS], const bool right[CALLERS]) {
+    for (int k = 0; k < CALLERS; k++) {
+        assert_int_equal(pthread_join(thread[k], NULL), 0);
+        assert_true(right[k]);
+    }
+}
+
+static void start_callers(pthread_t thread[CALLERS], bool right[CALLERS]) {
+    for (int k = 0; k < CALLERS; k++)
+        assert_int_equal(pthread_create(&thread[k], NULL, call, &right[k]), 0);
+}
+
+#if NARC_TEST_CALLERS
+
+TEST(serves_several_callers) {
+    pthread_t thread[CALLERS];
+    bool right[CALLERS];
+    start_callers(thread, right);
+    join_callers(thread, right);
+}
+
+#else
 
 /* ------------------------------------------------------------------------------------------------ tasks */
 
@@ -108,35 +141,6 @@ TEST(waits_for_nobody_who_has_not_begun) {
     assert_true(is_answered(2));
 }
 
-/* ------------------------------------------------------------------------------------------------ callers */
-
-static void *call(void *argument) {
-    bool *right = argument;
-    *right = true;
-    for (unsigned k = 0; k < 40; k++)
-        *right = *right && is_answered(2 + k % 3);
-    return NULL;
-}
-
-static void join_callers(pthread_t thread[CALLERS], const bool right[CALLERS]) {
-    for (int k = 0; k < CALLERS; k++) {
-        assert_int_equal(pthread_join(thread[k], NULL), 0);
-        assert_true(right[k]);
-    }
-}
-
-static void start_callers(pthread_t thread[CALLERS], bool right[CALLERS]) {
-    for (int k = 0; k < CALLERS; k++)
-        assert_int_equal(pthread_create(&thread[k], NULL, call, &right[k]), 0);
-}
-
-TEST(serves_several_callers) {
-    pthread_t thread[CALLERS];
-    bool right[CALLERS];
-    start_callers(thread, right);
-    join_callers(thread, right);
-}
-
 /* ------------------------------------------------------------------------------------------------ forks */
 
 /* Asks in the child of a fork, in its child, and so on. Returns whether all were answered. */
@@ -166,6 +170,8 @@ TEST(answers_in_children_of_busy_processes) {
     join_callers(thread, right);
 }
 
+#endif
+
 static int set_up(void **state) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -190,4 +196,6 @@ static int tear_down(void **state) {
     return 0;
 }
 
-int main(void) { return test_begin() ? test_run("team", set_up, tear_down) : TEST_SKIPPED; }
+int main(void) {
+    return test_begin() ? test_run(NARC_TEST_CALLERS ? "callers" : "team", set_up, tear_down) : TEST_SKIPPED;
+}

@@ -258,8 +258,7 @@ static answers ask(size_t count, const narc_workers *workers) {
 
 /* ------------------------------------------------------------------------------------------------ tests */
 
-static void gives_the_same_bytes_whoever_works(void **state) {
-    (void)state;
+TEST(gives_the_same_bytes_whoever_works) {
     static run_function *const ways[] = {run_backwards, run_in_pool, run_one_by_one};
     static const unsigned counts[] = {2, 5, 300};
     const answers expected = ask(BODIES, NULL);
@@ -279,8 +278,7 @@ static void gives_the_same_bytes_whoever_works(void **state) {
     assert_memory_equal(&found, &expected, sizeof found);
 }
 
-static void asks_nobody_for_little_work(void **state) {
-    (void)state;
+TEST(asks_nobody_for_little_work) {
     watch watched = {run_one_by_one, 8, false};
     const narc_workers workers = {&watched, 8, watch_run}, alone = {&watched, 1, watch_run}, none = {0};
     const narc_workers *const lone[] = {&alone, &none};
@@ -294,8 +292,7 @@ static void asks_nobody_for_little_work(void **state) {
 }
 
 /* More workers than anything is divided for. */
-static void takes_any_number_of_workers(void **state) {
-    (void)state;
+TEST(takes_any_number_of_workers) {
     enum { HALF = 200000 };
     static narc_box row[2 * HALF];
     static uint32_t one[HALF], other[HALF];
@@ -332,11 +329,4 @@ static int tear_down(void **state) {
     return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gives_the_same_bytes_whoever_works),
-        cmocka_unit_test(asks_nobody_for_little_work),
-        cmocka_unit_test(takes_any_number_of_workers),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("workers", tests, set_up, tear_down) : TEST_SKIPPED;
-}
+int main(void) { return test_begin() ? test_run("workers", set_up, tear_down) : TEST_SKIPPED; }

@@ -39,24 +39,33 @@ struct statistics {
     struct ray_errors worst;
 };
 
-static void check_body(struct test_random *random, narc_index *index, const struct scene *scene, enum ray_kind kind,
+/* What rays meet of a scene. `hits`: `most` for each, or one. */
+static void meet(const struct scene *scene, const narc_rays *rays, const narc_ray_options *options,
+                 narc_ray_hit *hits) {
+    const narc_bodies bodies = scene_bodies(scene);
+    narc_box boxes[2];
+    narc_error error;
+    assert_true(bodies.count <= 2);
+    narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
+    expect_ok(narc_cast_rays(index, scene->store, &bodies, rays, options, hits,
+                             rays->count * (options->most ? options->most : 1), &error),
+              &error);
+    narc_destroy_index(index);
+}
+
+static void check_body(struct test_random *random, const struct scene *scene, enum ray_kind kind,
                        struct statistics *statistics) {
     const struct shape *const shape = &scene->shapes[0];
     const struct outline_reference outline = make_outline_reference(shape);
     const struct body *const body = &scene->bodies[0];
-    const narc_bodies bodies = scene_bodies(scene);
     const narc_inside inside = (narc_inside)random_below(random, 3);
     struct test_ray rays[RAYS];
     narc_ray_hit hits[RAYS];
-    narc_box box;
-    narc_error error;
     for (size_t k = 0; k < RAYS; k++)
         rays[k] = make_ray(random, shape, body, scene->precision, kind);
     const narc_rays view = view_rays(rays, RAYS);
     const narc_ray_options options = {.inside = inside};
-    expect_ok(narc_compute_boxes(scene->store, &bodies, NULL, &box, &error), &error);
-    expect_ok(narc_build_index(index, &box, 1, NULL, &error), &error);
-    expect_ok(narc_cast_rays(index, scene->store, &bodies, &view, &options, hits, RAYS, &error), &error);
+    meet(scene, &view, &options, hits);
     for (size_t k = 0; k < RAYS; k++) {
         const char *const wrong = check_ray_hit(&outline, body, &rays[k], inside, &hits[k], &statistics->worst);
         const struct ray_truth truth = find_ray_truth(&outline, body, &rays[k]);
@@ -79,8 +88,6 @@ static void check_body(struct test_random *random, narc_index *index, const stru
 static void check_family(const char *name, bool hard, int family, size_t trials) {
     struct test_random random = test_random_named(name);
     struct statistics all = {0};
-    narc_index *index;
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < trials; trial++) {
         struct scene scene = create_scene((narc_precision)(trial % 2), 1, 1, 1);
         const struct shape shape =
@@ -88,10 +95,9 @@ static void check_family(const char *name, bool hard, int family, size_t trials)
         scene_add_shape(&scene, &shape);
         scene_add_body(&scene, place_body(&random, scene.precision));
         for (enum ray_kind kind = 0; kind < RAY_KINDS; kind++)
-            check_body(&random, index, &scene, kind, &all);
+            check_body(&random, &scene, kind, &all);
         destroy_scene(&scene);
     }
-    narc_destroy_index(index);
     printf("  %-9s %zu rays, %.0f %% hit, %.0f %% from inside; worst, of the bound: outline %.3f, ray %.3f, early "
            "%.3f, normal %.3f\n",
            name, all.rays, 100.0 * (double)all.hits / (double)all.rays, 100.0 * (double)all.inside / (double)all.rays,
@@ -113,24 +119,14 @@ TEST(meets_hard_shapes) {
 static narc_ray_hit *meet_two(double radius, const struct test_ray *rays, size_t count, narc_ray_options options) {
     static narc_ray_hit hits[32];
     struct scene scene = create_scene(NARC_FLOAT32, 1, 2, 1);
-    struct shape box;
-    narc_index *index;
-    narc_box boxes[2];
-    narc_error error;
-    const size_t most = options.most ? options.most : 1;
-    assert_true(count * most <= sizeof hits / sizeof *hits);
-    expect_ok(narc_build_box(2, 2, radius, box.arcs, &box.count, &error), &error);
+    const struct shape box = box_of(2, 2, radius);
+    const narc_rays view = view_rays(rays, count);
+    assert_true(count * (options.most ? options.most : 1) <= sizeof hits / sizeof *hits);
     scene_add_shape(&scene, &box);
     scene_add_body(&scene, turned_body(0, 1));
     scene_add_body(&scene, turned_body(0, 1));
     scene.bodies[1].x = scene.bodies[1].x_single = 2;
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_rays view = view_rays(rays, count);
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-    expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
-    expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
-    expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, hits, count * most, &error), &error);
-    narc_destroy_index(index);
+    meet(&scene, &view, &options, hits);
     destroy_scene(&scene);
     return hits;
 }
@@ -237,15 +233,10 @@ static struct scene make_neighbours(struct test_random *random) {
 /* Whatever goes through a point that both hold hits both, also along a segment; normals do not point along the ray. */
 TEST(nothing_slips_between_bodies_that_touch) {
     struct test_random random = test_random_named("between neighbours");
-    narc_index *index;
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < test_trials(400); trial++) {
         struct scene scene = make_neighbours(&random);
-        const narc_bodies bodies = scene_bodies(&scene);
         struct test_ray rays[RAYS];
         narc_ray_hit hits[2 * RAYS];
-        narc_box boxes[2];
-        narc_error error;
         for (size_t k = 0; k < RAYS; k++) { /* exactly through the origin: the double of a float is the motion */
             const double along = atan2((double)scene.bodies[0].sine, (double)scene.bodies[0].cosine);
             const double angle =
@@ -256,9 +247,7 @@ TEST(nothing_slips_between_bodies_that_touch) {
         }
         const narc_rays view = view_rays(rays, RAYS);
         const narc_ray_options options = {.most = 2, .inside = (narc_inside)random_below(&random, 3)};
-        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
-        expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
-        expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, hits, 2 * RAYS, &error), &error);
+        meet(&scene, &view, &options, hits);
         for (size_t k = 0; k < 2 * RAYS; k++) {
             const narc_ray_hit *const hit = &hits[k];
             const double motion_x = (double)rays[hit->ray].motion_x, motion_y = (double)rays[hit->ray].motion_y;
@@ -270,15 +259,12 @@ TEST(nothing_slips_between_bodies_that_touch) {
         }
         destroy_scene(&scene);
     }
-    narc_destroy_index(index);
 }
 
 /* Along a segment, in it or beside it by far less than the bound, a ray meets the end that comes first, against its
  * normal; from within it leaves by the other. */
 TEST(meets_the_ends_of_segments) {
     struct test_random random = test_random_named("along segments");
-    narc_index *index;
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < test_trials(1000); trial++) {
         struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
         const double angle = random_between(&random, -4, 4), turn = random_between(&random, -4, 4);
@@ -294,18 +280,12 @@ TEST(meets_the_ends_of_segments) {
         const narc_rays view = view_rays(&ray, 1);
         struct shape shape;
         narc_ray_hit hit;
-        narc_box box;
         narc_error error;
         expect_ok(narc_build_segment((narc_point){-c, -s}, (narc_point){c, s}, 0, shape.arcs, &shape.count, &error),
                   &error);
         scene_add_shape(&scene, &shape);
         scene_add_body(&scene, turned_body(angle, 1));
-        const narc_bodies bodies = scene_bodies(&scene);
-        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, &box, &error), &error);
-        expect_ok(narc_build_index(index, &box, 1, NULL, &error), &error);
-        expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &(narc_ray_options){.inside = NARC_INSIDE_LEAVES},
-                                 &hit, 1, &error),
-                  &error);
+        meet(&scene, &view, &(narc_ray_options){.inside = NARC_INSIDE_LEAVES}, &hit);
         const double side = inside ? 1 : -1;
         assert_int_equal(hit.count, 1);
         assert_true(fabs((double)hit.fraction - (side * half - start)) < 4 * bound);
@@ -313,7 +293,6 @@ TEST(meets_the_ends_of_segments) {
         assert_true(side * (double)(hit.normal_x * x + hit.normal_y * y) > 1 - 1e-6);
         destroy_scene(&scene);
     }
-    narc_destroy_index(index);
 }
 
 /* Fractions up to the largest float, of motions down to the smallest one. */
@@ -348,11 +327,10 @@ TEST(finds_the_same_beside_a_far_body) {
     for (int trial = 0; trial < 16; trial++) {
         struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
         struct body body = turned_body(0, 1);
-        struct shape box;
+        const struct shape box = box_of(2, 2, 0);
         narc_error error;
         size_t hits = 0;
         body.x = trial < 8 ? 0 : ldexp(1, 10 + 2 * (trial - 8)) + 1;
-        expect_ok(narc_build_box(2, 2, 0, box.arcs, &box.count, &error), &error);
         scene_add_shape(&scene, &box);
         scene_add_body(&scene, body);
         scene_add_body(&scene, body);

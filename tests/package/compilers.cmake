@@ -24,11 +24,22 @@ if(NOT CLANG OR NOT HEADERS)
   return()
 endif()
 
+file(STRINGS "${SOURCE}/kernels/isa.def" all_lines REGEX "^NARC_ISA\\(")
+set(lines ${all_lines})
+list(FILTER lines INCLUDE REGEX "AMD64|\\(scalar")
+foreach(line IN LISTS all_lines)
+  string(REGEX MATCH "\\(([a-z0-9]+)" matched "${line}")
+  set(built 0)
+  if(line IN_LIST lines)
+    set(built 1)
+  endif()
+  list(APPEND definitions -DNARC_BUILT_${CMAKE_MATCH_1}=${built})
+endforeach()
+
 function(compile file)
   execute_process(COMMAND "${CLANG}" --target=x86_64-pc-windows-msvc -fgnuc-version=4.2.1 -fsyntax-only -std=c17
     -nostdlibinc -isystem "${HEADERS}" -D_CRT_SECURE_NO_WARNINGS -I include -I soa -I kernels -I dispatch -I methods -I .
-    -DNARC_BUILDING=1 -DNARC_BUILT_avx512=1 -DNARC_BUILT_avx2=1 -DNARC_BUILT_sse41=1 -DNARC_BUILT_scalar=1
-    -DNARC_BUILT_neon=0 -DNARC_BUILT_wasm128=0 -Wall -Wextra -Wundef -Werror ${ARGN} ${file}
+    -DNARC_BUILDING=1 ${definitions} -Wall -Wextra -Wundef -Werror ${ARGN} ${file}
     WORKING_DIRECTORY "${SOURCE}" RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     message(SEND_ERROR "${file}: not for Microsoft's headers")
@@ -43,7 +54,6 @@ foreach(file IN LISTS files)
 endforeach()
 file(GLOB files RELATIVE "${SOURCE}" "${SOURCE}/kernels/*.c" "${SOURCE}/kernels/*/*.c"
   "${SOURCE}/methods/kernels.c")
-file(STRINGS "${SOURCE}/kernels/isa.def" lines REGEX "^NARC_ISA\\(.*AMD64|^NARC_ISA\\(scalar")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^NARC_ISA\\(([a-z0-9]+), .*\"([^\"]*)\"\\)$" matched "${line}")
   separate_arguments(flags UNIX_COMMAND "${CMAKE_MATCH_2}")

@@ -212,7 +212,7 @@ static size_t check_division(const narc_arc *arcs, size_t count, const narc_chai
 
 TEST(divides_ground) {
     struct test_random random = test_random_named("ground");
-    for (size_t trial = 0; trial < test_trials(200); trial++) {
+    for (size_t trial = 0; trial < test_trials(100); trial++) {
         struct turtle t = walk_ground(&random, 1 + random_below(&random, 60), random_between(&random, 0.1, 1.3));
         const narc_chain_options options = {.first_run = (uint32_t)random_below(&random, 3),
                                             .weld = random_below(&random, 2) ? random_between(&random, 0.5, 5) : 0};

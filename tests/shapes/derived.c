@@ -141,7 +141,7 @@ static void check_circles(struct test_random *random, const struct shape *shape,
     assert_true(inner.radius >= most * (1 - 1e-9));
 }
 
-TEST(circles_match_searches) { for_all_families("circles", 4, check_circles); }
+TEST(circles_match_searches) { for_all_families("circles", 2, check_circles); }
 
 /* Everything moves and scales with the shape. */
 static void check_motion(struct test_random *random, const struct shape *shape, const struct samples *samples) {

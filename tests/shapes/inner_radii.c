@@ -113,7 +113,7 @@ static void check_shape(const struct shape *shape) {
 
 TEST(holds_for_all_families) {
     struct test_random random = test_random_named("inner radii");
-    for (size_t k = 0; k < test_trials(8); k++) {
+    for (size_t k = 0; k < test_trials(4); k++) {
         for (int family = 0; family < FAMILY_COUNT; family++) {
             const struct shape shape = make_shape(&random, (enum family)family);
             check_shape(&shape);

@@ -101,7 +101,7 @@ static double spread_of(const narc_arc *arcs, size_t count) {
 TEST(even_counts_have_a_range) {
     struct test_random random = test_random_named("even counts");
     size_t built = 0;
-    for (size_t k = 0; k < test_trials(2000); k++) {
+    for (size_t k = 0; k < test_trials(800); k++) {
         struct shape shape = make_shape(&random, FAMILY_SMOOTH);
         narc_point points[NARC_MAX_ARCS];
         narc_arc arcs[NARC_MAX_ARCS];

@@ -320,7 +320,7 @@ TEST(forged_bytes_do_no_harm) {
     unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
     narc_error error;
     assert_non_null(forged);
-    for (size_t k = 0; k < test_trials(20000); k++) {
+    for (size_t k = 0; k < test_trials(8000); k++) {
         narc_shapes *loaded = NULL;
         memcpy(forged, bytes, size);
         for (size_t flips = 1 + random_below(&random, 3); flips > 0; flips--) {
@@ -359,7 +359,7 @@ TEST(forged_bytes_do_no_harm) {
         narc_destroy_shapes(loaded);
         free(copy);
     }
-    printf("  %zu loads of %zu forgeries\n", loads, test_trials(20000));
+    printf("  %zu loads of %zu forgeries\n", loads, test_trials(8000));
     assert_true(loads > 0);
     expect_usable(shapes);
     narc_destroy_shapes(shapes);

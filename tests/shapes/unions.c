@@ -375,7 +375,7 @@ TEST(random_unions_match_outlines) {
     struct test_random random = test_random_named("random unions");
     static struct compound c;
     size_t tested = 0;
-    for (size_t trial = 0; trial < test_trials(200); trial++) {
+    for (size_t trial = 0; trial < test_trials(120); trial++) {
         struct samples samples[MOST_PARTS];
         double lack = 0, missed = rounding;
         make_random(&random, trial % 2, &c);
@@ -390,7 +390,7 @@ TEST(random_unions_match_outlines) {
         for (size_t part = 0; part < c.parts; part++)
             oracle_free(&samples[part]);
     }
-    assert_true(tested >= test_trials(200) * 9 / 10); /* or nothing was */
+    assert_true(tested >= test_trials(120) * 9 / 10); /* or nothing was */
 }
 
 /* The strips lie in another direction, and the parts come in another order. */
