@@ -20,10 +20,6 @@ static float find_flat_sine(float angle) {
     return angle == 0 ? FLAT_SINE : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
 }
 
-/* So few pairs are asked one by one, of the kernels with one lane: with one in use a vector takes twice to three times
- * as long. The bits are the same. */
-enum { FEW = 2 };
-
 /* What all calls begin with; also finds the table. */
 static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                          const narc_query *query, narc_batch *out_batch, const narc_kernel_table **out_kernels,
@@ -31,8 +27,8 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
     narc_status status = narc_begin_batch(shapes, bodies, pairs, query, out_batch, error);
     if (status == NARC_OK)
         *out_kernels = narc_kernels(&status, error);
-    if (status == NARC_OK && out_batch->count <= FEW)
-        *out_kernels = NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, *out_kernels);
+    if (status == NARC_OK)
+        *out_kernels = NARC_KERNELS_FOR(out_batch->count, *out_kernels);
     return status;
 }
 

@@ -176,8 +176,9 @@ typedef struct narc_refinement {
  * NARC_ERROR_BOUND these may have been, so that the separation is within twice that bound of the exact one, and mostly
  * within 1e-14. Where the centres of two arcs, or two corners, lie in one place up to rounding, the normal stays the row's.
  * What is not finite is a row with separation +INFINITY and all else 0.
- * Errors, all found before anything is written: as narc_find_contacts() for bodies and pairs, NARC_ERROR_INDEX (`error`
- * names the row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. Not in
+ * Errors, all found before anything is written: as narc_find_contacts() for bodies and pairs, NARC_ERROR_ARGUMENT (a row
+ * or output is NULL, a reserved member is not, one column of a rotation without the other), NARC_ERROR_INDEX (`error` names the
+ * row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. Not in
  * narc_small.wasm. */
 NARC_API narc_status narc_refine_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                           const narc_refinement *refinement, const narc_contact *rows, size_t count,

@@ -411,10 +411,11 @@ auto refine_contacts(const narc_shapes *shapes, const narc_bodies &bodies, const
         });
 }
 
-// separations[k] is that of pair k: a span, an array or a vector of floats, with room up to the last pair that is asked of.
+// separations[k] is that of pair k: a span, an array or a vector of floats, with room for all pairs.
 template <class Floats>
 result<void> find_separations(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
-                              const narc_query &query, Floats &&separations) {
+                              narc_query query, Floats &&separations) {
+    query.row_stride = sizeof(float);
     detail::make_room(separations, pairs.count);
     const span<float> room(separations);
     if (room.size() < pairs.count)

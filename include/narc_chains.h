@@ -23,7 +23,7 @@
  *   the entry says. A run's shape is closed far behind, but only its front touches, never that closure. Answers are
  *   right for bodies that are less deep in the ground than half the entry's front is long, and where the ground is
  *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
- *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
+ *   touches nothing, and its solid ends straight behind it. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
  *   air is within the closure, or beyond a concave arc: there is no contact with what it does not touch. Each entry knows
  *   how thick its chain's solid is behind it, and how far other surfaces are from its ends, and a contact is never deeper
  *   than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as a gear in a ring, none

@@ -93,12 +93,12 @@ typedef struct narc_pairs {
  *                     meets its second point in time; 0: that of all
  *   flat_angle        manifolds: how far an edge's normal may be from the contact's for the edge to count as facing the
  *                     other body; 0: NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
- *   hints             contacts and manifolds: a column beside the pairs, in and out, zeros at first. Each pair leaves a
+ *   hints             all but overlaps: a column beside the pairs, in and out, zeros at first. Each pair leaves a
  *                     hint, unless it is far apart, that the next call starts from, faster where bodies have moved
  *                     little: shapes with arcs gain most, those with edges less, circles, two boxes, capsules or
- *                     sharp polygons of up to 8 corners nothing. What hints mean is the library's business. Any value is safe: one that is
- *                     stale, or made up, or another pair's, costs time and changes no bit of the answer. Untouched on
- *                     an error other than NARC_ERROR_CAPACITY
+ *                     sharp polygons of up to 8 corners nothing. What hints mean is the library's business. Any
+ *                     value is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of
+ *                     the answer. Untouched on an error other than NARC_ERROR_CAPACITY
  *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once, so no more than there
  *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes
  *                     of an empty container asks of none. Hints, margins, rows' numbers and dense rows stay those of the

@@ -36,15 +36,15 @@ typedef struct narc_batch {
     narc_bodies filled[2];
 } narc_batch;
 
-/* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
- *   more        Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
- *               besides to `more`, and if rows are not dense NARC_MORE_ROW times that to the row's count.
- *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
- *               the places that are that pair's. */
 typedef struct narc_row_list {
     uint32_t first, room, count;
 } narc_row_list;
 
+/* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
+ *   more        Pairs with a concave arc can have several rows. The kernel writes the deepest one, and unless rows are
+ *               dense adds how many there are besides to `more`, and NARC_MORE_ROW times that to the row's count.
+ *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
+ *               the places that are that pair's. */
 typedef struct narc_rows {
     char *base;
     ptrdiff_t stride;
@@ -155,7 +155,7 @@ typedef struct narc_kernel_table {
 #include "kernels.def"
 } narc_kernel_table;
 
-/* What the kernels called overlap... and contact... have in common. */
+/* Overlaps; contacts, manifolds and separations. */
 typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                  uint64_t *out_bits);
 typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -183,10 +183,14 @@ typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t cou
 #define NARC_ISA_TABLE_1(table)       &table
 #define NARC_ISA_TABLE_0(table)       NULL
 
-/* The kernels for a few items: plain C, or where that is not built, those in use. */
-#define NARC_KERNELS_FOR_FEW(built, kernels)  NARC_KERNELS_FOR_FEW_(built, kernels)
+/* The kernels for so many items. A few are asked one by one, by plain C, or where that is not built, those in use: with one
+ * lane in use a vector takes twice to three times as long. The bits are the same. */
+enum { NARC_FEW = 2 };
 #define NARC_KERNELS_FOR_FEW_(built, kernels) NARC_KERNELS_FOR_FEW_##built(kernels)
+#define NARC_KERNELS_FOR_FEW(built, kernels)  NARC_KERNELS_FOR_FEW_(built, kernels)
 #define NARC_KERNELS_FOR_FEW_1(kernels)       (&narc_kernels_scalar)
 #define NARC_KERNELS_FOR_FEW_0(kernels)       (kernels)
+#define NARC_KERNELS_FOR(count, kernels)                                                                               \
+    ((count) <= NARC_FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, kernels) : (kernels))
 
 #endif

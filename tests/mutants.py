@@ -105,7 +105,7 @@ class Copy:
     def passes(self, name, trials, seconds):
         """Does a test end with success, or as skipped, in this time of the processor?"""
         command, environment = self.tests[name]
-        environment = {**os.environ, "NARC_TEST_TRIALS": trials, **environment}
+        environment = {**os.environ, **environment, "NARC_TEST_TRIALS": trials}
         command = ["sh", "-c", 'ulimit -t %d && exec "$@"' % seconds, "sh"] + command
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment,
                                    cwd=self.build)

@@ -11,12 +11,8 @@
 /* Pairs in a part. */
 enum { PART = 1024 };
 
-/* So few are asked for of the kernels with one lane; see api.c. */
-enum { FEW = 2 };
-
 void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
-    const narc_kernel_table *const kernels =
-        end - first <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, job->kernels) : job->kernels;
+    const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, job->kernels);
     const size_t skipped = kernels->casts(&job->batch, first, end);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }

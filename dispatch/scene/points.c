@@ -13,9 +13,6 @@
 /* Points in a part: some 20 microseconds of work. */
 enum { CHECK_PART = 16384, PART = 512, NEAREST_PART = 128 };
 
-/* So few points are asked one by one, of the kernels with one lane. The bits are the same. */
-enum { FEW = 2 };
-
 typedef struct point_job {
     narc_point_batch batch;
     void (*kernel)(const narc_point_batch *batch, size_t first, size_t end);
@@ -43,7 +40,7 @@ static narc_status check_points(const narc_shapes *shapes, const narc_bodies *bo
 /* The kernels for so many points. */
 static const narc_kernel_table *find_kernels(size_t count, narc_status *out_status, narc_error *error) {
     const narc_kernel_table *const kernels = narc_kernels(out_status, error);
-    return kernels && count <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, kernels) : kernels;
+    return kernels ? NARC_KERNELS_FOR(count, kernels) : NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------ distances */

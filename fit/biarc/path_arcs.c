@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * path_arcs.c - the contours of a path as chains of arcs: each curve, and lines one after the other. What comes out is shown to the store first.
+ * path_arcs.c - the contours of a path as chains of arcs: each curve, and lines one after the other. What comes out is
+ * shown to the store first.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -276,19 +277,21 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     narc_status status = check_contour(builder, path, contour);
     narc_error *const error = builder->error, reason;
     const narc_crossing *crossing = NULL;
-    bool meets = false; /* arcs where lines do not */
+    bool meets = false;    /* arcs where lines do not */
+    bool is_round = false; /* an open stroke that ends where it begins; what is drawn has no line that leads there */
     if (status)
         return status;
     builder->error = &reason;
     builder->tolerance = effort->tolerance;
     for (int tries = 0; tries < MOST_TRIES; tries++) {
-        const bool lines = flatness <= whole && (effort->lines || tries + 1 == MOST_TRIES);
+        const bool lines = flatness <= whole && !is_round && (effort->lines || tries + 1 == MOST_TRIES);
         list->count = begin;
         list->distance = 0;
         status =
             lines ? add_chords(builder, contour, flatness) : add_contour(builder, degrees, count, points, path->slack);
         if (status || list->count == begin)
             break;
+        is_round = builder->open && is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
         if (!builder->open && (hole ? measure_chain(list, begin) > 0 : measure_chain(list, begin) < 0))
             reverse_chain(list, begin);
         const double room = whole - list->distance;
@@ -323,8 +326,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     }
     if (crossing)
         return fail_crossing(builder, path, crossing);
-    const bool is_round = status == NARC_ERROR_NOT_SIMPLE && builder->open &&
-                          is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
+    is_round = is_round && status == NARC_ERROR_NOT_SIMPLE;
     if (status && status != NARC_ERROR_MEMORY && meets && !is_round)
         return narc_fail(error, status, contour, whole,
                          "contour %zu: it is too thin for the tolerance %g: its sides meet", contour, whole);

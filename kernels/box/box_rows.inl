@@ -89,7 +89,7 @@ INLINE void place_box_edge(struct edge *edge, const struct box_side *side, vec2 
     edge->high = (struct edge_end){v2_cross(n, high), v2_dot(n, high), arc_radius};
 }
 
-/* The edge of a box as find_second_points() takes it. That of a capsule may lie along n, and then not look like an edge
+/* The edge of a box as find_manifold_points() takes it. That of a capsule may lie along n, and then not look like an edge
  * from there: the one on the other side is asked. */
 INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_side *side,
                                  const struct box_touch *touch, vec2 n, vf flat_sine, int shift, bool is_b) {

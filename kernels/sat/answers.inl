@@ -181,6 +181,7 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
                                char *const *place) {                                                                   \
         write_gaps(call, queue, k, gap, place, writer);                                                                \
     }                                                                                                                  \
+    _Static_assert(sizeof(type) <= sizeof(narc_manifold), "room for a row");                                           \
     static const struct question name##_question = {sizeof(type),                                                      \
                                                     normal,                                                            \
                                                     extra,                                                             \

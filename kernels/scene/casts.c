@@ -515,7 +515,7 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
                                  .asked = CAST_SLOTS,
                                  .of_casts = true};
     const narc_rows rows = {.base = (char *)casts.contact, .stride = sizeof casts.contact[0]};
-    size_t unused;
+    size_t unused = 0;
     while (casts.count > 0 || first < end) {
         while (casts.count + CAST_GROUP <= CAST_SLOTS && first < end) {
             const size_t count = end - first < CAST_GROUP ? end - first : CAST_GROUP;

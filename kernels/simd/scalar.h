@@ -19,8 +19,13 @@ typedef int vm;
 typedef int vp;
 
 INLINE vf v_set(float a) { return a; }
-INLINE vf v_load(const float *p) { return *p; }
-INLINE void v_store(float *p, vf a) { *p = a; }
+/* What a float is loaded from, or stored to, may hold an integer. */
+INLINE vf v_load(const float *p) {
+    float a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
+INLINE void v_store(float *p, vf a) { memcpy(p, &a, sizeof a); }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     memcpy(out, (const char *)base + (ptrdiff_t)(uint32_t)*index * stride, 4 * sizeof(float));
 }

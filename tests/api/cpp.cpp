@@ -384,7 +384,9 @@ void test_separations() {
     std::vector<float> separations;
     std::vector<narc_contact> contacts;
     float few[1];
-    CHECK(narc::find_separations(scene.shapes, scene.bodies, scene.batch, query, separations));
+    narc_query strided = query;
+    strided.row_stride = sizeof(narc_contact); // left over from contacts
+    CHECK(narc::find_separations(scene.shapes, scene.bodies, scene.batch, strided, separations));
     const auto found = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, contacts).value();
     CHECK(separations.size() == found.size());
     for (size_t k = 0; k < found.size(); k++)

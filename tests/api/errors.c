@@ -376,6 +376,11 @@ TEST(test_outputs) {
             expect_error(question->ask(question, &asked, &error), NARC_ERROR_ARGUMENT, &error, "out_count");
     }
     assert_true(is_junk(out, sizeof *out));
+    float angle = 0, cosine = 7, sine = 7;
+    assert_int_equal(narc_compute_poses(NULL, 1, &cosine, &sine, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_compute_poses(&angle, 1, NULL, &sine, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_compute_poses(&angle, 1, &cosine, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_true(cosine == 7 && sine == 7);
     free(out);
     tear_down(&f);
 }

@@ -226,12 +226,26 @@ TEST(test_errors) {
     const narc_pairs pairs = scene_pairs(&scene), none = {.count = 0};
     narc_error error;
     float found[20];
+    memset(found, 0xa5, sizeof found);
     expect_error(narc_find_separations(scene.store, &bodies, &pairs, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
                  "out_separations");
     expect_error(narc_find_separations(scene.store, &bodies, &pairs, &(narc_query){.row_stride = 6}, found, &error),
                  NARC_ERROR_ARGUMENT, &error, "row_stride");
     expect_error(narc_find_separations(NULL, &bodies, &pairs, NULL, found, &error), NARC_ERROR_ARGUMENT, &error,
                  "shapes");
+    const narc_query wrong[] = {
+        {.margin = NAN},
+        {.first = 21},
+        {.first = 10, .count = 11},
+        {.selection = NARC_ARRAY(((const uint32_t[]){0, 20})), .selection_count = 2},
+        {.selection = NARC_ARRAY(((const uint32_t[]){0})), .selection_count = SIZE_MAX},
+        {.reserved = {&error}},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, &wrong[k], found, NULL), NARC_OK);
+    scene.pairs[19].b = 40;
+    assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, NULL, found, NULL), NARC_OK);
+    assert_true(is_junk(found, sizeof found));
     assert_int_equal(narc_find_separations(scene.store, &bodies, &none, NULL, NULL, NULL), NARC_OK);
     destroy_scene(&scene);
 }

@@ -11,7 +11,7 @@
 #define ANGLE_25  1.28700221758656973
 #define ANGLE_101 1.37145902181257261
 
-/* Four arcs around a direction d = (x, y) of the list above, at angle `a`: flat ones of radius R and tips of radius
+/* Four arcs around one of those directions, d = (x, y) at angle `a`: flat ones of radius R and tips of radius
  * r. */
 #define LENS(a, x, y, R, r)                                                                                            \
     {                                                                                                                  \

@@ -18,8 +18,6 @@ struct CMUnitTest {
     const char *name;
     CMUnitTestFunction test_func;
 };
-#define cmocka_unit_test(test)                                                                                         \
-    { #test, test }
 
 #define print_message(...) ((void)printf(__VA_ARGS__))
 #define print_error(...)   ((void)printf(__VA_ARGS__))
