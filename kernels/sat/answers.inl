@@ -159,8 +159,8 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
     return end_rows(&call, size);
 }
 
-/* A question, name_question, from its row_writer. `normal`, `extra`: normal_at and extra_row; `second`: are second points
- * asked for? */
+/* A question, name_question, from its row_writer, without what never runs. `normal`, `extra`: normal_at and extra_row;
+ * `second`: are second points asked for? */
 #define NARC_QUESTION(name, type, normal, extra, nothing, writer, second)                                              \
     static void name##_of_settled(const struct call *call, struct queue *queues, int begin) {                          \
         answer_settled(call, queues, begin, writer, false);                                                            \
@@ -182,15 +182,16 @@ INLINE size_t find_rows(const struct question *question, size_t size, int end, t
         write_gaps(call, queue, k, gap, place, writer);                                                                \
     }                                                                                                                  \
     _Static_assert(sizeof(type) <= sizeof(narc_manifold), "room for a row");                                           \
-    static const struct question name##_question = {sizeof(type),                                                      \
-                                                    normal,                                                            \
-                                                    extra,                                                             \
-                                                    nothing,                                                           \
-                                                    name##_of_settled,                                                 \
-                                                    (second) ? name##_of_edges : NULL,                                 \
-                                                    name##_of_polygons,                                                \
-                                                    {name##_of_boxes, name##_of_capsules},                             \
-                                                    name##_of_gaps};
+    static const struct question name##_question = {                                                                   \
+        sizeof(type),                                                                                                  \
+        normal,                                                                                                        \
+        extra,                                                                                                         \
+        nothing,                                                                                                       \
+        name##_of_settled,                                                                                             \
+        (second) ? name##_of_edges : NULL,                                                                             \
+        NARC_SHORTCUTS ? name##_of_polygons : NULL,                                                                    \
+        {NARC_SHORTCUTS ? name##_of_boxes : NULL, NARC_SHORTCUTS ? name##_of_capsules : NULL},                         \
+        NARC_PIECES ? name##_of_gaps : NULL};
 
 /* answer_name(): takes the pairs of a call through all that is before the search, and that. `type`: of rows in a list;
  * `end`: behind the last stage. */

@@ -126,7 +126,8 @@ static void answer_capsule_overlaps(const struct call *call, const struct box_qu
     mark_box_overlaps(call, queue, k, live, true);
 }
 
-static box_stage *const overlap_detours[BOX_QUEUES] = {answer_box_overlaps, answer_capsule_overlaps};
+static box_stage *const overlap_detours[BOX_QUEUES] = {NARC_SHORTCUTS ? answer_box_overlaps : NULL,
+                                                       NARC_SHORTCUTS ? answer_capsule_overlaps : NULL};
 
 INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *indices, int k,
                           const struct placement *placement, vm open, int32_t number) {
@@ -135,7 +136,9 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
 
 /* All pairs; of those with a piece, which ones are near. */
 NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    static stage *const stages[STAGES] = {probe_overlaps, probe_overlaps_again, climb_overlaps, decide_overlaps};
+    static stage *const stages[STAGES] = {NARC_SHORTCUTS ? probe_overlaps : NULL,
+                                          NARC_SHORTCUTS ? probe_overlaps_again : NULL,
+                                          NARC_SHORTCUTS ? climb_overlaps : NULL, decide_overlaps};
     const struct course course = {.take = detour_overlaps,
                                   .settle = triage_overlaps,
                                   .fields = OVERLAP_FIELDS,

@@ -9,6 +9,7 @@
  * junctions. What is certain goes to the last stage, which is the question's.
  */
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "base/call.inl"
 #include "base/question.inl"
@@ -148,8 +149,10 @@ static void decide(const struct call *call, struct queue *queues, int begin) {
     }
 }
 
+/* Of what never runs no kernel keeps the code. */
 const struct row_search NARC_NAMED(search) = {
-    .stages = {probe_rows, probe_rows_again, climb_rows, compare_edges, decide},
-    .hinted = start_from_hints,
-    .concave = answer_concave,
+    .stages = {NARC_SHORTCUTS ? probe_rows : NULL, NARC_SHORTCUTS ? probe_rows_again : NULL,
+               NARC_SHORTCUTS ? climb_rows : NULL, NARC_SHORTCUTS ? compare_edges : NULL, decide},
+    .hinted = NARC_SHORTCUTS ? start_from_hints : NULL,
+    .concave = NARC_PIECES ? answer_concave : NULL,
 };
