@@ -60,6 +60,7 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
         }
         guard_release(found);
     }
+    query.workers = NULL;
     query.row_stride = 0;
     query.out_skipped = &contacts_skipped;
     free(find_expected(store, bodies, pairs, &query));
