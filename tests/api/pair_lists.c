@@ -491,6 +491,8 @@ TEST(follows_bodies) {
         if (w->bare || w->start < 40 || w->start > 1000)
             continue;
         assert_true(sums.kept > w->steps / 40 && sums.renewed > w->steps / 40 && sums.lost > 0 && sums.added > 0);
+        if (w->steps < 100) /* as an emulator takes: what is rare may be missing */
+            continue;
         assert_true(sums.sleeping > 0 && sums.sensors > 0 && sums.broken > 0);
         assert_int_equal(sums.flipped > 0, w->with_ids);
     }
