@@ -135,7 +135,7 @@ static double measure_four_arcs(const struct reference_hull *hull, int what, dou
     for (int k = 0; k <= DIRECTIONS; k++) {
         const double angle = PI / 2 * k / DIRECTIONS;
         const double center = angle <= f ? c * cos(angle) : s - d * sin(angle);
-        const double needed = reference_hull_support(hull, angle) - center;
+        const double needed = (double)reference_hull_support(hull, angle) - center;
         radius = fmax(radius, needed);
         least = fmin(least, needed);
     }
