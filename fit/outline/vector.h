@@ -38,6 +38,19 @@ static inline narc_point unit(narc_point a) {
 /* A quarter turn counter-clockwise: from an outward normal to the direction in which the outline runs there. */
 static inline narc_point turned(narc_point a) { return (narc_point){-a.y, a.x}; }
 
+/* The squared distance of a point from the side a-b. */
+static inline double side_distance(narc_point p, narc_point a, narc_point b) {
+    const narc_point side = minus(b, a), from = minus(p, a);
+    const double square = dot(side, side), part = square > 0 ? fmin(1, fmax(0, dot(from, side) / square)) : 0;
+    const narc_point away = {from.x - part * side.x, from.y - part * side.y};
+    return dot(away, away);
+}
+
+static inline int compare_numbers(const void *left, const void *right) {
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
 /* By x, then by y: for qsort(). */
 static inline int compare_points(const void *left, const void *right) {
     const narc_point *a = (const narc_point *)left, *b = (const narc_point *)right;

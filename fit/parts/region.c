@@ -69,23 +69,17 @@ double narc_measure_region(const narc_region *region) {
 
 /* ---------------------------------------------------------------------------- simpler contours */
 
-static double find_distance(narc_point p, narc_point a, narc_point b) {
-    const narc_point side = minus(b, a), from = minus(p, a);
-    const double square = dot(side, side), part = square > 0 ? dot(from, side) / square : 0;
-    return length(minus(from, along((narc_point){0, 0}, fmin(1, fmax(0, part)), side)));
-}
-
 /* Marks what is left of the points after `first` and before `last`, of a contour of `count` (Douglas and Peucker). The
  * stack has ends of stretches; of two halves the shorter one comes first, so it holds few. */
 static void keep_points(const narc_point *points, size_t count, size_t first, size_t last, double slack, double longest,
                         bool *kept) {
     size_t stack[2 * 64], depth = 0;
     for (;;) {
-        double furthest = slack;
+        double furthest = slack * slack;
         size_t worst = 0;
         const narc_point a = points[first], b = points[last % count];
         for (size_t k = first + 1; k < last; k++) {
-            const double distance = find_distance(points[k], a, b);
+            const double distance = side_distance(points[k], a, b);
             if (distance > furthest) {
                 furthest = distance;
                 worst = k;
