@@ -44,15 +44,10 @@ static narc_status check_controls(const narc_point *controls, size_t degree, dou
 }
 
 static struct frame find_frame(const narc_point *controls, size_t degree) {
-    narc_point low = controls[0], high = controls[0];
-    double largest = 0;
-    for (size_t k = 0; k <= degree; k++) {
-        low = (narc_point){fmin(low.x, controls[k].x), fmin(low.y, controls[k].y)};
-        high = (narc_point){fmax(high.x, controls[k].x), fmax(high.y, controls[k].y)};
-        largest = fmax(largest, fmax(fabs(controls[k].x), fabs(controls[k].y)));
-    }
-    struct frame frame = {.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2}};
-    frame.extent = fmax(high.x - low.x, high.y - low.y);
+    const narc_aabb box = bound_points(controls, degree + 1);
+    const double largest = largest_in(box);
+    struct frame frame = {.middle = {(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2},
+                          .extent = extent_of(box)};
     if (frame.extent > 0) {
         frexp(frame.extent, &frame.exponent);
         /* Moving to the frame and back rounds each coordinate by half an epsilon of the largest, twice; what is done

@@ -490,8 +490,7 @@ static const double CROSSING = 1e-6;
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
     const narc_contours *drawn = &builder->drawn;
-    const narc_aabb box = bound_points(drawn->points, drawn->point_count);
-    const double largest = drawn->point_count ? fmax(fmax(-box.min_x, box.max_x), fmax(-box.min_y, box.max_y)) : 0;
+    const double largest = drawn->point_count ? largest_in(bound_points(drawn->points, drawn->point_count)) : 0;
     builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
     builder->efforts = malloc((drawn->count + 1) * sizeof *builder->efforts);
     for (size_t k = 0; builder->boxes && k < drawn->count; k++) {

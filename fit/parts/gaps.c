@@ -209,13 +209,9 @@ narc_status narc_survey_region(narc_region *region, narc_error *error) {
     static const float NEVER = 4.0f * CELLS * CELLS;
     region->cell = region->extent / CELLS;
     const narc_point old = region->corner;
-    double width = 0, height = 0;
-    for (size_t k = 0; k < region->point_count; k++) {
-        width = fmax(width, region->points[k].x - old.x);
-        height = fmax(height, region->points[k].y - old.y);
-    }
-    region->columns = (size_t)ceil(width / region->cell) + 2 * MARGIN;
-    region->rows = (size_t)ceil(height / region->cell) + 2 * MARGIN;
+    const narc_aabb box = bound_points(region->points, region->point_count);
+    region->columns = (size_t)ceil((box.max_x - old.x) / region->cell) + 2 * MARGIN;
+    region->rows = (size_t)ceil((box.max_y - old.y) / region->cell) + 2 * MARGIN;
     region->corner = (narc_point){old.x - MARGIN * region->cell, old.y - MARGIN * region->cell};
     const size_t count = region->rows * region->columns;
     const size_t longer = region->rows > region->columns ? region->rows : region->columns;

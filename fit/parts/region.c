@@ -17,12 +17,6 @@ static const double LONGEST_LINE = 1.0 / 32;
 
 /* ---------------------------------------------------------------------------- contours */
 
-static void find_extent(narc_region *region, const narc_contours *contours) {
-    const narc_aabb box = bound_points(contours->points, contours->point_count);
-    region->corner = (narc_point){box.min_x, box.min_y};
-    region->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
-}
-
 static bool add_point(narc_region *region, narc_point p) {
     narc_point *points = narc_grow(region->points, &region->point_capacity, region->point_count + 1, sizeof *points);
     if (!points)
@@ -198,10 +192,10 @@ static bool find_holes(narc_region *region) {
 }
 
 narc_status narc_make_region(const narc_contours *contours, double slack, narc_region *out_region, narc_error *error) {
-    narc_region region = {.slack = slack};
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
+    narc_region region = {.slack = slack, .corner = {box.min_x, box.min_y}, .extent = extent_of(box)};
     if (contours->point_count == 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the outline has no points");
-    find_extent(&region, contours);
     if (!(region.extent > 0))
         return narc_fail(error, NARC_ERROR_SIZE, 0, 0, "all points of the outline are in one place");
     /* Turned contours have other points left: they are simplified again. */

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---------------------------------------------------------------------------- outlines */
 
@@ -181,6 +182,16 @@ double goal_value(const narc_fit_result *of, narc_fit_goal goal) {
     default:
         return of->max_distance;
     }
+}
+
+narc_error refuse_fit(const narc_path *path, narc_fit_request request, narc_status expected, const char *words) {
+    narc_fit_result fit, junk;
+    narc_error error = {0};
+    memset(&fit, 0x5a, sizeof fit);
+    memset(&junk, 0x5a, sizeof junk);
+    expect_error(narc_fit_path(path, &request, &fit, &error), expected, &error, words);
+    assert_memory_equal(&fit, &junk, sizeof fit);
+    return error;
 }
 
 narc_fit_result fit_and_check(const struct outline *of, narc_fit_request request) {

@@ -42,6 +42,9 @@ struct outline make_moved(const struct outline *of, double scale, double angle, 
 narc_fit_result fit_outline(const struct outline *of, narc_fit_request request);
 narc_fit_result fit_shape(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs);
 
+/* A fit ends with this error, in these words, and leaves its result as it was. Returns the error. */
+narc_error refuse_fit(const narc_path *path, narc_fit_request request, narc_status expected, const char *words);
+
 /* What the goal makes least. */
 double goal_value(const narc_fit_result *of, narc_fit_goal goal);
 

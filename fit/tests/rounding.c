@@ -209,10 +209,7 @@ TEST(test_without_area) {
         const narc_point p[] = {{0, 0}, {1, 1}, {2 - widths[k], 2 + widths[k]}, {3, 3}, {1, 1 + widths[k]}};
         struct outline of = make_outline("nearly a line");
         add_corners(&of, p, 5);
-        const narc_fit_request request = {.arc_count = 4};
-        narc_fit_result fit;
-        narc_error error = {0};
-        expect_error(narc_fit_path(of.path, &request, &fit, &error), NARC_ERROR_NOT_CONVEX, &error, "line");
+        refuse_fit(of.path, (narc_fit_request){.arc_count = 4}, NARC_ERROR_NOT_CONVEX, "line");
         free_outline(&of);
     }
 }
@@ -256,10 +253,8 @@ TEST(test_too_far_to_keep) {
     struct test_random random = test_random_named("too far");
     struct outline of = make_far(&random, 9e8);
     const narc_fit_request request = {.arc_count = 4, .starts = 1, .keep_origin = true};
-    narc_fit_result fit;
-    narc_error error = {0};
-    expect_error(narc_fit_path(of.path, &request, &fit, &error), NARC_ERROR_NO_SOLUTION, &error,
-                 "9e+08 from its origin, where single precision rounds by up to 53.6442");
+    refuse_fit(of.path, request, NARC_ERROR_NO_SOLUTION,
+               "9e+08 from its origin, where single precision rounds by up to 53.6442");
     free_outline(&of);
 }
 
@@ -270,9 +265,7 @@ TEST(test_too_far_to_keep) {
 TEST(test_closest) {
     struct outline of = make_rhombus(316);
     const narc_fit_request request = {.tolerance = 4, .family = NARC_FIT_PAPER, .starts = 1};
-    narc_fit_result fit;
-    narc_error error = {0};
-    expect_error(narc_fit_path(of.path, &request, &fit, &error), NARC_ERROR_NO_SOLUTION, &error, "tolerance 4");
+    const narc_error error = refuse_fit(of.path, request, NARC_ERROR_NO_SOLUTION, "tolerance 4");
     assert_true(error.value > request.tolerance && error.value < 316);
     assert_null(strstr(error.message, "inf"));
     free_outline(&of);
