@@ -123,21 +123,6 @@ static double measure_chain(const narc_arc_list *list, size_t begin) {
     return 0.5 * twice;
 }
 
-static void reverse_chain(narc_arc_list *list, size_t begin) {
-    for (size_t i = begin; i < list->count; i++) {
-        narc_curve_arc *piece = &list->arcs[i];
-        const narc_point end = piece->end;
-        piece->end = piece->start;
-        piece->start = end;
-        piece->turn = -piece->turn;
-    }
-    for (size_t i = begin, j = list->count - 1; i < j; i++, j--) {
-        const narc_curve_arc piece = list->arcs[i];
-        list->arcs[i] = list->arcs[j];
-        list->arcs[j] = piece;
-    }
-}
-
 /* Is a contour inside an odd number of others? */
 static bool is_hole(const struct builder *builder, size_t contour) {
     const narc_contours *drawn = &builder->drawn;
@@ -293,7 +278,7 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
             break;
         is_round = builder->open && is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
         if (!builder->open && (hole ? measure_chain(list, begin) > 0 : measure_chain(list, begin) < 0))
-            reverse_chain(list, begin);
+            narc_reverse_arcs(list->arcs + begin, list->count - begin);
         const double room = whole - list->distance;
         bool any = false;
         for (size_t i = begin; i < list->count; i++)
