@@ -106,17 +106,7 @@ static void widen_by_curve(narc_aabb *box, const narc_point *controls, unsigned 
 
 /* ---------------------------------------------------------------------------- the walk over the moves */
 
-/* A drawn move: degree 1 to 3, controls[0 .. degree]. */
-struct drawn {
-    const narc_point *controls;
-    unsigned degree;
-    size_t move, point; /* what comes next */
-    size_t contour;     /* number of drawn contours before this one's */
-    bool begins;        /* the first of its contour */
-};
-
-/* The next drawn move; `move` is all 0 before the first. False at the end. */
-static bool next_drawn(const narc_path *path, struct drawn *move) {
+bool narc_next_drawn(const narc_path *path, narc_drawn_move *move) {
     bool begins = false;
     while (move->move < path->move_count) {
         const unsigned degree = path->degrees[move->move++];
@@ -145,7 +135,7 @@ struct survey {
 
 static struct survey survey_path(const narc_path *path) {
     struct survey found = {.extent = {INFINITY, INFINITY, -INFINITY, -INFINITY}};
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         found.contour_count = move.contour + 1;
         widen_by_curve(&found.extent, move.controls, move.degree);
         if (move.degree > 1) {
@@ -179,7 +169,7 @@ static narc_status choose_flatness(const struct survey *found, double *flatness,
 /* At most that many points come of a path, the closing ones that are left out again included. */
 static size_t count_points(const narc_path *path, double flatness) {
     size_t count = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         const size_t more = count_chords(move.controls, move.degree, flatness) + move.begins;
         count = count > SIZE_MAX - more ? SIZE_MAX : count + more;
     }
@@ -196,7 +186,7 @@ static void end_contour(narc_contours *contours, size_t first) {
 
 static void draw_chords(const narc_path *path, narc_contours *contours) {
     size_t first = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         if (move.begins) {
             if (contours->point_count > 0)
                 end_contour(contours, first);
@@ -240,7 +230,7 @@ narc_status narc_flatten_path(const narc_path *path, double flatness, narc_conto
 
 size_t narc_find_drawn_line(const narc_path *path, const narc_contours *contours, size_t contour, size_t chord) {
     size_t line = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         if (move.contour != contour)
             continue;
         const size_t chords = count_chords(move.controls, move.degree, contours->flatness - path->slack);
