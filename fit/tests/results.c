@@ -63,16 +63,6 @@ TEST(test_counts) {
     free_outline(&of);
 }
 
-TEST(test_circles) {
-    struct outline of = make_regular("heptagon", 7, 0.1, 0.8);
-    for (size_t arcs = 1; arcs <= 3; arcs++) {
-        const narc_fit_result fit = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, arcs);
-        assert_int_equal(fit.arc_count, 1);
-        assert_true(fabs(fit.arcs[0].end - fit.arcs[0].start - 2 * PI) <= 1e-12);
-    }
-    free_outline(&of);
-}
-
 /* ---------------------------------------------------------------------------- tolerance */
 
 static void check_tolerance(const struct outline *of, narc_fit_family family, narc_fit_goal goal, double tolerance) {
