@@ -146,7 +146,7 @@ TEST(test_smooth_rings) {
 /* Sides of many lines are one line each, wherever the chain begins. */
 TEST(test_square) {
     static const narc_point corners[] = {{0, 0}, {3, 1}, {2, 4}, {-1, 3}};
-    for (size_t first = 0; first < COUNT; first += 75) {
+    for (size_t first = 0; first < COUNT; first += 75 * stride(4)) {
         narc_point points[COUNT];
         for (size_t k = 0; k < COUNT; k++) {
             const size_t place = (k + first + 7) % COUNT, side = place / (COUNT / 4);
@@ -183,7 +183,7 @@ TEST(test_random_rings) {
 /* Lines that are nearly one, and arcs that are nearly lines: the chain keeps the tolerance, and the store takes it. */
 TEST(test_flat_chains) {
     static const double tolerances[] = {0.3, 0.01, 1e-4};
-    for (int bow = 0; bow < 14; bow++) {
+    for (int bow = 0; bow < 14; bow += (int)stride(3)) {
         const double depth = (bow % 2 ? -1 : 1) * 2 * pow(10, -bow / 2); /* from 2 % of the length to less than 1e-7 */
         narc_point points[103];
         for (size_t k = 0; k <= 100; k++)

@@ -358,7 +358,7 @@ TEST(takes_dark_and_light) {
         {on_nothing, NARC_SILHOUETTE_LIGHT, 0, false, {70, -60}},
         {square, NARC_SILHOUETTE_ALPHA, 0, false, {50, -20}},
     };
-    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += stride(2)) {
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += stride(3)) {
         bool whole = !cases[k].whole;
         const narc_point reach = measure_reach(
             cases[k].body, (narc_image_request){cases[k].silhouette, cases[k].threshold, .out_whole = &whole});
