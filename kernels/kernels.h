@@ -58,9 +58,8 @@ enum { NARC_MORE_ROW = 256 };
  * shapes, their scales and the pair's order stay: two circles, at world scale but for the centre of B's, and when they
  * stand for the bodies (kernels/sat/follow.c). All zeros: nothing is known.
  *   spare     `only` needs it; -INFINITY: these circles hold the bodies, and say no more than that they are apart
- *   feature   the two features as in a row, 1 << 16, and the places of the arcs, counted in records from the first one of
- *             their shapes; 0 of a circle
- *   shape     where those arcs are
+ *   slack     what the shapes' extents add to it
+ *   feature   the two features as in a row, and NARC_ENTRY_KNOWN
  *   normal    The normals at the ends of the arcs, start and end of A, then of B, in their shape's frame, turned inwards:
  *             x in the lower 16 bits and y in the upper ones. 0 where there are no ends. */
 typedef struct narc_entry {
@@ -68,16 +67,18 @@ typedef struct narc_entry {
     float radius_a, radius_b;
     float scale_b;
     float spare;
-    float slack; /* what the shapes' extents add to it */
+    float slack;
     uint32_t feature;
-    uint32_t shape_a, shape_b;
+    uint32_t unused[2]; /* 0 */
     uint32_t normal[4];
 } narc_entry;
 
-#define NARC_ENTRY_KNOWN    (1u << 16)
-#define NARC_ENTRY_ARC_A    17 /* shifts */
-#define NARC_ENTRY_ARC_B    24
-#define NARC_ENTRY_ARC_MASK 0x7f
+#define NARC_ENTRY_KNOWN (1u << 16)
+
+/* Of a manifold besides: the same normals as they are stored; zeros of circles. */
+typedef struct narc_entry_ends {
+    float start_a[2], end_a[2], start_b[2], end_b[2];
+} narc_entry_ends;
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {

@@ -73,6 +73,8 @@ static bool is_kept(const struct side *s) {
            narc_is_size(s->scale * s->header->bound_radius);
 }
 
+static bool is_circle(const struct side *s) { return (s->header->flags & NARC_SHAPE_CIRCLE) != 0; }
+
 static double find_size(const struct side *s) { return (double)s->scale * (double)s->header->bound_radius; }
 
 /* ------------------------------------------------------------------------------------------------ arcs */
@@ -103,13 +105,9 @@ static double find_inner(const narc_stored_arc *arc) {
     return (double)inner;
 }
 
-/* The number of an arc as the caller knows it, and its place among the records of its shape; 0 of a circle. */
+/* The number of an arc as the caller knows it. */
 static uint32_t find_number(const struct side *s, unsigned arc) {
-    return s->header->flags & NARC_SHAPE_CIRCLE ? 0 : (arc + s->header->first_arc) % s->header->count;
-}
-
-static uint32_t find_place(const struct side *s, unsigned arc) {
-    return s->header->flags & NARC_SHAPE_CIRCLE ? 0 : (uint32_t)narc_angle_records(s->header->count) + arc;
+    return is_circle(s) ? 0 : (arc + s->header->first_arc) % s->header->count;
 }
 
 /* The arc of that number. */
@@ -117,27 +115,35 @@ static unsigned find_arc(const struct side *s, unsigned number) {
     return (number + s->header->count - s->header->first_arc) % s->header->count;
 }
 
+/* What is written of a pair; `ends` may be NULL. */
+struct kept {
+    narc_entry *entry;
+    narc_entry_ends *ends;
+};
+
 /* `slack`: that of the extents. */
 static void keep_arcs(const struct side *a, const struct side *b, unsigned arc_a, unsigned arc_b, double slack,
-                      narc_entry *out) {
+                      struct kept out) {
     const narc_stored_arc *p = &a->arcs[arc_a].arc, *q = &b->arcs[arc_b].arc;
-    narc_entry e = {.center_a = {a->scale * p->center_x, a->scale * p->center_y},
-                    .center_b = {q->center_x, q->center_y},
-                    .radius_a = a->scale * p->radius,
-                    .radius_b = b->scale * q->radius,
-                    .scale_b = b->scale,
-                    .slack = (float)slack,
-                    .shape_a = a->shape,
-                    .shape_b = b->shape};
     const double inner = (double)a->scale * find_inner(p) + (double)b->scale * find_inner(q);
-    e.spare = (float)((inner - 1024 * slack) - 0x1p-20 * inner);
-    e.feature = find_number(a, arc_a) | find_number(b, arc_b) << 8 | NARC_ENTRY_KNOWN |
-                find_place(a, arc_a) << NARC_ENTRY_ARC_A | find_place(b, arc_b) << NARC_ENTRY_ARC_B;
-    if (!(a->header->flags & NARC_SHAPE_CIRCLE) && !turn_inwards(p, e.normal))
+    narc_entry entry = {.center_a = {a->scale * p->center_x, a->scale * p->center_y},
+                        .center_b = {q->center_x, q->center_y},
+                        .radius_a = a->scale * p->radius,
+                        .radius_b = b->scale * q->radius,
+                        .scale_b = b->scale,
+                        .spare = (float)(inner - 1024 * slack),
+                        .slack = (float)slack,
+                        .feature = find_number(a, arc_a) | find_number(b, arc_b) << 8 | NARC_ENTRY_KNOWN};
+    if ((!is_circle(a) && !turn_inwards(p, entry.normal)) || (!is_circle(b) && !turn_inwards(q, entry.normal + 2)))
         return;
-    if (!(b->header->flags & NARC_SHAPE_CIRCLE) && !turn_inwards(q, e.normal + 2))
+    *out.entry = entry;
+    if (!out.ends)
         return;
-    *out = e;
+    memset(out.ends, 0, sizeof *out.ends);
+    if (!is_circle(a))
+        memcpy(out.ends->start_a, &p->start_x, 4 * sizeof(float));
+    if (!is_circle(b))
+        memcpy(out.ends->start_b, &q->start_x, 4 * sizeof(float));
 }
 
 /* ------------------------------------------------------------------------------------------------ apart */
@@ -168,16 +174,16 @@ struct circles {
 };
 
 static void keep_circles(const struct side *a, const struct side *b, const struct circles *c, double slack,
-                         narc_entry *out) {
+                         struct kept out) {
     const double scale_a = (double)a->scale, scale_b = (double)b->scale;
-    *out = (narc_entry){.center_a = {(float)(scale_a * c->center_a.x), (float)(scale_a * c->center_a.y)},
-                        .center_b = {(float)c->center_b.x, (float)c->center_b.y},
-                        .radius_a = (float)(scale_a * c->radius_a),
-                        .radius_b = (float)(scale_b * c->radius_b),
-                        .scale_b = b->scale,
-                        .spare = -INFINITY,
-                        .slack = (float)slack,
-                        .feature = NARC_ENTRY_KNOWN};
+    *out.entry = (narc_entry){.center_a = {(float)(scale_a * c->center_a.x), (float)(scale_a * c->center_a.y)},
+                              .center_b = {(float)c->center_b.x, (float)c->center_b.y},
+                              .radius_a = (float)(scale_a * c->radius_a),
+                              .radius_b = (float)(scale_b * c->radius_b),
+                              .scale_b = b->scale,
+                              .spare = -INFINITY,
+                              .slack = (float)slack,
+                              .feature = NARC_ENTRY_KNOWN};
 }
 
 static narc_point find_difference(const struct side *a, const struct side *b, const struct relative *pose,
@@ -196,7 +202,7 @@ enum { MOST_STEPS = 8 };
 
 /* Two bodies without a contact: keeps circles that are more than margin + slack apart, or the nearest arcs. */
 static void keep_apart(const struct side *a, const struct side *b, const struct relative *pose, double margin,
-                       double slack, narc_entry *out) {
+                       double slack, struct kept out) {
     const double size_a = find_size(a), size_b = find_size(b), scale_a = (double)a->scale, scale_b = (double)b->scale;
     const double away = 0x1p-17 * (fabs(pose->position.x) + fabs(pose->position.y));
     struct circles c = {{(double)a->header->bound_x, (double)a->header->bound_y},
@@ -258,12 +264,12 @@ static uint32_t read_feature(const narc_batch *batch, const char *row) {
     return contact.count > 0 ? contact.feature : UINT32_MAX;
 }
 
-static void make_entry(const narc_batch *batch, size_t pair, const char *row, narc_entry *out) {
+static void make_entry(const narc_batch *batch, size_t pair, const char *row, struct kept out) {
     size_t body_a, body_b;
     const struct side a = find_side(batch, batch->a, batch->pairs->a, pair, &body_a);
     const struct side b = find_side(batch, batch->b, batch->pairs->b, pair, &body_b);
     const uint32_t feature = read_feature(batch, row);
-    memset(out, 0, sizeof *out);
+    memset(out.entry, 0, sizeof *out.entry);
     if (!is_kept(&a) || !is_kept(&b))
         return;
     /* as in find_slack() of kernels/base/pair_setup.inl, and as much again as rounding takes */
@@ -281,9 +287,10 @@ static void make_entry(const narc_batch *batch, size_t pair, const char *row, na
 }
 
 void narc_make_entries(const narc_batch *batch, size_t first, size_t count, const uint32_t *pairs, const void *rows,
-                       ptrdiff_t row_stride, narc_entry *entries) {
+                       ptrdiff_t row_stride, narc_entry *entries, narc_entry_ends *ends) {
     for (size_t k = 0; k < count; k++) {
         const size_t pair = pairs ? pairs[k] : narc_pair_at(batch, first + k);
-        make_entry(batch, pair, (const char *)rows + (ptrdiff_t)pair * row_stride, &entries[pair]);
+        make_entry(batch, pair, (const char *)rows + (ptrdiff_t)pair * row_stride,
+                   (struct kept){&entries[pair], ends ? &ends[pair] : NULL});
     }
 }

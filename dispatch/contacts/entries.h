@@ -8,8 +8,8 @@
 #include "kernels.h"
 
 /* Writes the entries of a batch's pairs after their dense rows, `row_stride` bytes apart, are known: those of the `count`
- * pairs that are listed, or without a list of all that are asked of at first ... The entry of pair k goes to entries[k]. It
- * decides nothing where a shape is not smooth, or a piece of a chain, where numbers are broken, or where nothing is certain.
+ * pairs that are listed, or without a list of all that are asked of at first ... The entry of pair k goes to entries[k], and
+ * of manifolds also to ends[k] (of contacts NULL). It decides nothing where a shape is not smooth, or a piece of a chain, where numbers are broken, or where nothing is certain.
  * Rows say which arcs touch; they are not trusted: no rows, and no poses, make an entry that tells a wrong answer.
  *
  * An entry knows the two shapes, and how bodies scale them. It serves at all poses, shifts and margins, until
@@ -19,6 +19,6 @@
  *     does it that the store moves its memory).
  * Then it must be made anew, or filled with zeros. */
 void narc_make_entries(const narc_batch *batch, size_t first, size_t count, const uint32_t *pairs, const void *rows,
-                       ptrdiff_t row_stride, narc_entry *entries);
+                       ptrdiff_t row_stride, narc_entry *entries, narc_entry_ends *ends);
 
 #endif

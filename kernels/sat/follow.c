@@ -42,24 +42,22 @@ enum {
     SPARE = offsetof(narc_entry, spare) / 4,
     EXTENTS = offsetof(narc_entry, slack) / 4,
     FEATURE = offsetof(narc_entry, feature) / 4,
-    SHAPE_A = offsetof(narc_entry, shape_a) / 4,
-    SHAPE_B = offsetof(narc_entry, shape_b) / 4,
     NORMALS = offsetof(narc_entry, normal) / 4
 };
 
-INLINE void load_words(const void *entries, const int32_t *number, vf word[ENTRY_WORDS]) {
-    UNROLL
-    for (int w = 0; w < ENTRY_WORDS; w += 4)
-        v_rows((const float *)entries + w, sizeof(narc_entry), number, word + w);
-}
+enum { END_WORDS = sizeof(narc_entry_ends) / sizeof(float) };
 
-/* The entries of the pairs in a vector, `full` where all lanes have one. */
-INLINE void load_entries(const narc_entry *entries, const int32_t *number, bool in_line, vf word[ENTRY_WORDS]) {
+/* The items of an array for the pairs in a vector, `words` of four bytes each. `in_line`: they follow each other. */
+INLINE void load_items(const void *items, int words, const int32_t *number, bool in_line, vf *word) {
     static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    if (LIKELY(in_line))
-        load_words(entries + (uint32_t)*number, lane, word);
-    else
-        load_words(entries, number, word);
+    const ptrdiff_t size = words * (ptrdiff_t)sizeof(float);
+    const float *const first = (const float *)items + (ptrdiff_t)(uint32_t)*number * words;
+    UNROLL
+    for (int w = 0; w < words; w += 4)
+        if (LIKELY(in_line))
+            v_rows(first + w, size, lane, word + w);
+        else
+            v_rows((const float *)items + w, size, number, word + w);
 }
 
 /* A normal as it was turned inwards, times some number. The upper half takes the lower one for a fraction. */
@@ -103,49 +101,20 @@ INLINE struct followed follow_circles(const vf word[ENTRY_WORDS], const struct p
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-INLINE vi get_place(vi feature, int shift) {
-    return vi_and(vi_shift_right(feature, shift), vi_set(NARC_ENTRY_ARC_MASK));
-}
-
-/* How far n may turn on an arc, which is read of its shape, in the lanes `wanted`. */
-INLINE vi find_reach_of(const narc_batch *batch, vf shape, vi place, vm wanted, const struct placement *placement,
-                        vec2 n, bool is_b) {
-    const vi zero = vi_set(0);
-    int32_t of[V_WIDTH], at[V_WIDTH];
-    vf ends[4];
-    vi_store(of, vi_select(wanted, vi_bits(shape), zero));
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        at[lane] = (int32_t)batch->shapes->headers[(uint32_t)of[lane]].first_record;
-    vi_store(at, vi_add(vi_load(at), vi_select(wanted, place, zero)));
-    v_rows(&batch->shapes->records->arc.start_x, sizeof(narc_record), at, ends);
+/* How far n may turn on an arc with these ends, start and end. */
+INLINE vi find_reach_between(const vf ends[4], const struct placement *placement, vec2 n, bool is_b) {
     struct feature f = {.start = {ends[0], ends[1]}, .end = {ends[2], ends[3]}};
+    const vm circle = vm_not(v_lt(v_set(0), v2_dot(f.start, f.start)));
     if (is_b) {
         f.start = v2_rotate_opposite(placement->pose.rotation, f.start);
         f.end = v2_rotate_opposite(placement->pose.rotation, f.end);
     }
-    const vi info = vi_select(vi_lt(zero, place), zero, vi_set(NARC_SHAPE_CIRCLE << 16));
-    return find_reach(&f, n, info, vm_front(0));
-}
-
-/* Where the rows of the lanes `known` go; elsewhere the spare one. */
-INLINE void find_row_places(const narc_rows *out, const int32_t *number, bool in_line, vm known, char *spare,
-                            char *place[V_WIDTH]) {
-    const uint32_t which = vm_bits(known);
-    if (in_line)
-        for (int lane = 0; lane < V_WIDTH; lane++)
-            place[lane] = out->base + ((ptrdiff_t)(uint32_t)*number + lane) * out->stride;
-    else
-        for (int lane = 0; lane < V_WIDTH; lane++)
-            place[lane] = out->base + (ptrdiff_t)(uint32_t)number[lane] * out->stride;
-    if (!LIKELY(which == vm_bits(vm_front(V_WIDTH))))
-        for (int lane = 0; lane < V_WIDTH; lane++)
-            place[lane] = choose(which >> lane & 1, place[lane], spare);
+    return find_reach(&f, n, vi_select(circle, vi_set(NARC_SHAPE_CIRCLE << 16), vi_set(0)), vm_front(0));
 }
 
 /* Writes rows of pairs: words of zeros but for the pair where there is no contact. */
-INLINE void write_followed(const narc_batch *batch, const struct followed *f, const vf word[ENTRY_WORDS],
-                           const struct placement *placement, const int32_t *number, char *const *place,
-                           bool manifold) {
+INLINE void write_followed(const struct followed *f, const vf word[ENTRY_WORDS], const vf *ends,
+                           const struct placement *placement, const int32_t *number, char *const *place) {
     const vf zero = v_set(0);
     const vm wanted = f->wanted;
     const struct feature on_a = find_feature(&f->a, &f->a, f->n, vi_set(0), false);
@@ -157,11 +126,9 @@ INLINE void write_followed(const narc_batch *batch, const struct followed *f, co
     const vf x = v_select(wanted, point.x, zero), y = v_select(wanted, point.y, zero);
     const vf separation = v_select(wanted, f->separation, zero);
     const vf radius_a = v_select(wanted, f->a.radius, zero), radius_b = v_select(wanted, f->b.radius, zero);
-    if (manifold) {
-        const vi reach_a =
-            find_reach_of(batch, word[SHAPE_A], get_place(kept, NARC_ENTRY_ARC_A), wanted, placement, f->n, false);
-        const vi reach_b =
-            find_reach_of(batch, word[SHAPE_B], get_place(kept, NARC_ENTRY_ARC_B), wanted, placement, f->n, true);
+    if (ends) {
+        const vi reach_a = find_reach_between(ends, placement, f->n, false);
+        const vi reach_b = find_reach_between(ends + 4, placement, f->n, true);
         const vf head[4] = {v_of_bits(vi_load(number)), v_select(wanted, v_of_bits(one), zero), n_x, n_y};
         const vf radii[4] = {radius_a, radius_b, v_select(wanted, v_of_bits(reach_a), zero),
                              v_select(wanted, v_of_bits(reach_b), zero)};
@@ -181,50 +148,88 @@ INLINE void write_followed(const narc_batch *batch, const struct followed *f, co
         memcpy(place[lane], &number[lane], sizeof number[lane]);
 }
 
+/* The pairs of a block, without their shapes. */
+INLINE void load_bodies_of(const struct sources *given, size_t first, int count, struct pair_indices *out) {
+    const narc_index_column a = given->pairs.a, b = given->pairs.b;
+    const bool selected = given->selection.base != NULL;
+    if (LIKELY(!selected && count == BLOCK && a.stride == sizeof *a.base && b.stride == sizeof *b.base && a.base &&
+               b.base)) {
+        UNROLL
+        for (int k = 0; k < BLOCK; k += V_WIDTH) {
+            vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
+            vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
+            vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
+        }
+        return;
+    }
+    const int end = (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH; /* lanes behind the last pair repeat it */
+    for (int k = 0; k < end; k++) {
+        const size_t at = first + (size_t)(k < count ? k : count - 1);
+        const size_t number = selected ? narc_index_at(given->selection, at) : at;
+        out->number[k] = (int32_t)(uint32_t)number;
+        out->a[k] = (int32_t)(uint32_t)(a.base ? narc_index_at(a, number) : number);
+        out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
+    }
+}
+
 INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,
-                           const narc_rows *out, uint32_t *left, bool manifold) {
+                           const narc_entry_ends *ends, const narc_rows *out, uint32_t *left, bool manifold) {
     const struct call call = {.batch = batch, .margin = batch->query->margin, .margins = batch->query->margins};
-    const struct sources given = copy_sources(batch);
+    const size_t size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
+    const narc_rows rows = *out;
+    struct sources given = copy_sources(batch);
     const enum pose_layout layout = find_layout(&given);
-    _Alignas(16) char spare[sizeof(narc_manifold)];
+    given.a.scale.base = given.b.scale.base = NULL; /* entries know them */
+    _Alignas(64) char some[V_WIDTH * sizeof(narc_manifold)];
     struct pair_indices indices;
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
-        load_indices(&given, first + block, n, &indices);
+        load_bodies_of(&given, first + block, n, &indices);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = indices.number + k;
             const bool in_line = !given.selection.base && k + V_WIDTH <= n;
             const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
             const vm live = vm_front(n - k);
             vf word[ENTRY_WORDS];
-            load_entries(entries, number, in_line, word);
+            load_items(entries, ENTRY_WORDS, number, in_line, word);
             const struct followed f = follow_circles(word, &placement, vm_and(live, placement.in_range));
             for (uint32_t lanes = vm_bits(vm_and_not(live, f.known)); lanes; lanes &= lanes - 1)
                 left[open++] = (uint32_t)number[FIND_LOWEST(lanes)];
-            char *place[V_WIDTH];
-            find_row_places(out, number, in_line, f.known, spare, place);
-            write_followed(batch, &f, word, &placement, number, place, manifold);
+            /* Rows that don't all go side by side are written apart. */
+            const bool direct = in_line && vm_bits(f.known) == vm_bits(vm_front(V_WIDTH));
+            char *const to = direct ? rows.base + (ptrdiff_t)(uint32_t)*number * rows.stride : some, *place[V_WIDTH];
+            const ptrdiff_t stride = direct ? rows.stride : (ptrdiff_t)size;
+            for (int lane = 0; lane < V_WIDTH; lane++)
+                place[lane] = to + lane * stride;
+            vf end[END_WORDS];
+            if (manifold)
+                load_items(ends, END_WORDS, number, in_line, end);
+            write_followed(&f, word, manifold ? end : NULL, &placement, number, place);
+            for (uint32_t lanes = direct ? 0 : vm_bits(f.known); lanes; lanes &= lanes - 1) {
+                const int lane = FIND_LOWEST(lanes);
+                memcpy(rows.base + (ptrdiff_t)(uint32_t)number[lane] * rows.stride, place[lane], size);
+            }
         }
     }
     return open;
 }
 
 NOINLINE size_t follow_contacts(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,
-                                const narc_rows *out, uint32_t *left) {
-    return follow_pairs(batch, first, count, entries, out, left, false);
+                                const narc_entry_ends *ends, const narc_rows *out, uint32_t *left) {
+    return follow_pairs(batch, first, count, entries, ends, out, left, false);
 }
 
 NOINLINE size_t follow_manifolds(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,
-                                 const narc_rows *out, uint32_t *left) {
-    return follow_pairs(batch, first, count, entries, out, left, true);
+                                 const narc_entry_ends *ends, const narc_rows *out, uint32_t *left) {
+    return follow_pairs(batch, first, count, entries, ends, out, left, true);
 }
 
 /* Writes the rows of those of a batch's pairs first .. first + count - 1 that their entries decide, to the pairs' own
  * places, those without a contact as well; `batch->row_size` says which rows. Lists the numbers of all others in `left`,
  * in their order, and returns how many there are; their places stay as they were. The entry of pair k is entries[k]. */
 size_t NARC_NAMED(follow)(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,
-                          const narc_rows *out, uint32_t *left) {
-    return batch->row_size == sizeof(narc_manifold) ? follow_manifolds(batch, first, count, entries, out, left)
-                                                    : follow_contacts(batch, first, count, entries, out, left);
+                          const narc_entry_ends *ends, const narc_rows *out, uint32_t *left) {
+    return batch->row_size == sizeof(narc_manifold) ? follow_manifolds(batch, first, count, entries, ends, out, left)
+                                                    : follow_contacts(batch, first, count, entries, ends, out, left);
 }

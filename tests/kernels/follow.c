@@ -117,7 +117,7 @@ static narc_status ask(const narc_shapes *shapes, const narc_bodies *bodies, con
 
 /* Answers the world from its entries and anew, compares that with a plain call, and makes the entries of what was answered
  * anew. `entries`: of all pairs, with a guard behind them. */
-static void check_frame(const struct world *world, const struct question *q, narc_entry *entries,
+static void check_frame(const struct world *world, const struct question *q, narc_entry *entries, narc_entry_ends *ends,
                         struct counts *counts) {
     const size_t size = q->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact), stride = size + q->more;
     struct columns columns = create_columns(&world->scene, q->layout, 0, PAIRS);
@@ -157,9 +157,9 @@ static void check_frame(const struct world *world, const struct question *q, nar
     size_t count = 0;
     for (size_t first = 0, part; first < selected; first += part) { /* any split */
         part = first == 0 ? 7 : selected - first;
-        count += kernels->follow(&batch, first, part, entries, &out, left + count);
+        count += kernels->follow(&batch, first, part, entries, ends, &out, left + count);
     }
-    assert_int_equal(NARC_KERNELS_FOR(1, kernels)->follow(&batch, 0, selected, entries, &out, same), count);
+    assert_int_equal(NARC_KERNELS_FOR(1, kernels)->follow(&batch, 0, selected, entries, ends, &out, same), count);
     assert_memory_equal(left, same, count * sizeof *left);
     for (size_t i = 0; i < count; i++) { /* nothing was written for those that are left */
         assert_true(i == 0 || left[i - 1] < left[i]);
@@ -187,7 +187,7 @@ static void check_frame(const struct world *world, const struct question *q, nar
         counts->smooth_left += world->smooth[pair] && is_left;
     }
     assert_int_equal(next, count);
-    narc_make_entries(&batch, 0, count, left, rows, (ptrdiff_t)stride, entries);
+    narc_make_entries(&batch, 0, count, left, rows, (ptrdiff_t)stride, entries, ends);
     guard_release(right);
     guard_release(rows);
     destroy_columns(&columns);
@@ -197,21 +197,24 @@ static void check_world(struct world *world, struct test_random *random, struct 
                         struct counts *moved) {
     enum { FRAMES = 8, TELEPORT = 5 };
     narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
+    narc_entry_ends *const ends = q.manifolds ? guard_allocate(PAIRS * sizeof *ends) : NULL;
     struct counts counts = {0};
     memset(entries, 0, PAIRS * sizeof *entries);
-    check_frame(world, &q, entries, &counts);
+    check_frame(world, &q, entries, ends, &counts);
     assert_int_equal(counts.left, counts.all); /* zeros decide nothing */
     for (size_t frame = 1; frame < FRAMES; frame++) {
         scene_move_bodies(&world->scene, random, frame == TELEPORT ? 2 : step);
-        check_frame(world, &q, entries, frame == TELEPORT ? &counts : moved);
+        check_frame(world, &q, entries, ends, frame == TELEPORT ? &counts : moved);
     }
     q.margins = false; /* entries know of no margin */
     static const float margins[] = {0, 0.3f, -0.1f, INFINITY, -INFINITY};
     for (size_t k = 0; k < sizeof margins / sizeof *margins; k++) {
         q.margin = margins[k] * (float)world->size;
-        check_frame(world, &q, entries, &counts);
+        check_frame(world, &q, entries, ends, &counts);
     }
     guard_release(entries);
+    if (ends)
+        guard_release(ends);
 }
 
 static struct question make_question(struct test_random *random, double size) {
@@ -286,6 +289,7 @@ TEST(test_made_up_rows) {
         q.shifted = q.selected = false;
         make_world(&world, &random, NARC_FLOAT32, SMOOTH_AND_OTHERS, 1, true, 0);
         narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
+        narc_entry_ends *const ends = q.manifolds ? guard_allocate(PAIRS * sizeof *ends) : NULL;
         narc_manifold rows[PAIRS];
         memset(rows, 0, sizeof rows);
         for (size_t k = 0; k < PAIRS; k++) {
@@ -304,14 +308,16 @@ TEST(test_made_up_rows) {
         narc_error error;
         expect_ok(narc_begin_batch(world.scene.store, &bodies, &pairs, &query, &batch, &error), &error);
         batch.row_size = q.manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
-        narc_make_entries(&batch, 0, PAIRS, NULL, rows, sizeof *rows, entries);
+        narc_make_entries(&batch, 0, PAIRS, NULL, rows, sizeof *rows, entries, ends);
         struct counts counts = {0};
         struct world later = world;
         assert_int_equal(narc_reserve_shapes(world.scene.store, 4 * SHAPES, 64 * SHAPES), NARC_OK);
         store_shape(world.scene.store, make_shape(&random, FAMILY_MANY));
-        check_frame(&later, &q, entries, &counts);
+        check_frame(&later, &q, entries, ends, &counts);
         assert_true(counts.smooth_left < counts.smooth);
         guard_release(entries);
+        if (ends)
+            guard_release(ends);
         destroy_scene(&world.scene);
     }
 }
