@@ -84,9 +84,10 @@ static double find_size(const struct side *s) { return (double)s->scale * (doubl
 #define TURN       (0x1p-10 + 0x1p-13)
 #define NORMAL_ONE 32700.0 /* of normals that are longer than 1 by less than TURN */
 
+static int32_t round_off(double value) { return (int32_t)(value < 0 ? value - 0.5 : value + 0.5); }
+
 static uint32_t pack_normal(double x, double y) {
-    const int32_t high = (int32_t)floor(y * NORMAL_ONE + 0.5), low = (int32_t)floor(x * NORMAL_ONE + 0.5);
-    return (uint32_t)high << 16 | ((uint32_t)low & 0xffff);
+    return (uint32_t)round_off(y * NORMAL_ONE) << 16 | ((uint32_t)round_off(x * NORMAL_ONE) & 0xffff);
 }
 
 /* The ends of an arc. False if nothing is left between them. */
