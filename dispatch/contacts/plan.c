@@ -94,7 +94,7 @@ static void plan_pair(const narc_contact_step *s, size_t k, uint32_t a, uint32_t
     else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !is_reshaped(s, a, b) &&
              c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, a, b, &c->kept[slot]))
         what = NARC_FOLLOW;
-    add_work(c, k, what);
+    add_work(c, k, what | (is_reshaped(s, a, b) ? NARC_OTHER_SHAPE : 0));
 }
 
 /* May all rows of a pair of ground follow? A pair without one may, too. */
