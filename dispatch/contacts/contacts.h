@@ -150,13 +150,6 @@ static inline uint32_t narc_count_points(bool contact_rows, const void *row) {
     return contact_rows ? ((const narc_contact *)row)->count : ((const narc_manifold *)row)->count;
 }
 
-/* The slot that a pair of a list has, or had in the list before; NARC_NO_MATCH: none yet. Before narc_take_slots(). */
-static inline uint32_t narc_old_slot(const narc_contacts *c, const narc_pair_list *list, size_t k) {
-    if (list->kept)
-        return c->order[k];
-    return list->previous[k] == UINT32_MAX ? UINT32_MAX : c->order[list->previous[k]];
-}
-
 static inline void *narc_row_at(const narc_contacts *c, void *rows, size_t k) { return (char *)rows + k * c->row_size; }
 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
