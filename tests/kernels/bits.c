@@ -304,32 +304,6 @@ TEST(test_margins_of_pairs) {
     }
 }
 
-/* Any bits at all as bodies: equal bits, no crash, and no endless loop. */
-TEST(test_garbage_bodies) {
-    struct test_random random = test_random_named("garbage");
-    for (size_t q = 0; q < question_count; q++) {
-        struct scene scene = make_question_scene(&random, &questions[q], NARC_FLOAT32, 200, 1000);
-        for (size_t k = 0; k < scene.body_count; k++) {
-            struct body *body = &scene.bodies[k];
-            float *const values[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
-            const uint32_t bits = (uint32_t)random_bits(&random);
-            static const float special[] = {NAN, INFINITY, -INFINITY, 0, -0.0f, 1e-38f, 1e-45f, 3e38f, -1, 1e17f};
-            if (k % 3 == 0)
-                memcpy(values[k / 3 % 5], &bits, sizeof bits);
-            else if (k % 3 == 1)
-                *values[k / 3 % 5] = special[bits % 10];
-        }
-        struct guarded guarded = guard_shapes(&scene);
-        uint32_t *hints = random_hints(&random, scene.pair_count);
-        struct expected expected = expect(&scene, &questions[q], q % 3 ? hints : NULL);
-        check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene.pair_count, 1);
-        destroy_expected(&expected);
-        free(hints);
-        release_guarded(&guarded);
-        destroy_scene(&scene);
-    }
-}
-
 /* ------------------------------------------------------------------------------------------- bodies that are none */
 
 /* The ways to spoil a body, so that no pair with it has an answer. */

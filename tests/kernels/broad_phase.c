@@ -394,33 +394,4 @@ TEST(tells_how_much_room_is_needed) {
     narc_destroy_broad_phase(broad);
 }
 
-TEST(refuses_bad_arguments) {
-    narc_broad_phase *broad = create_broad_phase(NULL);
-    const narc_box box = {0, 0, 1, 1};
-    uint32_t a, b, match = 5;
-    size_t found = 9;
-    const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
-    const narc_pairs broken = {.count = 1, .b = {&b, 4}};
-    narc_error error;
-#define REFUSED(function, words, ...) expect_error(function(__VA_ARGS__, &error), NARC_ERROR_ARGUMENT, &error, words)
-    REFUSED(narc_find_pairs, "broad", NULL, &box, 1, NULL, NULL, &a, &b, 1, &found);
-    REFUSED(narc_find_pairs, "boxes", broad, NULL, 1, NULL, NULL, &a, &b, 1, &found);
-    REFUSED(narc_find_pairs, "out_a", broad, &box, 1, NULL, NULL, NULL, &b, 1, &found);
-    REFUSED(narc_find_pairs, "out_b", broad, &box, 1, NULL, NULL, &a, NULL, 1, &found);
-    REFUSED(narc_find_pairs, "out_count", broad, &box, 1, NULL, NULL, &a, &b, 1, NULL);
-    REFUSED(narc_find_pairs, "4294967295 boxes", broad, &box, UINT32_MAX, NULL, NULL, &a, &b, 1, &found);
-    REFUSED(narc_match_pairs, "broad", NULL, &none, &none, NULL, NULL);
-    REFUSED(narc_match_pairs, "NULL", broad, NULL, &none, NULL, NULL);
-    REFUSED(narc_match_pairs, "NULL", broad, &none, NULL, NULL, NULL);
-    REFUSED(narc_match_pairs, "NULL", broad, &none, &broken, NULL, &match);
-    REFUSED(narc_match_pairs, "NULL", broad, &none, &one, NULL, NULL);
-    assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
-#undef REFUSED
-    assert_int_equal(found, 9);
-    assert_int_equal(narc_match_pairs(broad, &none, &none, NULL, NULL, NULL), NARC_OK);
-    assert_int_equal(match, 5);
-    narc_destroy_broad_phase(broad);
-    narc_destroy_broad_phase(NULL);
-}
-
 TEST_MAIN("broad_phase")

@@ -2,6 +2,7 @@
  *
  * cases.c - pairs whose answer is known by hand: exact touch, faces on faces, corners, coincident centres.
  */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -231,6 +232,31 @@ TEST(test_last_interval_meets_first) {
                               .sine = -0x1.b3daa8p-2f,
                               .scale = 1};
     assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
+}
+
+/* Denormals and both zeros are numbers like others: the answer is that of 0. */
+TEST(test_denormals) {
+    static const float tiny[] = {0.0f, -0.0f, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MIN / 2, -FLT_MIN};
+    struct test_random random = test_random_named("denormals");
+    enum { DENORMALS = 200 };
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, DENORMALS, 5000);
+    for (size_t k = 0; k < DENORMALS; k++) {
+        struct body *body = &scene.bodies[k];
+        *(random_below(&random, 2) ? &body->x : &body->y) = (double)tiny[random_below(&random, 6)];
+        *body = (struct body){
+            body->x, body->y,    0, 0, random_below(&random, 2) ? 1.0f : -1.0f, tiny[random_below(&random, 6)],
+            1,       body->shape};
+        round_position(body, NARC_FLOAT32);
+    }
+    struct contacts all = scene_contacts(&scene, INFINITY);
+    for (size_t k = 0; k < scene.pair_count; k++) {
+        struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
+                              b = scene_reference(&scene, scene.pairs[k].b);
+        struct fractions errors = {0};
+        assert_null(check_contact(&a, &b, reference_find_gap(&a, &b).gap, &all.rows[k], &errors));
+    }
+    free(all.rows);
+    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ corners */

@@ -349,32 +349,4 @@ TEST(survives_failing_allocations) {
     free(category);
 }
 
-TEST(refuses_bad_arguments) {
-    narc_index *const index = create_index(NULL);
-    const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};
-    const narc_allocator half = {.release = ledger_allocator(NULL).release};
-    narc_index_options options = {0};
-    narc_index *none = NULL;
-    narc_error error;
-    float slack = 9;
-    assert_int_equal(narc_create_index(NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_create_index(&half, &none), NARC_ERROR_ARGUMENT);
-    assert_null(none);
-    assert_int_equal(narc_build_index(index, boxes, 2, NULL, NULL), NARC_OK);
-#define REFUSED(call, words) expect_error(call, NARC_ERROR_ARGUMENT, &error, words)
-    REFUSED(narc_build_index(NULL, boxes, 2, NULL, &error), "index is NULL");
-    REFUSED(narc_build_index(index, NULL, 2, NULL, &error), "boxes is NULL");
-    REFUSED(narc_build_index(index, boxes, (size_t)1 << 31 | 1, NULL, &error), "boxes in one index");
-    REFUSED(narc_refit_index(NULL, boxes, 2, NULL, &slack, &error), "index is NULL");
-    REFUSED(narc_refit_index(index, NULL, 2, NULL, &slack, &error), "boxes is NULL");
-    REFUSED(narc_refit_index(index, boxes, 1, NULL, &slack, &error), "was built from 2");
-    options.reserved[1] = &options;
-    REFUSED(narc_build_index(index, boxes, 2, &options, &error), "options.reserved[1]");
-    REFUSED(narc_refit_index(index, boxes, 2, &options, &slack, &error), "options.reserved[1]");
-#undef REFUSED
-    assert_true(slack == 9);
-    check_index(index, boxes, 2, NULL);
-    narc_destroy_index(index);
-}
-
 TEST_MAIN("index")

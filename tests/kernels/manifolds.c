@@ -1,113 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * manifolds.c - manifolds of all families of shapes in all placements against a construction in double precision,
- * and under swapping A and B; ids and points of bodies that move a little.
+ * manifolds.c - ids and points of bodies that move a little, margins, flat angles, corners and edges that are hardly one.
+ * pairs.c has all families in all placements.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "manifold_reference.h"
 #include "placements.h"
-
-enum { SHOWN = 5 };
-
-struct manifold_report {
-    struct manifold_summary checked;
-    size_t swaps_skipped, wrong;
-};
-
-/* The manifold of (b, a) against that of (a, b). */
-static const char *check_swapped(const narc_manifold *m, const narc_manifold *swapped, double x, double y, double bound,
-                                 struct manifold_report *tally) {
-    const double turn = hypot((double)(m->normal_x + swapped->normal_x), (double)(m->normal_y + swapped->normal_y));
-    /* Another local maximum of the same value, or a choice within rounding. */
-    if (turn > 1e-4 || swapped->count != m->count) {
-        tally->swaps_skipped++;
-        return NULL;
-    }
-    for (size_t i = 0; i < m->count; i++) {
-        const narc_manifold_point *point = &m->point[i], *other = &swapped->point[m->count - 1 - i];
-        if ((point->feature >> 8 | (point->feature & 0xff) << 8) != other->feature) {
-            tally->swaps_skipped++;
-            return NULL;
-        }
-        const double off = hypot((double)(point->x - other->x) - x, (double)(point->y - other->y) - y);
-        if (fabs((double)(point->separation - other->separation)) > bound)
-            return "separation, swapped";
-        if (turn < 1e-6 && off > 4 * bound)
-            return "point, swapped";
-    }
-    return NULL;
-}
-
-static void check_scene(const struct scene *scene, const char *families, struct manifold_report *tally) {
-    struct contacts all = scene_contacts(scene, INFINITY);
-    struct manifolds list = scene_manifolds(scene, INFINITY);
-    struct scene turned = *scene;
-    turned.pairs = malloc(scene->pair_count * sizeof *turned.pairs);
-    assert_non_null(turned.pairs);
-    for (size_t k = 0; k < scene->pair_count; k++)
-        turned.pairs[k] = (struct pair){scene->pairs[k].b, scene->pairs[k].a};
-    struct manifolds swapped = scene_manifolds(&turned, INFINITY);
-    assert_int_equal(list.count, scene->pair_count);
-    assert_int_equal(swapped.count, scene->pair_count);
-    for (size_t k = 0; k < scene->pair_count; k++) {
-        const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
-        const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
-        const narc_manifold *m = &list.rows[k];
-        assert_int_equal(m->pair, k);
-        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, &tally->checked);
-        if (!wrong)
-            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, manifold_bounds * separation_bound(&a, &b),
-                                  tally);
-        if (wrong && tally->wrong++ < SHOWN) {
-            print_error("%s, %s: wrong %s; radii %g and %g, reaches %u %u and %u %u\n", families,
-                        placement_name((enum placement)(k % PLACE_COUNT)), wrong, (double)m->radius_a,
-                        (double)m->radius_b, m->reach_a[0], m->reach_a[1], m->reach_b[0], m->reach_b[1]);
-            for (size_t i = 0; i < m->count; i++)
-                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x\n", i, (double)m->point[i].x,
-                            (double)m->point[i].y, (double)m->point[i].separation, m->point[i].feature);
-            print_pair(&a, &b);
-        }
-    }
-    free(turned.pairs);
-    free(all.rows);
-    free(list.rows);
-    free(swapped.rows);
-}
-
-static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
-    struct test_random random = test_random_named(name);
-    struct manifold_report tally = {0};
-    const struct manifold_summary *const checked = &tally.checked;
-    const size_t pairs = PLACE_COUNT * test_trials(rounds);
-    for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
-        for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
-            struct scene scene =
-                make_placed_scene(&random, precision, (enum family)family_a, (enum family)family_b, pairs);
-            char families[64];
-            snprintf(families, sizeof families, "%s - %s", family_name((enum family)family_a),
-                     family_name((enum family)family_b));
-            check_scene(&scene, families, &tally);
-            destroy_scene(&scene);
-        }
-    }
-    printf(
-        "  %zu pairs, %zu with two points, %zu stretches, %zu doubtful, %zu not compared swapped, largest error %.3f\n",
-        checked->pairs, checked->two, checked->stretches, checked->doubtful, tally.swaps_skipped, checked->worst);
-    assert_int_equal(tally.wrong, 0);
-    assert_true(checked->two > checked->pairs / 20);
-    assert_true(checked->stretches > checked->pairs / 500);
-    assert_true(checked->doubtful < checked->pairs / 20);
-    assert_true(tally.swaps_skipped < checked->pairs / 20);
-}
-
-TEST(test_single_positions) { check_all_families("manifolds, single positions", NARC_FLOAT32, 10); }
-
-TEST(test_double_positions) { check_all_families("manifolds, double positions", NARC_FLOAT64, 5); }
 
 /* ------------------------------------------------------------------------------------------------ small motions */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * metamorphic.c - the same pair seen otherwise: swapped, moved, turned, scaled. The answer must follow.
+ * metamorphic.c - the same pair seen otherwise: turned, scaled. The answer must follow. everything.c has it moved, pairs.c
+ * swapped.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -74,53 +75,6 @@ static void check_same_bits(const struct change *change) {
     size_t count = change->before.count;
     assert_memory_equal(change->bits_before, change->bits_after, 8 * NARC_BIT_WORDS(count));
     assert_memory_equal(change->before.rows, change->after.rows, count * sizeof(narc_contact));
-}
-
-TEST(test_swap) {
-    struct change change = begin_change("swap");
-    for (size_t k = 0; k < change.scene.pair_count; k++) {
-        struct pair *pair = &change.scene.pairs[k];
-        *pair = (struct pair){pair->b, pair->a};
-    }
-    apply_change(&change);
-    for (size_t k = 0; k < change.scene.pair_count; k++)
-        check_separations(&change, k);
-    end_change(&change);
-}
-
-/* The differences of the positions are exact before and after, so nothing may change. */
-TEST(test_translate) {
-    struct change change = begin_change("translate");
-    for (size_t k = 0; k < change.scene.body_count; k++) {
-        change.scene.bodies[k].x += 1234 + 7 * grid;
-        change.scene.bodies[k].y -= 567 + 5 * grid;
-        round_position(&change.scene.bodies[k], NARC_FLOAT32);
-    }
-    apply_change(&change);
-    check_same_bits(&change);
-    end_change(&change);
-}
-
-/* Single precision positions given as doubles are the same positions. */
-TEST(test_double_positions) {
-    struct change change = begin_change("double positions");
-    change.scene.precision = NARC_FLOAT64;
-    apply_change(&change);
-    check_same_bits(&change);
-    end_change(&change);
-}
-
-/* 2^30 away, where doubles are still as fine as the grid. */
-TEST(test_translate_far) {
-    struct change change = begin_change("translate far");
-    change.scene.precision = NARC_FLOAT64;
-    for (size_t k = 0; k < change.scene.body_count; k++) {
-        change.scene.bodies[k].x += 0x1p30;
-        change.scene.bodies[k].y -= 0x1p30;
-    }
-    apply_change(&change);
-    check_same_bits(&change);
-    end_change(&change);
 }
 
 /* By any angle. Turning the rounded positions rounds them again, hence doubles. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * parts.c - compounds: their parts are where they should be, with the same bits as scalar in every layout; those of one
- * body form no pair, and keep their pairs as others come and go.
+ * parts.c - compounds: their parts are where they should be; those of one body form no pair, and keep their pairs as others
+ * come and go.
  */
 #include <float.h>
 #include <math.h>
@@ -54,38 +54,6 @@ static narc_body *place(const narc_bodies *owners, const narc_bodies *parts, con
 static narc_body *place_all(const struct compounds *c) {
     const narc_bodies owners = scene_bodies(&c->owners), parts = scene_bodies(&c->parts);
     return place(&owners, &parts, c->owner, NULL);
-}
-
-/* ------------------------------------------------------------------------------------------------ bits */
-
-TEST(same_bits_whatever_the_layout) {
-    struct test_random random = test_random_named("layouts of parts");
-    enum { OWNERS = 50, MOST = 9000 };
-    struct compounds c = make_compounds(&random, OWNERS, MOST, true);
-    test_use_isa("scalar");
-    narc_body *const right = place_all(&c);
-    test_use_isa(test_isa());
-    for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
-        if (layout == LAYOUT_SHARED || layout == LAYOUT_UNSCALED) /* other values */
-            continue;
-        for (size_t count = 0; count <= MOST; count += count < 70 ? 1 : 1489) {
-            c.parts.body_count = count;
-            struct columns owners = create_columns(&c.owners, layout, 0, 0);
-            struct columns parts = create_columns(&c.parts, (enum layout)((layout + 1) % LAYOUT_SHARED), 0, 0);
-            uint32_t *const owner = guard_copy(c.owner, count * sizeof *owner);
-            const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
-            owners.bodies.shape.base = NULL;
-            narc_body *const rows = place(&owners.bodies, &parts.bodies, owner, &workers);
-            assert_memory_equal(rows, right, count * sizeof *rows);
-            guard_release(rows);
-            guard_release(owner);
-            destroy_columns(&owners);
-            destroy_columns(&parts);
-        }
-        c.parts.body_count = MOST;
-    }
-    guard_release(right);
-    destroy_compounds(&c);
 }
 
 /* Without cosines, sines and scales it is as with those of a part that is not turned. */
@@ -164,55 +132,14 @@ TEST(unturned_parts_keep_their_rotation) {
     }
 }
 
-/* Any bits give bodies that are whole, or zeros. */
-TEST(broken_bodies_have_broken_parts) {
-    struct test_random random = test_random_named("broken parts");
-    enum { COUNT = 300 };
-    for (size_t trial = 0; trial < test_trials(60); trial++) {
-        struct compounds c = make_compounds(&random, COUNT, COUNT, true);
-        for (size_t k = 0; k < COUNT; k++) {
-            struct body *const body = &(trial % 2 ? c.owners : c.parts).bodies[k];
-            const uint32_t shape = body->shape;
-            uint64_t words[sizeof *body / 8];
-            for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-                words[i] = random_bits(&random);
-            if (k % 3 == 0)
-                memcpy(body, words, sizeof words);
-            body->shape = shape;
-        }
-        narc_body *const rows = place_all(&c);
-        for (size_t k = 0; k < COUNT; k++) {
-            const narc_body zeros = {.shape = c.parts.bodies[k].shape};
-            const double c_s =
-                (double)rows[k].cosine * (double)rows[k].cosine + (double)rows[k].sine * (double)rows[k].sine;
-            const bool whole = fabs(rows[k].x) <= DBL_MAX && fabs(rows[k].y) <= DBL_MAX && fabs(c_s - 1) < 1e-6 &&
-                               rows[k].scale > 0 && rows[k].scale <= FLT_MAX;
-            const struct body *const at = &c.owners.bodies[c.owner[k]], *const part = &c.parts.bodies[k];
-            assert_true(whole || memcmp(&rows[k], &zeros, sizeof zeros) == 0);
-            if (!(at->scale > 0) || isnan(part->sine) || isinf(at->cosine) || !(part->scale > 0))
-                assert_false(whole);
-        }
-        guard_release(rows);
-        destroy_compounds(&c);
-    }
-    /* Each number of either alone; two scales below 0, whose product is not. */
-    static const float bad[] = {NAN, INFINITY, -INFINITY, -1};
-    for (int number = 0; number < 10; number++)
-        for (int value = 0; value < 4; value++) {
-            narc_body row, poses[2] = {{1, 2, 0.6f, 0.8f, 1, 0}, {3, 4, 1, 0, 2, 0}};
-            narc_body *const one = &poses[number / 5];
-            const narc_bodies owners = narc_view_bodies(&poses[0], 1), parts = narc_view_bodies(&poses[1], 1);
-            const uint32_t zero = 0;
-            if (number % 5 < 2)
-                *(number % 5 ? &one->y : &one->x) = (double)bad[value];
-            else
-                *(float *[]){&one->cosine, &one->sine, &one->scale}[number % 5 - 2] = bad[value];
-            if (bad[value] == -1)
-                poses[0].scale = poses[1].scale = -1;
-            assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL),
-                             NARC_OK);
-            assert_memory_equal(&row, &(narc_body){0}, sizeof row);
-        }
+/* Scales below 0, whose product is not. */
+TEST(two_broken_scales_are_none) {
+    const narc_body owner = {1, 2, 0.6f, 0.8f, -1, 0}, part = {3, 4, 1, 0, -2, 0}, zeros = {0};
+    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(&part, 1);
+    const uint32_t zero = 0;
+    narc_body row;
+    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL), NARC_OK);
+    assert_memory_equal(&row, &zeros, sizeof row);
 }
 
 /* A part in its place is the shape that narc_move_arcs() makes, in the place of its owner. */
@@ -405,56 +332,6 @@ TEST(parts_of_one_body_form_no_pair) {
         narc_destroy_broad_phase(broad);
         destroy_compounds(&c);
     }
-}
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-TEST(parts_refuse_bad_arguments) {
-    struct test_random random = test_random_named("errors of parts");
-    struct compounds c = make_compounds(&random, 10, 90000, false);
-    const narc_bodies owners = scene_bodies(&c.owners), parts = scene_bodies(&c.parts);
-    const narc_index_column owner = {c.owner, sizeof *c.owner};
-    narc_body *const rows = make_junk(90000 * sizeof *rows);
-    narc_bodies wrong;
-    narc_error error;
-#define PLACE(owners, parts, owner, workers, rows, status, words)                                                      \
-    expect_error(narc_place_parts(owners, parts, owner, workers, rows, &error), status, &error, words)
-    PLACE(NULL, &parts, owner, NULL, rows, NARC_ERROR_ARGUMENT, "owners is NULL");
-    PLACE(&owners, NULL, owner, NULL, rows, NARC_ERROR_ARGUMENT, "parts is NULL");
-    PLACE(&owners, &parts, owner, NULL, NULL, NARC_ERROR_ARGUMENT, "out_bodies is NULL");
-    PLACE(&owners, &parts, (narc_index_column){0}, NULL, rows, NARC_ERROR_ARGUMENT, "owner is NULL");
-#define WRONG(set, change, words)                                                                                      \
-    wrong = set;                                                                                                       \
-    wrong.change;                                                                                                      \
-    PLACE(&set == &owners ? &wrong : &owners, &set == &parts ? &wrong : &parts, owner, NULL, rows,                     \
-          NARC_ERROR_ARGUMENT, words)
-    WRONG(owners, x.base = NULL, "owners.x");
-    WRONG(owners, cosine.base = NULL, "owners.cosine");
-    WRONG(owners, sine.base = NULL, "owners.sine");
-    WRONG(owners, y.precision = (narc_precision)7, "precision");
-    WRONG(owners, reserved[1] = rows, "owners.reserved[1]");
-    WRONG(parts, y.base = NULL, "parts.y");
-    WRONG(parts, cosine.base = NULL, "parts.cosine");
-    WRONG(parts, sine.base = NULL, "parts.sine");
-    WRONG(parts, shape.base = NULL, "parts.shape");
-    WRONG(parts, reserved[0] = rows, "parts.reserved[0]");
-#if SIZE_MAX > UINT32_MAX
-    WRONG(owners, count = (size_t)UINT32_MAX + 1, "at most");
-    WRONG(parts, count = (size_t)UINT32_MAX + 1, "at most");
-#endif
-    c.owner[80000] = UINT32_MAX;
-    c.owner[70000] = 10;
-    for (unsigned threads = 1; threads < 4; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        PLACE(&owners, &parts, owner, &workers, rows, NARC_ERROR_INDEX,
-              "part 70000: the owner is 10, but there are 10");
-        assert_int_equal(error.index, 70000);
-    }
-    assert_true(is_junk(rows, 90000 * sizeof *rows));
-    expect_ok(narc_place_parts(&(narc_bodies){0}, &(narc_bodies){0}, (narc_index_column){0}, NULL, NULL, &error),
-              &error);
-    free(rows);
-    destroy_compounds(&c);
 }
 
 TEST_MAIN("parts")

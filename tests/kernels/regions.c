@@ -270,28 +270,4 @@ TEST(reads_columns_with_any_stride) {
     narc_destroy_index(index);
 }
 
-TEST(refuses_bad_arguments) {
-    const narc_box box = {0, 0, 1, 1};
-    narc_index_query query = {0};
-    narc_pairs pairs = {.count = 7};
-    narc_index *index;
-    narc_error error;
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-#define REFUSED(call, words) expect_error(call, NARC_ERROR_ARGUMENT, &error, words)
-    REFUSED(narc_query_index(NULL, &box, 1, NULL, &pairs, &error), "index is NULL");
-    REFUSED(narc_query_index(index, NULL, 1, NULL, &pairs, &error), "boxes is NULL");
-    REFUSED(narc_query_index(index, &box, 1, NULL, NULL, &error), "out_pairs is NULL");
-    REFUSED(narc_query_index(index, &box, UINT32_MAX, NULL, &pairs, &error), "queries in one call");
-    query.reserved[2] = &query;
-    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[2]");
-#undef REFUSED
-    assert_int_equal(pairs.count, 7);
-    assert_int_equal(narc_query_index(index, &box, 1, NULL, &pairs, NULL), NARC_OK);
-    assert_int_equal(pairs.count, 0);
-    pairs.count = 7;
-    assert_int_equal(narc_query_index(index, NULL, 0, NULL, &pairs, NULL), NARC_OK);
-    assert_int_equal(pairs.count, 0);
-    narc_destroy_index(index);
-}
-
 TEST_MAIN("regions")

@@ -96,29 +96,6 @@ TEST(test_contacts) {
     }
 }
 
-TEST(test_reference) {
-    struct test_random random = test_random_named("separations and the reference");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT64, 100, test_trials(2000));
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    const narc_query query = {.margin = INFINITY};
-    float *const found = malloc(pairs.count * sizeof *found);
-    double worst = 0;
-    assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, found, NULL), NARC_OK);
-    for (size_t k = 0; k < pairs.count; k++) {
-        const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
-                                    b = scene_reference(&scene, scene.pairs[k].b);
-        const double error = fabs((double)found[k] - reference_find_gap(&a, &b).gap) / separation_bound(&a, &b);
-        worst = fmax(worst, error);
-        if (!(error <= 1))
-            print_pair(&a, &b);
-        assert_true(error <= 1);
-    }
-    printf("  the largest error is %.3f of the bound\n", worst);
-    free(found);
-    destroy_scene(&scene);
-}
-
 /* Pairs with a concave arc have several contacts: the deepest one's separation is told. */
 TEST(test_ground) {
     enum { RIDERS = 40, MOST = 2000 };
@@ -217,37 +194,6 @@ TEST(test_some_of_a_batch) {
     free(found);
     free(junk);
     free(all);
-    destroy_scene(&scene);
-}
-
-TEST(test_errors) {
-    struct test_random random = test_random_named("errors of separations");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 10, 20);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene), none = {.count = 0};
-    narc_error error;
-    float found[20];
-    memset(found, 0xa5, sizeof found);
-    expect_error(narc_find_separations(scene.store, &bodies, &pairs, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
-                 "out_separations");
-    expect_error(narc_find_separations(scene.store, &bodies, &pairs, &(narc_query){.row_stride = 6}, found, &error),
-                 NARC_ERROR_ARGUMENT, &error, "row_stride");
-    expect_error(narc_find_separations(NULL, &bodies, &pairs, NULL, found, &error), NARC_ERROR_ARGUMENT, &error,
-                 "shapes");
-    const narc_query wrong[] = {
-        {.margin = NAN},
-        {.first = 21},
-        {.first = 10, .count = 11},
-        {.selection = NARC_ARRAY(((const uint32_t[]){0, 20})), .selection_count = 2},
-        {.selection = NARC_ARRAY(((const uint32_t[]){0})), .selection_count = SIZE_MAX},
-        {.reserved = {&error}},
-    };
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
-        assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, &wrong[k], found, NULL), NARC_OK);
-    scene.pairs[19].b = 40;
-    assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, NULL, found, NULL), NARC_OK);
-    assert_true(is_junk(found, sizeof found));
-    assert_int_equal(narc_find_separations(scene.store, &bodies, &none, NULL, NULL, NULL), NARC_OK);
     destroy_scene(&scene);
 }
 
