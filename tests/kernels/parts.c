@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * parts.c - compounds: their parts are where they should be; those of one body form no pair, and keep their pairs as others
- * come and go.
+ * parts.c - compounds: their parts are where they should be; those of one body form no pair.
  */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "expect.h"
 #include "guard.h"
-#include "layouts.h"
+#include "ledger.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
-#include "support.h"
+#include "scene.h"
 
 /* Random owners and parts, and whose they are. Some of each are broken. */
 struct compounds {
@@ -235,101 +235,40 @@ TEST(moved_shapes_meet_when_parts_do) {
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-enum { BODIES = 60, PARTS = 4 * BODIES };
-
-static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *shapes, const narc_body *rows,
-                                    size_t count, const uint32_t *group, const uint64_t *id) {
-    const narc_bodies bodies = narc_view_bodies(rows, count);
-    const narc_pair_filter filter = {.group = {group, sizeof *group}};
-    const narc_pair_options options = {.filter = &filter, .id = {id, sizeof *id}, .skin = 0.01f};
-    const narc_pair_list *list = NULL;
-    narc_error error;
-    expect_ok(narc_update_pairs(broad, shapes, &bodies, &options, &list, &error), &error);
-    return list;
-}
-
-static bool do_overlap(const narc_box *a, const narc_box *b) {
-    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
-}
-
 /* Every pair of parts of two bodies whose boxes meet, and none of one body. */
-static void check_pairs(const narc_shapes *shapes, const narc_body *rows, size_t count, const uint32_t *owner,
-                        const narc_pair_list *list) {
-    const narc_bodies bodies = narc_view_bodies(rows, count);
-    static narc_box boxes[PARTS];
-    size_t expected = 0, apart = 0, own = 0;
-    assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
-    for (size_t a = 0; a < count; a++)
-        for (size_t b = a + 1; b < count; b++) {
-            own += owner[a] == owner[b] && do_overlap(&boxes[a], &boxes[b]);
-            expected += owner[a] != owner[b] && do_overlap(&boxes[a], &boxes[b]);
-        }
-    for (size_t k = 0; k < list->pairs.count; k++) {
-        const uint32_t a = list->pairs.a.base[k], b = list->pairs.b.base[k];
-        assert_true(owner[a] != owner[b]);
-        apart += !do_overlap(&boxes[a], &boxes[b]); /* but for the skin */
-    }
-    assert_int_equal(list->pairs.count - apart, expected);
-    assert_true(own > 0 && expected > 0); /* or nothing was tested */
-}
-
-/* Takes part k away: the last one fills its place. */
-static void remove_part(struct compounds *c, uint32_t *group, uint64_t *id, size_t k) {
-    const size_t last = --c->parts.body_count;
-    c->parts.bodies[k] = c->parts.bodies[last];
-    c->owner[k] = c->owner[last];
-    group[k] = group[last];
-    id[k] = id[last];
-}
-
 TEST(parts_of_one_body_form_no_pair) {
+    enum { BODIES = 60, PARTS = 4 * BODIES };
     struct test_random random = test_random_named("pairs of parts");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct compounds c = make_compounds(&random, BODIES, PARTS, false);
-        uint32_t group[PARTS];
-        uint64_t id[PARTS], last_a[9000], last_b[9000];
-        narc_broad_phase *broad = NULL;
-        size_t last_count = 0, known = 0;
-        assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+        narc_broad_phase *const broad = create_broad_phase(NULL);
+        uint32_t group[PARTS], a[9000], b[9000];
         for (size_t k = 0; k < PARTS; k++) {
             struct body *const part = &c.parts.bodies[k];
             part->x_single *= 0.125f, part->y_single *= 0.125f, part->x *= 0.125, part->y *= 0.125;
             group[k] = c.owner[k] + 1;
-            id[k] = 1000 + k;
         }
         for (size_t k = 0; k < BODIES; k++) {
             struct body *const at = &c.owners.bodies[k];
             at->x = at->x_single = (float)random_between(&random, -9, 9);
             at->y = at->y_single = (float)random_between(&random, -9, 9);
         }
-        for (int step = 0; step < 12; step++) {
-            narc_body *const rows = place_all(&c);
-            const size_t count = c.parts.body_count;
-            const narc_pair_list *const list = update(broad, c.parts.store, rows, count, group, id);
-            check_pairs(c.parts.store, rows, count, c.owner, list);
-            for (size_t k = 0; k < list->pairs.count; k++) {
-                const uint64_t a = id[list->pairs.a.base[k]], b = id[list->pairs.b.base[k]];
-                const uint32_t then = list->previous[k];
-                assert_true(then == NARC_NO_MATCH || then < last_count);
-                if (then != NARC_NO_MATCH)
-                    assert_true((last_a[then] == a && last_b[then] == b) || (last_a[then] == b && last_b[then] == a));
-                known += then != NARC_NO_MATCH;
-            }
-            last_count = list->pairs.count;
-            assert_true(last_count < 9000);
-            for (size_t k = 0; k < last_count; k++) {
-                last_a[k] = id[list->pairs.a.base[k]];
-                last_b[k] = id[list->pairs.b.base[k]];
-            }
-            guard_release(rows);
-            /* Some parts go, one is another now, and all bodies move a little. */
-            for (int k = 0; k < 3; k++)
-                remove_part(&c, group, id, random_below(&random, c.parts.body_count));
-            c.parts.bodies[0].shape = c.parts.bodies[1].shape;
-            scene_move_bodies(&c.owners, &random, 0.02);
-        }
-        assert_true(known > 0);
+        narc_body *const rows = place_all(&c);
+        const narc_bodies bodies = narc_view_bodies(rows, PARTS);
+        const narc_pair_filter filter = {.group = NARC_ARRAY(group)};
+        narc_box boxes[PARTS];
+        size_t count, expected = 0, own = 0;
+        assert_int_equal(narc_compute_boxes(c.parts.store, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, boxes, PARTS, &filter, NULL, a, b, 9000, &count, NULL), NARC_OK);
+        for (size_t i = 0; i < PARTS; i++)
+            for (size_t j = i + 1; j < PARTS; j++)
+                *(group[i] == group[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
+        for (size_t k = 0; k < count; k++)
+            assert_true(group[a[k]] != group[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
+        assert_int_equal(count, expected);
+        assert_true(own > 0 && expected > 0); /* or nothing was tested */
         narc_destroy_broad_phase(broad);
+        guard_release(rows);
         destroy_compounds(&c);
     }
 }
