@@ -134,17 +134,9 @@ static void expect_same_index(const narc_index *one, const narc_index *other) {
         assert_memory_equal(one->masks, other->masks, nodes * NARC_NODE_SLOTS * sizeof *one->masks);
 }
 
-/* Boxes of all kinds, many in one place, a tenth empty. */
 static void fill_boxes(struct test_random *random, narc_box *boxes, size_t count) {
-    for (size_t k = 0; k < count; k++) {
-        boxes[k] = random_box(random, 1000, 0, random_log_between(random, 1e-3, 100));
-        if (random_below(random, 4) == 0)
-            boxes[k] = (narc_box){5, 5, 6, 7};
-        if (random_below(random, 100) == 0)
-            boxes[k] = far_box(random);
-        if (random_below(random, 10) == 0)
-            (&boxes[k].min_x)[random_below(random, 4)] = random_below(random, 2) ? NAN : -INFINITY;
-    }
+    for (size_t k = 0; k < count; k++)
+        boxes[k] = make_box(random, BOXES_MIXED, k, count);
 }
 
 TEST(is_the_same_for_all_workers_and_instruction_sets) {
