@@ -33,6 +33,19 @@ static void put(struct scene *scene, uint32_t index, double x, double y, double 
     scene->bodies[index] = body;
 }
 
+/* The manifold of a scene's only pair. */
+static narc_manifold find_one(const struct scene *scene, float margin) {
+    struct manifolds list = scene_manifolds(scene, margin);
+    assert_int_equal(list.count, 1);
+    const narc_manifold m = list.rows[0];
+    free(list.rows);
+    return m;
+}
+
+static size_t find_deeper(const narc_manifold *m) {
+    return m->count == 2 && m->point[1].separation < m->point[0].separation;
+}
+
 /* The edge of a box whose normal points up, and the one whose normal points down. */
 static unsigned find_edge_with(const struct shape *shape, double normal) {
     for (size_t i = 0; i < shape->count; i++)
@@ -60,18 +73,16 @@ TEST(test_box_on_box) {
                 step == 0 ? 0 : random_between(&random, -1, 1) * pow(10, -random_between(&random, 1.5, 8));
             const double x = step == 0 ? 0 : random_between(&random, -0.02, 0.02);
             put(&scene, 1, x, 0.99, tilt);
-            struct manifolds list = scene_manifolds(&scene, 0.05f);
-            assert_int_equal(list.count, 1);
-            assert_int_equal(list.rows[0].count, 2);
-            assert_int_equal(list.rows[0].point[0].feature, first);
-            assert_int_equal(list.rows[0].point[1].feature, second);
+            const narc_manifold m = find_one(&scene, 0.05f);
+            assert_int_equal(m.count, 2);
+            assert_int_equal(m.point[0].feature, first);
+            assert_int_equal(m.point[1].feature, second);
             /* The tangent of a normal that points up points left. The rounded box touches with its arcs' ends. */
             const double half = width / 2, reach = 0.05;
-            assert_true(list.rows[0].normal_y > 0.999f);
-            assert_true(fabs((double)list.rows[0].point[0].x - half) < reach + rounding);
-            assert_true(fabs((double)list.rows[0].point[1].x + half) < reach + rounding);
-            assert_true(fabs((double)list.rows[0].point[0].y - 0.495) < 0.06);
-            free(list.rows);
+            assert_true(m.normal_y > 0.999f);
+            assert_true(fabs((double)m.point[0].x - half) < reach + rounding);
+            assert_true(fabs((double)m.point[1].x + half) < reach + rounding);
+            assert_true(fabs((double)m.point[0].y - 0.495) < 0.06);
         }
         destroy_scene(&scene);
     }
@@ -127,19 +138,17 @@ TEST(test_rocking) {
     size_t frames = 0;
     for (double tilt = -largest; tilt <= largest; tilt += step, frames++) {
         put(&scene, 1, 0, 1, tilt);
-        struct manifolds list = scene_manifolds(&scene, 0.5f);
-        assert_int_equal(list.count, 1);
-        assert_int_equal(list.rows[0].count, 2);
+        const narc_manifold m = find_one(&scene, 0.5f);
+        assert_int_equal(m.count, 2);
         for (size_t i = 0; i < 2; i++) {
-            const float now[3] = {list.rows[0].point[i].x, list.rows[0].point[i].y, list.rows[0].point[i].separation};
+            const float now[3] = {m.point[i].x, m.point[i].y, m.point[i].separation};
             for (size_t c = 0; c < 3 && frames > 0; c++)
                 assert_true(fabs((double)(now[c] - last[i][c])) < 3 * step);
             if (frames > 0)
-                assert_int_equal(list.rows[0].point[i].feature, id[i]);
+                assert_int_equal(m.point[i].feature, id[i]);
             memcpy(last[i], now, sizeof now);
-            id[i] = list.rows[0].point[i].feature;
+            id[i] = m.point[i].feature;
         }
-        free(list.rows);
     }
     assert_true(frames > 1000);
     destroy_scene(&scene);
@@ -157,14 +166,13 @@ TEST(test_rolling) {
         /* Along the top for x < 1, around the corner (1, 1) for half a turn's quarter, and down. */
         const double turn = fmin(fmax(way - 1, 0) / 0.5, PI / 2), down = fmax(way - 1 - PI / 4, 0);
         put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
-        struct manifolds list = scene_manifolds(&scene, 0.01f);
-        assert_int_equal(list.count, 1);
-        assert_int_equal(list.rows[0].count, 1);
-        const unsigned on_box = list.rows[0].point[0].feature >> 8;
-        const float curved = list.rows[0].radius_b;
-        assert_int_equal(list.rows[0].point[0].feature & 0xff, 0);
-        assert_true(list.rows[0].radius_a == 0.5f);
-        assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
+        const narc_manifold m = find_one(&scene, 0.01f);
+        assert_int_equal(m.count, 1);
+        const unsigned on_box = m.point[0].feature >> 8;
+        const float curved = m.radius_b;
+        assert_int_equal(m.point[0].feature & 0xff, 0);
+        assert_true(m.radius_a == 0.5f);
+        assert_true(m.point[1].separation == 0 && m.point[1].feature == 0);
         if (fabs(way - 1) < 0.02 || fabs(way - 1 - PI / 4) < 0.02) { /* on either side of the corner's end */
             assert_true(on_box == top || on_box == corner || on_box == right);
         } else if (way < 1) {
@@ -180,7 +188,6 @@ TEST(test_rolling) {
             assert_true(curved == INFINITY);
             seen[2]++;
         }
-        free(list.rows);
     }
     assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
     destroy_scene(&scene);
@@ -194,15 +201,12 @@ TEST(test_reach) {
     struct scene scene = make_duo(&box, &circle);
     for (double angle = 0; angle <= PI / 2; angle += PI / 64) {
         put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
-        struct manifolds list = scene_manifolds(&scene, 0);
-        const narc_manifold *m = list.rows;
-        assert_int_equal(list.count, 1);
-        const bool edge = m->radius_a == INFINITY;
+        const narc_manifold m = find_one(&scene, 0);
+        const bool edge = m.radius_a == INFINITY;
         assert_true(!edge || angle < 1e-6 || angle > PI / 2 - 1e-6);
-        assert_true(fabs(m->reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
-        assert_true(fabs(m->reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
-        assert_true(m->reach_b[0] == NARC_REACH_ONE && m->reach_b[1] == NARC_REACH_ONE);
-        free(list.rows);
+        assert_true(fabs(m.reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
+        assert_true(fabs(m.reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
+        assert_true(m.reach_b[0] == NARC_REACH_ONE && m.reach_b[1] == NARC_REACH_ONE);
     }
     destroy_scene(&scene);
 }
@@ -242,57 +246,48 @@ TEST(test_margin) {
     destroy_scene(&scene);
 }
 
-/* A second point may be farther than the first one. */
-TEST(test_second_margin) {
+/* How many points a query tells of, 0 without a row; two are those that all queries tell of. */
+static void expect_points(const struct scene *scene, const narc_query *query, size_t points) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    const narc_manifold all = find_one(scene, INFINITY);
+    struct manifolds found = find_manifolds(scene->store, &bodies, &pairs, query);
+    assert_int_equal(found.count, points > 0);
+    if (points > 0)
+        assert_int_equal(found.rows[0].count, points);
+    if (points == 2)
+        assert_memory_equal(found.rows, &all, sizeof all);
+    free(found.rows);
+}
+
+/* A second point may be farther than the first one; and the flat angle decides which edges face each other. */
+TEST(test_second_margin_and_flat_angle) {
     const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.02, 0.05);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds all = scene_manifolds(&scene, INFINITY);
-    narc_manifold found;
-    size_t count;
-    assert_int_equal(all.rows[0].count, 2);
-    const float first = fminf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
-    const float second = fmaxf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
-    const float margins[][2] = {{first + 0.01f, 0},
-                                {first + 0.01f, second},
-                                {first + 0.01f, nextafterf(second, 1)},
-                                {first, 2 * second},
-                                {INFINITY, first},
-                                {first + 0.01f, INFINITY},
-                                {first + 0.01f, -0.01f},
-                                {-1, 0}};
-    const uint8_t points[] = {1, 1, 2, 0, 2, 2, 1, 0};
-    for (size_t k = 0; k < sizeof points; k++) {
-        const narc_query query = {.margin = margins[k][0], .second_margin = margins[k][1]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
-        assert_int_equal(count, points[k] > 0);
-        if (points[k] > 0)
-            assert_int_equal(found.count, points[k]);
-        if (points[k] == 2)
-            assert_memory_equal(&found, all.rows, sizeof found);
-    }
-    free(all.rows);
-    destroy_scene(&scene);
-}
-
-/* The flat angle decides which edges face each other. */
-TEST(test_flat_angle) {
-    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&ground, &box);
+    const narc_manifold all = find_one(&scene, INFINITY);
+    assert_int_equal(all.count, 2);
+    const float first = fminf(all.point[0].separation, all.point[1].separation);
+    const float second = fmaxf(all.point[0].separation, all.point[1].separation);
+    const struct {
+        float margin, second_margin;
+        size_t points;
+    } margins[] = {{first + 0.01f, 0, 1},
+                   {first + 0.01f, second, 1},
+                   {first + 0.01f, nextafterf(second, 1), 2},
+                   {first, 2 * second, 0},
+                   {INFINITY, first, 2},
+                   {first + 0.01f, INFINITY, 2},
+                   {first + 0.01f, -0.01f, 1},
+                   {-1, 0, 0}};
+    for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
+        expect_points(&scene, &(narc_query){.margin = margins[k].margin, .second_margin = margins[k].second_margin},
+                      margins[k].points);
     put(&scene, 1, 0, 1.2, 0.2);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    narc_manifold found;
-    size_t count;
-    const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
-    const uint8_t points[] = {2, 2, 1, 1, 2, 1};
-    for (size_t k = 0; k < 6; k++) {
-        const narc_query query = {.margin = INFINITY, .flat_angle = angles[k]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
-        assert_int_equal(found.count, points[k]);
-    }
+    static const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
+    static const size_t points[] = {2, 2, 1, 1, 2, 1};
+    for (size_t k = 0; k < 6; k++)
+        expect_points(&scene, &(narc_query){.margin = INFINITY, .flat_angle = angles[k]}, points[k]);
     destroy_scene(&scene);
 }
 
@@ -383,10 +378,8 @@ TEST(test_least_edge) {
             struct scene scene = make_duo(&ground, &wedge);
             put(&scene, 0, 0, -h, 0);
             put(&scene, 1, 0, 0.25 * h, 0);
-            struct manifolds list = scene_manifolds(&scene, INFINITY);
-            assert_int_equal(list.count, 1);
-            assert_int_equal(list.rows[0].count, 1 + longer);
-            free(list.rows);
+            const narc_manifold m = find_one(&scene, INFINITY);
+            assert_int_equal(m.count, 1 + longer);
             destroy_scene(&scene);
         }
     }
@@ -472,14 +465,11 @@ TEST(test_leaning) {
         for (double tilt = -89; tilt < -1; tilt += 0.01) {
             const double c = cos(tilt * PI / 180), s = sin(tilt * PI / 180), right = 1 - radius, low = radius - 0.5;
             put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * PI / 180);
-            struct manifolds list = scene_manifolds(&scene, 0.5f);
-            assert_int_equal(list.count, 1);
-            const size_t count = list.rows[0].count;
-            const size_t deep = count == 2 && list.rows[0].point[1].separation < list.rows[0].point[0].separation;
-            assert_int_equal(list.rows[0].point[deep].feature, top | corner % (unsigned)box.count << 8);
+            const narc_manifold m = find_one(&scene, 0.5f);
+            const size_t count = m.count, deep = find_deeper(&m);
+            assert_int_equal(m.point[deep].feature, top | corner % (unsigned)box.count << 8);
             one += count == 1;
             two += count == 2;
-            free(list.rows);
         }
         assert_true(one > 1000 && two > 1000);
         destroy_scene(&scene);
