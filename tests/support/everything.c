@@ -194,6 +194,8 @@ void expect_same_row(const struct answers *all, size_t k, const struct answers *
     const float *const separations = all->rows[ANSWER_SEPARATIONS];
     assert_memory_equal(one->rows[ANSWER_SEPARATIONS], &separations[k], sizeof *separations);
     assert_int_equal(bit_is_set(one->rows[ANSWER_OVERLAPS], 0), bit_is_set(all->rows[ANSWER_OVERLAPS], k));
+    if (one->count[ANSWER_HINTS] > 0)
+        assert_memory_equal(one->rows[ANSWER_HINTS], row_of(all, ANSWER_HINTS, k), sizeof(uint32_t));
     for (int kind = 0; kind < ANSWERS; kind++) {
         if (!kinds[kind].numbered || kind == ANSWER_MOVERS)
             continue;
