@@ -223,38 +223,6 @@ TEST(test_hard_places) {
     check_corpus("bits, polygons", NARC_FLOAT64, true);
 }
 
-/* A pair's answer depends on that pair alone: not on those in the other lanes, nor on how many there are. */
-TEST(test_neighbours) {
-    enum { PAIRS = 60, MOST = 40 };
-    struct test_random random = test_random_named("neighbours");
-    for (size_t q = 0; q < question_count; q++) {
-        const struct question *question = &questions[q];
-        if (!question->row_size)
-            continue;
-        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, BODIES, PAIRS);
-        struct answer all = ask_scene(question, &scene, (narc_query){.margin = INFINITY}, NULL);
-        for (uint32_t k = 0; k < PAIRS; k++) {
-            struct pair pairs[MOST];
-            struct scene repeated = scene;
-            for (size_t i = 0; i < MOST; i++)
-                pairs[i] = scene.pairs[k];
-            repeated.pairs = pairs;
-            repeated.pair_count = 1 + k % MOST;
-            struct answer same = ask_scene(question, &repeated, (narc_query){.margin = INFINITY}, NULL);
-            assert_int_equal(same.count, repeated.pair_count);
-            for (size_t i = 0; i < same.count; i++) {
-                assert_int_equal(same.outcomes[i], all.outcomes[k]);
-                *answer_pair(question, same.rows, i) = k;
-                assert_memory_equal(answer_row(question, same.rows, i), answer_row(question, all.rows, k),
-                                    question->row_size);
-            }
-            destroy_answer(&same);
-        }
-        destroy_answer(&all);
-        destroy_scene(&scene);
-    }
-}
-
 /* Pairs with margins of their own against calls with one margin. Pairs with a NaN there are skipped. */
 TEST(test_margins_of_pairs) {
     enum { PAIRS = 2000 };

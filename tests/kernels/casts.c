@@ -541,33 +541,6 @@ TEST(test_circles_that_turn) {
     assert_true(hits > 0 && beside > 0);
 }
 
-/* Rotations are as long as they may be, or by a float longer. */
-TEST(test_longest_rotations) {
-    const float sine = sqrtf((float)NARC_ROTATION_TOLERANCE);
-    narc_shapes *const shapes = empty_store();
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    assert_int_equal(narc_build_box(1, 1, 0, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
-    for (int longer = 0; longer < 2; longer++) {
-        const narc_body rows[] = {{.cosine = 1, .sine = longer ? 1.001f * sine : sine, .scale = 1},
-                                  {.x = 0.5, .cosine = 1, .scale = 1}};
-        const uint32_t a = 0, b = 1;
-        const narc_pairs pairs = {.count = 1, .a = {&a, 0}, .b = {&b, 0}};
-        const narc_bodies bodies = narc_view_bodies(rows, 2);
-        size_t skipped, found;
-        narc_impact impact;
-        narc_contact contact;
-        const narc_cast_options options = {.out_skipped = &skipped};
-        assert_int_equal(narc_cast_pairs(shapes, &bodies, NULL, &pairs, NULL, &options, &impact, 1, NULL), NARC_OK);
-        assert_int_equal(skipped, longer);
-        assert_int_equal(impact.count, longer ? NARC_CAST_MISS : NARC_CAST_HIT);
-        assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, NULL, &contact, 1, &found, NULL), NARC_OK);
-        assert_int_equal(found, 1 - longer);
-    }
-    narc_destroy_shapes(shapes);
-}
-
 /* Rows do not depend on who numbers bodies: in rows of floats and of doubles, as pairs' own bodies, and as two sets, with
  * shifts and without. */
 TEST(test_sets_of_bodies) {

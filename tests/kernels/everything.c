@@ -101,6 +101,10 @@ TEST(each_by_itself) {
             one.points.x = view_rays(world.points + k, 1).x;
             one.points.y = view_rays(world.points + k, 1).y;
             one.hints = world.hints + k;
+            if (world.shifted) {
+                one.pairs.shift_x.base = one.pairs.shift_y.base = world.shift + k;
+                one.query.margins.base = world.margins + k;
+            }
             struct answers alone = ask_everything(&one, NULL);
             expect_same_row(&all, k, &alone);
             destroy_answers(&alone);
@@ -153,6 +157,12 @@ TEST(reads_nothing_but_what_it_is_given) {
                 COPY(&columns, e.motions.x, count, float, backwards);
                 COPY(&columns, e.motions.y, count, float, backwards);
                 COPY(&columns, e.motions.angle, count, float, backwards);
+                if (world.shifted) {
+                    e.pairs.shift_x = e.pairs.shift_y = view_world(&world).pairs.shift_x;
+                    COPY(&columns, e.pairs.shift_x, count, float, backwards);
+                    COPY(&columns, e.pairs.shift_y, count, float, backwards);
+                    COPY(&columns, e.query.margins, count, float, backwards);
+                }
                 struct answers found = ask_everything(&e, NULL);
                 expect_same_answers(&right, &found, 0, "another layout");
                 destroy_answers(&found);
@@ -315,9 +325,11 @@ TEST(survives_garbage) {
         for (size_t k = 0; k < PAIRS; k++) {
             world.points[k].x = any_double(&random, world.points[k].x);
             world.hints[k] = random_below(&random, 2) ? (uint32_t)random_bits(&random) : 0;
+            world.shift[k] = any_float(&random, world.shift[k]);
         }
         struct everything e = view_world(&world);
         e.query.margin = INFINITY;
+        e.query.margins.base = NULL;
         e.boxes = round % 4 < 2 ? boxes : NULL; /* an index of any boxes at all */
         struct answers right = check_bits(&e, "garbage");
         expect_sane_answers(&e, &right);

@@ -274,6 +274,9 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
                           .points = calloc(pairs + 1, sizeof *world.points),
                           .ray_count = rays,
                           .hints = create_hints(pairs),
+                          .shift = calloc(pairs + 1, sizeof *world.shift),
+                          .margins = calloc(pairs + 1, sizeof *world.margins),
+                          .shifted = random_below(random, 2),
                           .query = {.margin = margins[random_below(random, 4)],
                                     .second_margin = (float)random_between(random, -0.1, 0.1)},
                           .cast = {.target = random_below(random, 2) ? 0 : (float)random_between(random, -0.1, 0.1)},
@@ -284,6 +287,8 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
     for (size_t k = 0; k < pairs; k++) {
         const struct body *const a = &scene.bodies[scene.pairs[k].a], *const b = &scene.bodies[scene.pairs[k].b];
         const double far = random_unit(random);
+        world.shift[k] = (float)random_between(random, -1, 1);
+        world.margins[k] = random_below(random, 9) ? (float)random_between(random, -0.1, 0.3) : NAN;
         world.points[k] = (struct test_ray){.x = a->x + (double)contacts.rows[k].point_x * far,
                                             .y = a->y + (double)contacts.rows[k].point_y * far};
         world.motion[scene.pairs[k].a] = (struct test_motion){(float)(b->x - a->x), (float)(b->y - a->y), 0};
@@ -303,22 +308,29 @@ void destroy_world(struct world *world) {
     free(world->rays);
     free(world->points);
     free(world->hints);
+    free(world->shift);
+    free(world->margins);
     destroy_scene(&world->scene);
 }
 
 struct everything view_world(const struct world *world) {
-    const narc_rays points = view_rays(world->points, world->scene.pair_count);
-    const size_t bodies = world->scene.body_count;
-    return (struct everything){.shapes = world->scene.store,
-                               .bodies = scene_bodies(&world->scene),
-                               .indexed = bodies,
-                               .movers = bodies,
-                               .motions = view_motions(world->motion),
-                               .pairs = scene_pairs(&world->scene),
-                               .rays = view_rays(world->rays, world->ray_count),
-                               .points = {.count = points.count, .x = points.x, .y = points.y},
-                               .hints = world->hints,
-                               .query = world->query,
-                               .cast = world->cast,
-                               .inside = world->inside};
+    const size_t bodies = world->scene.body_count, pairs = world->scene.pair_count;
+    const narc_rays points = view_rays(world->points, pairs);
+    struct everything e = {.shapes = world->scene.store,
+                           .bodies = scene_bodies(&world->scene),
+                           .indexed = bodies,
+                           .movers = bodies,
+                           .motions = view_motions(world->motion),
+                           .pairs = scene_pairs(&world->scene),
+                           .rays = view_rays(world->rays, world->ray_count),
+                           .points = {.count = pairs, .x = points.x, .y = points.y},
+                           .hints = world->hints,
+                           .query = world->query,
+                           .cast = world->cast,
+                           .inside = world->inside};
+    if (world->shifted) {
+        e.pairs.shift_x = e.pairs.shift_y = (narc_float_column){world->shift, sizeof *world->shift};
+        e.query.margins = (narc_float_column){world->margins, sizeof *world->margins};
+    }
+    return e;
 }

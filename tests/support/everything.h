@@ -72,6 +72,8 @@ struct world {
     struct test_ray *rays, *points;
     size_t ray_count;
     uint32_t *hints;
+    float *shift, *margins; /* of each pair, of every other world */
+    bool shifted;
     narc_query query;
     narc_cast_options cast;
     narc_inside inside;
