@@ -154,99 +154,7 @@ TEST(test_rocking) {
     destroy_scene(&scene);
 }
 
-/* A circle that rolls along a box's flat top and around its corner: on the edge, then on the arc after the corner, and
- * on the next edge; the kind and the radii say which. */
-TEST(test_rolling) {
-    const struct shape box = box_of(2, 2, 0);
-    const struct shape circle = circle_of(0.5);
-    struct scene scene = make_duo(&circle, &box);
-    const unsigned top = find_edge_with(&box, PI / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
-    size_t seen[3] = {0};
-    for (double way = -1; way < 3; way += 0.01) {
-        /* Along the top for x < 1, around the corner (1, 1) for half a turn's quarter, and down. */
-        const double turn = fmin(fmax(way - 1, 0) / 0.5, PI / 2), down = fmax(way - 1 - PI / 4, 0);
-        put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
-        const narc_manifold m = find_one(&scene, 0.01f);
-        assert_int_equal(m.count, 1);
-        const unsigned on_box = m.point[0].feature >> 8;
-        const float curved = m.radius_b;
-        assert_int_equal(m.point[0].feature & 0xff, 0);
-        assert_true(m.radius_a == 0.5f);
-        assert_true(m.point[1].separation == 0 && m.point[1].feature == 0);
-        if (fabs(way - 1) < 0.02 || fabs(way - 1 - PI / 4) < 0.02) { /* on either side of the corner's end */
-            assert_true(on_box == top || on_box == corner || on_box == right);
-        } else if (way < 1) {
-            assert_int_equal(on_box, top);
-            assert_true(curved == INFINITY);
-            seen[0]++;
-        } else if (turn < PI / 2) {
-            assert_int_equal(on_box, corner);
-            assert_true(curved == 0);
-            seen[1]++;
-        } else {
-            assert_int_equal(on_box, right);
-            assert_true(curved == INFINITY);
-            seen[2]++;
-        }
-    }
-    assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
-    destroy_scene(&scene);
-}
-
-/* A rounded box's corner that leans on a circle: how far the normal may turn, to the edges on either side, and that of a
- * circle without end; on the box's edge, not at all. */
-TEST(test_reach) {
-    const struct shape box = box_of(2, 2, 0.25);
-    const struct shape circle = circle_of(0.5);
-    struct scene scene = make_duo(&box, &circle);
-    for (double angle = 0; angle <= PI / 2; angle += PI / 64) {
-        put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
-        const narc_manifold m = find_one(&scene, 0);
-        const bool edge = m.radius_a == INFINITY;
-        assert_true(!edge || angle < 1e-6 || angle > PI / 2 - 1e-6);
-        assert_true(fabs(m.reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
-        assert_true(fabs(m.reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
-        assert_true(m.reach_b[0] == NARC_REACH_ONE && m.reach_b[1] == NARC_REACH_ONE);
-    }
-    destroy_scene(&scene);
-}
-
-/* The second point is listed exactly if its separation is below the margin; the first then keeps its id. */
-TEST(test_margin) {
-    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&ground, &box);
-    for (int side = -1; side <= 1; side += 2) {
-        put(&scene, 1, 0, 1.02, side * 0.05);
-        struct manifolds all = scene_manifolds(&scene, INFINITY);
-        assert_int_equal(all.rows[0].count, 2);
-        const size_t deep = all.rows[0].point[1].separation < all.rows[0].point[0].separation, other = 1 - deep;
-        assert_int_equal(deep, side < 0 ? 0 : 1);
-        const float limit = all.rows[0].point[other].separation;
-        const float margins[] = {nextafterf(limit, INFINITY), limit,
-                                 nextafterf(all.rows[0].point[deep].separation, INFINITY),
-                                 all.rows[0].point[deep].separation};
-        const size_t points[] = {2, 1, 1, 0};
-        for (size_t m = 0; m < 4; m++) {
-            struct manifolds list = scene_manifolds(&scene, margins[m]);
-            assert_int_equal(list.count, points[m] > 0);
-            if (points[m] == 2) {
-                assert_memory_equal(list.rows, all.rows, sizeof *list.rows);
-            } else if (points[m] == 1) {
-                assert_int_equal(list.rows[0].count, 1);
-                assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
-                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation,
-                                    sizeof(float));
-                assert_memory_equal(&list.rows[0].point[0].x, &all.rows[0].point[deep].x, sizeof(float));
-                assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
-            }
-            free(list.rows);
-        }
-        free(all.rows);
-    }
-    destroy_scene(&scene);
-}
-
-/* How many points a query tells of, 0 without a row; two are those that all queries tell of. */
+/* How many points a query tells of, 0 without a row; they are those of a query without a margin, and one is the deeper. */
 static void expect_points(const struct scene *scene, const narc_query *query, size_t points) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
@@ -255,34 +163,45 @@ static void expect_points(const struct scene *scene, const narc_query *query, si
     assert_int_equal(found.count, points > 0);
     if (points > 0)
         assert_int_equal(found.rows[0].count, points);
+    if (points == 1 && query->flat_angle == 0) {
+        const narc_manifold_point *const point = found.rows[0].point, none = {0};
+        assert_memory_equal(&point[0], &all.point[find_deeper(&all)], sizeof *point);
+        assert_memory_equal(&point[1], &none, sizeof none);
+    }
     if (points == 2)
         assert_memory_equal(found.rows, &all, sizeof all);
     free(found.rows);
 }
 
-/* A second point may be farther than the first one; and the flat angle decides which edges face each other. */
+/* Points are listed exactly if their separations are below their margins, of which a second one may be larger; and the flat angle decides which edges face each other. */
 TEST(test_second_margin_and_flat_angle) {
     const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
-    put(&scene, 1, 0, 1.02, 0.05);
-    const narc_manifold all = find_one(&scene, INFINITY);
-    assert_int_equal(all.count, 2);
-    const float first = fminf(all.point[0].separation, all.point[1].separation);
-    const float second = fmaxf(all.point[0].separation, all.point[1].separation);
-    const struct {
-        float margin, second_margin;
-        size_t points;
-    } margins[] = {{first + 0.01f, 0, 1},
-                   {first + 0.01f, second, 1},
-                   {first + 0.01f, nextafterf(second, 1), 2},
-                   {first, 2 * second, 0},
-                   {INFINITY, first, 2},
-                   {first + 0.01f, INFINITY, 2},
-                   {first + 0.01f, -0.01f, 1},
-                   {-1, 0, 0}};
-    for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
-        expect_points(&scene, &(narc_query){.margin = margins[k].margin, .second_margin = margins[k].second_margin},
-                      margins[k].points);
+    for (int side = -1; side <= 1; side += 2) {
+        put(&scene, 1, 0, 1.02, side * 0.05);
+        const narc_manifold all = find_one(&scene, INFINITY);
+        const size_t deep = find_deeper(&all);
+        assert_int_equal(all.count, 2);
+        assert_int_equal(deep, side < 0 ? 0 : 1);
+        const float first = all.point[deep].separation, second = all.point[1 - deep].separation;
+        const struct {
+            float margin, second_margin;
+            size_t points;
+        } margins[] = {{nextafterf(second, 1), 0, 2},
+                       {second, 0, 1},
+                       {nextafterf(first, 1), 0, 1},
+                       {first, 0, 0},
+                       {first + 0.01f, second, 1},
+                       {first + 0.01f, nextafterf(second, 1), 2},
+                       {first, 2 * second, 0},
+                       {INFINITY, first, 2},
+                       {first + 0.01f, INFINITY, 2},
+                       {first + 0.01f, -0.01f, 1},
+                       {-1, 0, 0}};
+        for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
+            expect_points(&scene, &(narc_query){.margin = margins[k].margin, .second_margin = margins[k].second_margin},
+                          margins[k].points);
+    }
     put(&scene, 1, 0, 1.2, 0.2);
     static const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
     static const size_t points[] = {2, 2, 1, 1, 2, 1};
