@@ -32,7 +32,7 @@ static struct answer ask_bodies(const struct shape *a, struct body body_a, const
     struct contacts all = scene_contacts(&scene, INFINITY);
     struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
     struct fractions errors = {0};
-    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
+    const char *wrong = check_contact(&at_a, &at_b, reference_solve_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
     if (wrong) {
         fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
                  "%.3g, %.3g",
@@ -253,7 +253,7 @@ TEST(test_denormals) {
         struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                               b = scene_reference(&scene, scene.pairs[k].b);
         struct fractions errors = {0};
-        assert_null(check_contact(&a, &b, reference_find_gap(&a, &b).gap, &all.rows[k], &errors));
+        assert_null(check_contact(&a, &b, reference_solve_gap(&a, &b).gap, &all.rows[k], &errors));
     }
     free(all.rows);
     destroy_scene(&scene);
@@ -337,7 +337,7 @@ TEST(test_corners_within_rounding) {
             const struct reference_body at_a = scene_reference(&scene, scene.pairs[pair].a),
                                         at_b = scene_reference(&scene, scene.pairs[pair].b);
             const narc_contact *const row = &contacts.rows[pair];
-            const double gap = reference_find_gap(&at_a, &at_b).gap, bound = separation_bound(&at_a, &at_b);
+            const double gap = reference_solve_gap(&at_a, &at_b).gap, bound = separation_bound(&at_a, &at_b);
             const double n_x = (double)row->normal_x, n_y = (double)row->normal_y;
             struct fractions errors = {0};
             double sine;

@@ -15,8 +15,9 @@
 enum { SHOWN = 5 };
 
 /* Errors add up at random, so they stay far below the bound, which adds their largest values: 0.13 is the most seen, of
- * separations in 20 million pairs. Above this, a kernel has become worse, though not wrong. */
-static const double expected_part = 0.2;
+ * separations in 20 million pairs. Beside a junction the normal of a face is told whose gap is a little less: 0.42 is the
+ * most seen, of millions. Above this, a kernel has become worse, though not wrong. */
+static const struct fractions expected_parts = {.separation = 0.2, .normal = 0.5, .point = 0.2};
 
 /* Of rows in double precision, relative to the extents and the distance. */
 static const double refined_rounding = 1e-14;
@@ -183,7 +184,8 @@ static void check_all_families(const char *name, narc_precision precision, size_
     assert_int_equal(report.wrong, 0);
     for (int k = 0; k < FAMILY_COUNT; k++) {
         const struct fractions *const worst = &report.family[k].worst;
-        assert_true(fmax(worst->separation, fmax(worst->normal, worst->point)) < expected_part);
+        assert_true(worst->separation < expected_parts.separation && worst->normal < expected_parts.normal &&
+                    worst->point < expected_parts.point);
     }
     assert_true(report.manifolds.two > pairs / 20 && report.manifolds.stretches > pairs / 500);
     assert_true(report.manifolds.doubtful < pairs / 20 && report.swaps_skipped < pairs / 20);

@@ -250,7 +250,9 @@ void expect_sane_answers(const struct everything *e, const struct answers *answe
         empty += !whole;
         const double c = (double)part->cosine, s = (double)part->sine;
         const narc_body none = {.shape = part->shape};
-        assert_true((isfinite(part->x) && isfinite(part->y) && fabs(c * c + s * s - 1) < 1e-6 && part->scale > 0 &&
+        /* A part that is not turned has the rotation of its owner. */
+        assert_true((isfinite(part->x) && isfinite(part->y) &&
+                     fabs(c * c + s * s - 1) <= NARC_ROTATION_TOLERANCE + 1e-6 && part->scale > 0 &&
                      isfinite(part->scale)) ||
                     memcmp(part, &none, sizeof none) == 0);
     }
