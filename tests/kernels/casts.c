@@ -292,8 +292,9 @@ static void check_scenes(const char *name, struct scene (*make)(struct test_rand
         destroy_moving(&m);
     }
     print_summary(name, &summary);
-    assert_true(summary.outcomes[0] > 0 && summary.outcomes[1] > 0);
-    assert_true((double)summary.outcomes[2] <= unfinished * (double)(summary.outcomes[0] + summary.outcomes[1]));
+    assert_true(test_trials(trials) < 5 || (summary.outcomes[0] > 0 && summary.outcomes[1] > 0));
+    assert_true((double)summary.outcomes[2] <=
+                (unfinished > 0) + unfinished * (double)(summary.outcomes[0] + summary.outcomes[1]));
 }
 
 TEST(test_lines) { check_scenes("lines", make_placed, 0, 0, 24, 0); }

@@ -59,8 +59,9 @@ TEST(same_bits_of_everything_there_is) {
         const char *const name = precision ? "corpus, double positions" : "corpus";
         struct test_random random = test_random_named(name);
         struct corpus corpus = make_corpus(name, (narc_precision)precision, 0.5, false);
-        struct world world = make_world(&random, corpus.scene, INDEXED, RAYS);
-        check_moves(&random, &world, INDEXED, name);
+        const size_t indexed = corpus.scene.body_count < INDEXED ? corpus.scene.body_count : INDEXED;
+        struct world world = make_world(&random, corpus.scene, indexed, RAYS);
+        check_moves(&random, &world, indexed, name);
         free(corpus.pairs);
         destroy_world(&world);
     }
@@ -135,7 +136,7 @@ TEST(reads_nothing_but_what_it_is_given) {
     struct test_random random = test_random_named("layouts");
     for (int precision = 0; precision < 2; precision++)
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++)
-            for (size_t count = 1; count <= 51; count += count < 18 ? 1 : 11) {
+            for (size_t count = 1; count <= 44; count += count < 10 ? 1 : 7) {
                 struct scene scene = make_random_scene(&random, (narc_precision)precision, count, count);
                 suit_layout(&scene, layout);
                 struct world world = make_world(&random, scene, count, count);
@@ -299,7 +300,7 @@ static double any_double(struct test_random *random, double usual) {
 TEST(survives_garbage) {
     enum { COUNT = 200, PAIRS = 1000, RAYS = 200 };
     struct test_random random = test_random_named("garbage");
-    for (size_t round = 0; round < test_trials(24); round++) {
+    for (size_t round = 0; round < test_trials(16); round++) {
         struct world world =
             make_world(&random, make_random_scene(&random, (narc_precision)(round % 2), COUNT, PAIRS), COUNT, RAYS);
         narc_box boxes[COUNT];

@@ -10,7 +10,7 @@
 #include "support.h"
 #include "tests.h"
 
-/* What a builder was given to write to, full of a pattern, so that a stray write shows. */
+/* What a builder was given to write to, full of a pattern, so that a wrong write shows. */
 struct output {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
