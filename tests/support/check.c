@@ -27,7 +27,8 @@ static double local_angle(const struct reference_body *body, double x, double y)
     return atan2(y, x) - atan2(body->sine, body->cosine);
 }
 
-double angle_outside(const narc_arc *arc, double angle) {
+/* How far a direction lies outside the sector of an arc, in radians. */
+static double angle_outside(const narc_arc *arc, double angle) {
     double sweep = arc->end - arc->start;
     sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
     /* Measured from the middle of the sector. */

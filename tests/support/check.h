@@ -18,9 +18,6 @@ struct fractions {
 /* The documented bound of a separation's error. */
 double separation_bound(const struct reference_body *a, const struct reference_body *b);
 
-/* How far a direction lies outside the sector of an arc, in radians. */
-double angle_outside(const narc_arc *arc, double angle);
-
 /* Signed distance from a point in world axes, relative to A's position, to a body. */
 double distance_to(const struct reference_body *a, const struct reference_body *body, double x, double y);
 

@@ -11,10 +11,6 @@
  * overlaps are the contacts with a separation below 0. */
 struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs);
 
-/* Its manifolds, with the margins and angles of a query. */
-struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                      const narc_query *query);
-
 /* A batch with the answers that are right for it. The scene is that of the same pairs, to print one that is wrong. */
 struct plain_batch {
     const narc_shapes *shapes;
