@@ -16,6 +16,7 @@ TEST(test_targets_of_pairs) {
     enum { BODIES = 100, PAIRS = 2000 };
     struct test_random random = test_random_named("targets of pairs");
     struct world world = make_world(&random, make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS), BODIES, 0);
+    world.shifted = false;
     struct everything e = view_world(&world);
     static float targets[PAIRS][2]; /* a column with a stride */
     static narc_impact rows[PAIRS];

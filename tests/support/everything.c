@@ -277,12 +277,12 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
                           .ray_count = rays,
                           .hints = create_hints(pairs),
                           .shift = calloc(pairs + 1, sizeof *world.shift),
-                          .margins = calloc(pairs + 1, sizeof *world.margins),
-                          .shifted = random_below(random, 2),
-                          .query = {.margin = margins[random_below(random, 4)],
-                                    .second_margin = (float)random_between(random, -0.1, 0.1)},
-                          .cast = {.target = random_below(random, 2) ? 0 : (float)random_between(random, -0.1, 0.1)},
-                          .inside = (narc_inside)random_below(random, 3)};
+                          .margins = calloc(pairs + 1, sizeof *world.margins)};
+    world.shifted = random_below(random, 2); /* one random number a statement */
+    world.query.margin = margins[random_below(random, 4)];
+    world.query.second_margin = (float)random_between(random, -0.1, 0.1);
+    world.cast.target = random_below(random, 2) ? 0 : (float)random_between(random, -0.1, 0.1);
+    world.inside = (narc_inside)random_below(random, 3);
     struct contacts contacts = scene_contacts(&scene, INFINITY);
     if (random_below(random, 2))
         world.query.flat_angle = (float)random_between(random, 0, 1.5);
