@@ -192,8 +192,8 @@ static void check_all_families(const char *name, narc_precision precision, size_
     assert_true((double)report.refined > 0.99 * (double)pairs); /* what floats had for as deep may not be */
 }
 
-TEST(test_single_positions) { check_all_families("pairs, single positions", NARC_FLOAT32, 8); }
+TEST(test_single_positions) { check_all_families("pairs, single positions", NARC_FLOAT32, 16); }
 
-TEST(test_double_positions) { check_all_families("pairs, double positions", NARC_FLOAT64, 5); }
+TEST(test_double_positions) { check_all_families("pairs, double positions", NARC_FLOAT64, 10); }
 
 TEST_MAIN("pairs")
