@@ -152,15 +152,15 @@ TEST(refuses_movers) {
     REFUSED(ARGUMENT, "search.reserved[0]",
             CAST(room.index, store, &bodies, &bodies, &motions, &taken, NULL, out.impacts, ROWS));
     const float targets[BODIES] = {[7] = NAN};
-#define WRONG_OPTIONS(STATUS, words, ...)                                                                              \
+#define WRONG_CASTS(STATUS, words, ...)                                                                                \
     REFUSED(STATUS, words,                                                                                             \
             CAST(room.index, store, &bodies, &bodies, &motions, NULL, (&(narc_cast_options){__VA_ARGS__}),             \
                  out.impacts, ROWS))
-    WRONG_OPTIONS(ARGUMENT, "tolerance", .tolerance = -1);
-    WRONG_OPTIONS(NOT_FINITE, "target", .target = NAN);
-    WRONG_OPTIONS(NOT_FINITE, "tolerance", .tolerance = INFINITY);
-    WRONG_OPTIONS(ARGUMENT, "options.reserved[0]", .reserved = {&out});
-    WRONG_OPTIONS(NOT_FINITE, "options.targets[7] is nan", .targets = NARC_ARRAY(targets));
+    WRONG_CASTS(ARGUMENT, "tolerance", .tolerance = -1);
+    WRONG_CASTS(NOT_FINITE, "target", .target = NAN);
+    WRONG_CASTS(NOT_FINITE, "tolerance", .tolerance = INFINITY);
+    WRONG_CASTS(ARGUMENT, "options.reserved[0]", .reserved = {&out});
+    WRONG_CASTS(NOT_FINITE, "options.targets[7] is nan", .targets = NARC_ARRAY(targets));
     const uint32_t shape = room.scene.bodies[5].shape;
     room.scene.bodies[5].shape = 1000000;
     REFUSED(INDEX, "body 5: shape is 1000000",
