@@ -16,8 +16,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
-  soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
-             is interrupted, or for as many seconds as the option says
+  soak       pairs of all families beside the reference, and all queries beside scalar, seed after seed, until it is
+             interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
   bench      the kernels and what a scene is asked, beside Box2D, Chipmunk, libccd and GEOS; tables and plots go to out/.
              Options are Google Benchmark's and those of bench/README.md
@@ -489,8 +489,14 @@ fuzz() {
 # From other random numbers each time.
 soak() {
     require_packages $test_packages
-    build release test_soak
-    NARC_TEST_SEED=${NARC_TEST_SEED:-$(date +%s)} NARC_SOAK_SECONDS=${1:-inf} exec build/release/tests/kernels/test_soak
+    build release test_pairs test_everything
+    seed=${NARC_TEST_SEED:-$(date +%s)} end=$(($(date +%s) + ${1:-1000000000}))
+    while [ "$(date +%s)" -lt "$end" ]; do
+        for program in pairs everything; do
+            NARC_TEST_SEED=$seed "build/release/tests/kernels/test_$program" || fail "NARC_TEST_SEED=$seed"
+        done
+        seed=$((seed + 1))
+    done
 }
 
 # What the tests of the library run of it, with a tenth of the trials.
