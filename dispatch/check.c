@@ -381,7 +381,7 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     out_batch->shapes = shapes; /* one by one: `filled` is large, and mostly not needed */
     out_batch->pairs = pairs;
     out_batch->query = q;
-    out_batch->row_size = 0;
+    out_batch->row_size = out_batch->more_at = 0;
     out_batch->of_casts = false;
     out_batch->first = q->first;
     out_batch->count = q->count;
