@@ -16,8 +16,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
-  soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
-             is interrupted, or for as many seconds as the option says
+  soak       pairs of all families beside the reference, and all queries beside scalar, seed after seed, until it is
+             interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
   bench      the kernels and what a scene is asked, beside Box2D, Chipmunk, libccd and GEOS; tables and plots go to out/.
              Options are Google Benchmark's and those of bench/README.md
@@ -89,6 +89,15 @@ install_packages() {
     $as_root $apt install -y --no-install-recommends $missing
 }
 
+# Whether all of them are among this machine's package sources. What is there and does not come is a failure.
+optional_packages() {
+    install_packages "$@" && return 0
+    for package in $missing; do
+        [ -n "$(apt-cache madison "$package")" ] || return 1
+    done
+    fail "these packages could not be installed:$missing"
+}
+
 require_packages() {
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         echo "bootstrap: not Debian or Ubuntu. Install what these packages hold, then use the CMake presets:" >&2
@@ -99,7 +108,7 @@ require_packages() {
 }
 
 # Libraries of another processor, by Debian's name of it, are unpacked in build/packages, from package lists of their own:
-# the system does not change.
+# the system does not change. False if no source has them.
 fetch_libraries() {
     foreign=$1
     shift
@@ -109,13 +118,17 @@ fetch_libraries() {
         "build/packages/$foreign-apt/archives/partial"
     (
         cd "build/packages/$foreign-apt"
-        foreign_apt="apt-get -q -o APT::Architecture=$foreign -o APT::Architectures=$foreign \
+        foreign_apt="-q -o APT::Architecture=$foreign -o APT::Architectures=$foreign \
             -o APT::Sandbox::User=root -o Dir::State::lists=$PWD/lists -o Dir::Cache=$PWD"
-        $foreign_apt update # a source without this processor may make this fail; the download decides
-        $foreign_apt download "$@" || exit 1
-        for package in *.deb; do dpkg-deb -x "$package" "../$foreign" || exit 1; done
+        apt-get $foreign_apt update || true # a source without this processor may make this fail
+        ls lists/*Release >/dev/null 2>&1 || fail "no package source answers"
+        for package; do
+            [ -n "$(apt-cache $foreign_apt madison "$package")" ] || exit 3
+        done
+        apt-get $foreign_apt download "$@" || fail "these packages could not be downloaded: $*"
+        for package in *.deb; do dpkg-deb -x "$package" "../$foreign" || fail "$package cannot be unpacked"; done
         touch "../$foreign/complete"
-    ) || { rm -rf "build/packages/$foreign"; return 1; }
+    ) || { [ $? -eq 3 ] || exit 1; return 1; }
 }
 
 # ---------------------------------------------------------------------------- steps
@@ -148,7 +161,7 @@ check_some() {
 check_foreign() {
     preset=$1 tools="$2 libc6-dev-$3-cross qemu-user" processor=$3
     shift 3
-    if install_packages $tools && { [ $# -eq 0 ] || fetch_libraries "$processor" "$@"; }; then
+    if optional_packages $tools && { [ $# -eq 0 ] || fetch_libraries "$processor" "$@"; }; then
         check_some "$preset"
     else
         skipped="$skipped; $preset SKIPPED: no compiler, qemu or libraries from this machine's package sources"
@@ -173,7 +186,7 @@ check_golden() {
 
 # WebAssembly, by check or check_golden.
 check_wasm() {
-    if install_packages $wasm_packages; then
+    if optional_packages $wasm_packages; then
         $1 wasm32
     else
         skipped="$skipped; wasm32 SKIPPED: not among this machine's packages"
@@ -183,7 +196,7 @@ check_wasm() {
 # The command on Windows writes the same bytes as here, where poses are made by the same sines.
 check_windows() {
     mkdir -p build/packages
-    if ! install_packages $windows_packages; then
+    if ! optional_packages $windows_packages; then
         skipped="$skipped; mingw64 SKIPPED: not among this machine's packages"
     elif ! sh cmake/mingw64.sh >build/packages/mingw64.log 2>&1; then
         skipped="$skipped; mingw64 SKIPPED: its libraries could not be built, see build/packages/mingw64.log"
@@ -458,9 +471,9 @@ gate() {
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check_some tsan "$fixed"
-    fuzz 10 1 "$fixed" # addresses, which fuzzers learn from, alike from run to run
+    fuzz 4 1 "$fixed" # addresses, which fuzzers learn from, alike from run to run
     skipped=
-    if install_packages $lammps_packages; then
+    if optional_packages $lammps_packages; then
         test_lammps
     else
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
@@ -489,8 +502,14 @@ fuzz() {
 # From other random numbers each time.
 soak() {
     require_packages $test_packages
-    build release test_soak
-    NARC_TEST_SEED=${NARC_TEST_SEED:-$(date +%s)} NARC_SOAK_SECONDS=${1:-inf} exec build/release/tests/kernels/test_soak
+    build release test_pairs test_everything
+    seed=${NARC_TEST_SEED:-$(date +%s)} end=$(($(date +%s) + ${1:-1000000000}))
+    while [ "$(date +%s)" -lt "$end" ]; do
+        for program in pairs everything; do
+            NARC_TEST_SEED=$seed "build/release/tests/kernels/test_$program" || fail "NARC_TEST_SEED=$seed"
+        done
+        seed=$((seed + 1))
+    done
 }
 
 # What the tests of the library run of it, with a tenth of the trials.

@@ -69,6 +69,7 @@ narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bod
     if (status != NARC_OK)
         return status;
     batch.row_size = sizeof *out_rows;
+    batch.more_at = NARC_MORE_AT(narc_contact, count);
     return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
 }
 
@@ -81,6 +82,7 @@ narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bo
     if (status != NARC_OK)
         return status;
     batch.row_size = sizeof *out_rows;
+    batch.more_at = NARC_MORE_AT(narc_manifold, count);
     batch.flat_sine = find_flat_sine(batch.query->flat_angle);
     return narc_answer_rows(kernels->manifold, &batch, out_rows, capacity, out_count, error);
 }

@@ -231,15 +231,7 @@ NOINLINE size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_
 }
 
 /* What a row's count says of its pair: how many rows there are besides. */
-static size_t get_more(const narc_batch *batch, const char *row) {
-    narc_contact contact;
-    narc_manifold manifold;
-    memcpy(&contact, row, sizeof contact);
-    if (batch->row_size == sizeof contact)
-        return contact.count / NARC_MORE_ROW;
-    memcpy(&manifold, row, sizeof manifold);
-    return manifold.count / NARC_MORE_ROW;
-}
+static size_t get_more(const narc_batch *batch, const char *row) { return (unsigned char)row[batch->more_at]; }
 
 /* Pairs all of whose rows are wanted, at least two each, and from where on. */
 struct wanted {

@@ -105,21 +105,26 @@ static narc_status find_sets(const narc_bodies *bodies, const narc_pairs *pairs,
 
 /* ------------------------------------------------------------------------------------------------ a query */
 
-static narc_status check_number(float number, const char *name, narc_error *error) {
-    return isnan(number) ? narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)number, "query.%s is not a number", name)
-                         : NARC_OK;
+static narc_status check_number(float number, const char *owner, const char *name, narc_error *error) {
+    return isnan(number)
+               ? narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)number, "%s.%s is not a number", owner, name)
+               : NARC_OK;
+}
+
+narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error) {
+    narc_status status = check_number(query->margin, name, "margin", error);
+    if (status == NARC_OK)
+        status = check_number(query->second_margin, name, "second_margin", error);
+    if (status == NARC_OK)
+        status = check_number(query->flat_angle, name, "flat_angle", error);
+    if (status == NARC_OK && query->flat_angle > NARC_MAX_FLAT_ANGLE)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->flat_angle, "%s.flat_angle is %g, more than %g",
+                         name, (double)query->flat_angle, (double)NARC_MAX_FLAT_ANGLE);
+    return status;
 }
 
 static narc_status check_query(const narc_query *query, size_t pair_count, narc_error *error) {
-    narc_status status = check_number(query->margin, "margin", error);
-    if (status == NARC_OK)
-        status = check_number(query->second_margin, "second_margin", error);
-    if (status == NARC_OK)
-        status = check_number(query->flat_angle, "flat_angle", error);
-    if (status == NARC_OK && query->flat_angle > NARC_MAX_FLAT_ANGLE)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->flat_angle,
-                         "query.flat_angle is %g, more than %g", (double)query->flat_angle,
-                         (double)NARC_MAX_FLAT_ANGLE);
+    narc_status status = narc_check_numbers(query, "query", error);
     if (status == NARC_OK && !query->selection.base && query->selection_count > 0)
         return narc_fail_missing(error, "query.selection");
     if (status == NARC_OK && query->selection_count > pair_count)
@@ -376,7 +381,7 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     out_batch->shapes = shapes; /* one by one: `filled` is large, and mostly not needed */
     out_batch->pairs = pairs;
     out_batch->query = q;
-    out_batch->row_size = 0;
+    out_batch->row_size = out_batch->more_at = 0;
     out_batch->of_casts = false;
     out_batch->first = q->first;
     out_batch->count = q->count;

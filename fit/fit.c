@@ -497,10 +497,6 @@ static size_t plan_work(const struct job *job) {
 /* A number of starts stands for rounds of searches, each from starts of its own, of which the best fit is kept: from 1,
  * 2, 4 ... starts up to that number, and from 56 on the usual search and further ones of its size. More starts have the
  * rounds of fewer and perhaps others: they are never worse. */
-struct round {
-    unsigned starts, number; /* as in narc_ladder */
-};
-
 static size_t count_quick_rounds(unsigned starts) {
     size_t count = 0;
     while (1u << count <= starts && 1u << count < USUAL_STARTS)
@@ -508,20 +504,11 @@ static size_t count_quick_rounds(unsigned starts) {
     return count;
 }
 
-static size_t count_rounds(unsigned starts) { return starts ? count_quick_rounds(starts) + starts / USUAL_STARTS : 1; }
-
-static struct round choose_round(unsigned starts, size_t index) {
-    const size_t quick = count_quick_rounds(starts);
-    if (index < quick)
-        return (struct round){1u << index, 0};
-    return (struct round){index == quick ? 0 : USUAL_STARTS, (unsigned)(index - quick)};
-}
-
 static void begin_round(struct job *job, size_t index) {
-    const struct round round = choose_round(job->request->starts, index);
+    const size_t quick = count_quick_rounds(job->request->starts);
     narc_clear_ladder(&job->ladder);
-    job->ladder.starts = round.starts;
-    job->ladder.round = round.number;
+    job->ladder.starts = index < quick ? 1u << index : index == quick ? 0 : USUAL_STARTS;
+    job->ladder.round = index < quick ? 0 : (unsigned)(index - quick);
 }
 
 static bool is_better(const narc_fit_request *request, const narc_fit_result *a, const narc_fit_result *b) {
@@ -536,7 +523,7 @@ static bool is_better(const narc_fit_request *request, const narc_fit_result *a,
 /* The best of all rounds, or what the last one failed with. */
 static narc_status fit_rounds(struct job *job, narc_fit_result *out_result, narc_error *error) {
     const narc_fit_request *request = job->request;
-    const size_t rounds = count_rounds(request->starts);
+    const size_t rounds = request->starts ? count_quick_rounds(request->starts) + request->starts / USUAL_STARTS : 1;
     size_t planned = 0;
     for (size_t k = 0; k < rounds; k++) {
         begin_round(job, k);

@@ -8,7 +8,7 @@
 //   say there.
 //   Bodies, pairs, columns and rows are the structures of C; beside them there are
 //
-//       narc::shapes, narc::broad_phase,
+//       narc::shapes, narc::broad_phase, narc::contacts,
 //       narc::index                       owners: they move, are not copied, and pass as pointers to all functions of C.
 //                                         One that was moved from, or had no memory, is a NULL there
 //       narc::result                      an answer or an error: if (result) ... else result.error().message. value()
@@ -48,6 +48,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 #include "narc_scene.h"
 
 namespace narc {
@@ -460,6 +461,59 @@ class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_pha
     result<const narc_pair_list *> update(span<const narc_box> boxes,
                                           const narc_pair_options &options = pair_options()) {
         return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes.data(), boxes.size(), &options);
+    }
+};
+
+// ------------------------------------------------------------------------------------------------ contacts that stay
+
+struct step : detail::options<step, narc_step> {
+    step &margin(float value) noexcept { return set(&narc_step::margin, value); }
+    step &second_margin(float value) noexcept { return set(&narc_step::second_margin, value); }
+    step &flat_angle(float value) noexcept { return set(&narc_step::flat_angle, value); }
+    step &front_only() noexcept { return set(&narc_step::front_only, 1u); }
+    step &skin(float value) noexcept { return set(&narc_step::skin, value); }
+    step &recycling(float value) noexcept { return set(&narc_step::recycling, value); }
+    step &motion(narc_float_column x, narc_float_column y) noexcept {
+        return set(&narc_step::motion_x, x).set(&narc_step::motion_y, y);
+    }
+    step &reach(narc_float_column value) noexcept { return set(&narc_step::reach, value); }
+    step &ahead(narc_float_column value) noexcept { return set(&narc_step::ahead, value); }
+    step &id(narc_word_column value) noexcept { return set(&narc_step::id, value); }
+    step &run(narc_index_column value) noexcept { return set(&narc_step::run, value); }
+    step &filter(const narc_pair_filter &value) noexcept { return set(&narc_step::filter, &value); }
+    step &filter(const narc_pair_filter &&) = delete;
+    // Only these bodies may have moved; they stay where they are until the update.
+    step &moved(span<const uint32_t> list) noexcept {
+        return set(&narc_step::moved, column(list)).set(&narc_step::moved_count, list.size());
+    }
+};
+
+namespace detail {
+inline narc_status create_contacts(const narc_allocator *allocator, narc_contacts **out_contacts) noexcept {
+    narc_contacts_settings settings = {};
+    settings.allocator = allocator;
+    return narc_create_contacts(&settings, out_contacts, nullptr);
+}
+} // namespace detail
+
+class contacts : public detail::owner<narc_contacts, detail::create_contacts, narc_destroy_contacts> {
+  public:
+    using owner::owner;
+    // With rows of the kind NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and bytes of the caller's in each slot.
+    static result<contacts> make(uint32_t rows, size_t user_size, const narc_allocator *allocator = nullptr) {
+        narc_contacts_settings settings = {};
+        settings.rows = rows;
+        settings.user_size = user_size;
+        settings.allocator = allocator;
+        const auto made = detail::ask<narc_contacts *>(narc_create_contacts, &settings);
+        return made ? result<contacts>(contacts(made.value())) : result<contacts>(made.error());
+    }
+    // Its arrays stay until the next update.
+    result<const narc_step_result *> update(const narc_shapes *shapes, const narc_bodies &bodies,
+                                            const narc_step &step = narc::step()) {
+        narc_step whole = step;
+        whole.bodies = &bodies;
+        return detail::ask<const narc_step_result *>(narc_update_contacts, get(), shapes, &whole);
     }
 };
 

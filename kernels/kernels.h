@@ -8,6 +8,7 @@
 #define NARC_KERNELS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "broad_phase.h"
 #include "column.h"
@@ -30,6 +31,7 @@ typedef struct narc_batch {
     size_t first, count;
     size_t asked;    /* how many pairs are selected */
     size_t row_size; /* of answers that are rows */
+    size_t more_at;  /* of rows that are listed: NARC_MORE_AT() */
     bool of_casts;   /* does scene/casts.c ask? Then all columns are arrays of whole vectors, pair k has body k of both
                         sets, and runs of chains are whole shapes, of which what lies behind touches, too */
     float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
@@ -42,7 +44,7 @@ typedef struct narc_row_list {
 
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
  *   more        Pairs with a concave arc can have several rows. The kernel writes the deepest one, and unless rows are
- *               dense adds how many there are besides to `more`, and NARC_MORE_ROW times that to the row's count.
+ *               dense adds how many there are besides to `more`, and writes it to the row, into the byte at `more_at`.
  *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
  *               the places that are that pair's. */
 typedef struct narc_rows {
@@ -52,7 +54,13 @@ typedef struct narc_rows {
     narc_row_list *lists;
 } narc_rows;
 
+/* That byte, of the member that counts: it adds NARC_MORE_ROW for each. */
 enum { NARC_MORE_ROW = 256 };
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define NARC_MORE_AT(row, member) (offsetof(row, member) + sizeof(((row *)0)->member) - 2)
+#else
+#define NARC_MORE_AT(row, member) (offsetof(row, member) + 1)
+#endif
 
 /* What is kept of a pair of smooth shapes (NARC_SHAPE_SMOOTH), so that it is answered again without them, as long as the
  * shapes, their scales and the pair's order stay: two circles, at world scale but for the centre of B's, and when they

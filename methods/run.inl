@@ -10,14 +10,12 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/contact_row.inl"
 #include "base/pipeline.inl"
 #include "base/question.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "piece/pieces.inl"
 #include "simd/simd.h"
 
 /* Writes the contacts of the pairs k ... of a queue in the lanes `keep`. */
@@ -26,11 +24,8 @@ INLINE void store_contacts(const struct call *call, const struct queue *queue, i
     const struct answer answer = find_answer(queue, k, separation, n, on_a, on_b);
     const vi pairs = get_bits(queue, PAIR, k);
     char *place[V_WIDTH];
-    find_places(call, pairs,
-                keep_fronts(call, queue, k, keep, separation, n, vi_and(answer.feature, vi_set(0xff)),
-                            vi_shift_right(answer.feature, 8)),
-                place);
-    write_contacts(call, place, find_numbers(call, pairs), &answer, NULL);
+    find_places(call, pairs, keep, place);
+    write_contacts(place, find_numbers(call, pairs), &answer);
 }
 
 /* Compiled once for all. */
@@ -48,11 +43,11 @@ static void run_overlap_method(stage *find, const narc_batch *batch, size_t firs
 
 static size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                  const narc_rows *out) {
-    static const struct question contacts = {.size = sizeof(narc_contact), .none = write_no_contact};
+    static const struct question contacts = {.none = write_no_contact};
     struct rows rows;
     const struct call call = begin_rows(&contacts, batch, first, count, skipped, out, &rows);
     run_method(&call, find);
-    return end_rows(&call, contacts.size);
+    return end_rows(&call, sizeof(narc_contact));
 }
 
 /* Of a method whose triage answers all pairs. */

@@ -61,12 +61,23 @@ typedef struct narc_pose_bits {
     uint64_t word[4];
 } narc_pose_bits;
 
+/* All bits of what a body does in a step: motion, reach, how far ahead its contacts are told; 0 where there is no column. */
+typedef struct narc_motion_bits {
+    uint32_t word[4];
+} narc_motion_bits;
+
+/* What is another one than it was, or another body's: the pose; scale or shape, too. */
+enum { NARC_CHANGED = 1, NARC_RESHAPED = 2, NARC_ALL_CHANGED = 3 };
+
 /* The poses that boxes were computed from the last time, which serve again while all else is the same. */
 typedef struct narc_known_poses {
     narc_pose_bits *poses;
-    size_t count;             /* of the first bodies */
-    uint8_t *moved;           /* 1: the box may be another one than the kept box was made from */
-    narc_precision precision; /* of positions */
+    narc_motion_bits *motions; /* if there are columns of any */
+    size_t count;              /* of the first bodies */
+    uint8_t *moved;            /* 1: the box may be another one than the kept box was made from */
+    uint8_t *changed;          /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
+    narc_precision precision;  /* of positions */
+    bool has_motions;
     const narc_shapes *shapes;
     uint64_t history;   /* of the shapes */
     float margin, skin; /* the skin: for `moved` */
@@ -120,6 +131,7 @@ struct narc_broad_phase {
     bool is_sorted;       /* what is sorted below are the kept boxes, but for unsorted ones */
     bool has_filter;      /* `kinds` and `filters` are in use */
     bool has_sets;        /* `filters` may say other than that all bodies may form pairs */
+    bool marked;          /* the last call made marks anew */
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */
     narc_box *boxes_now, *kept_boxes;

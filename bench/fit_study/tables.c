@@ -182,34 +182,6 @@ static void print_bounds(const subject *const *some, size_t count, FILE *out) {
     fputc('\n', out);
 }
 
-/* "median (least to largest), wins of all" of the ratios of some subjects. */
-static void print_ratios(const subject *const *some, size_t count, size_t size, FILE *out) {
-    numbers ratios = {0};
-    size_t wins = 0;
-    for (size_t i = 0; i < count; i++) {
-        add_number(&ratios, ratio_of(some[i], size));
-        wins += ratio_of(some[i], size) < 1 ? 1 : 0;
-    }
-    print_range(&ratios, 3, out);
-    fprintf(out, " | %zu of %zu |", wins, count);
-}
-
-static void print_kinds(const study *all, const subject **some, FILE *out) {
-    fprintf(out, "### n-arc / n-gon by kind: median (least to largest), and how often the n-arc is smaller\n\n"
-                 "| | n = 4 | | 6 | | 8 | |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    static const kind order[] = {PAPER, LETTERS, ANIMALS, PLANTS, TOOLS, SIGNS, KINDS, GRAINS};
-    for (size_t k = 0; k < sizeof order / sizeof order[0]; k++) {
-        const size_t count = pick(all, order[k], some);
-        if (count == 0)
-            continue;
-        fprintf(out, "| %s |", order[k] == KINDS ? "**all of these**" : kind_names[order[k]]);
-        for (size_t size = 0; size < SIZES; size++)
-            print_ratios(some, count, size, out);
-        fputc('\n', out);
-    }
-    fputc('\n', out);
-}
-
 static void print_families(const subject *const *some, size_t count, FILE *out) {
     static const char *const formats[QUANTITIES] = {" %.4f |", " %.2f |", " %.2f |", " %.2f |"};
     fprintf(out, "### Medians over all outlines but the grains\n\n"
@@ -255,27 +227,6 @@ static void print_contests(const subject *const *some, size_t count, FILE *out) 
     print_contest(some, count, "8 arcs + edges / 8-gon", ARCS_AND_EDGES, 2, N_GON, 2, out);
     print_contest(some, count, "4 arcs + edges / 6-gon: 12 numbers each", ARCS_AND_EDGES, 0, N_GON, 1, out);
     print_contest(some, count, "4 arcs + edges / 6-arc: 12 numbers each", ARCS_AND_EDGES, 0, N_ARC, 1, out);
-    fputc('\n', out);
-}
-
-static int compare_straight(const void *left, const void *right) {
-    const subject *a = *(const subject *const *)left, *b = *(const subject *const *)right;
-    return (a->straight_share > b->straight_share) - (a->straight_share < b->straight_share);
-}
-
-static void print_groups(const subject *const *sorted, size_t count, FILE *out) {
-    enum { GROUPS = 3 };
-    fprintf(out, "### n-arc / n-gon by how much of the hull's perimeter is straight\n\n"
-                 "| straight | n = 4 | | 6 | | 8 | |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (size_t group = 0; group < GROUPS; group++) {
-        const size_t from = group * count / GROUPS, to = (group + 1) * count / GROUPS;
-        if (from == to)
-            continue;
-        fprintf(out, "| %.0f to %.0f %% |", 100 * sorted[from]->straight_share, 100 * sorted[to - 1]->straight_share);
-        for (size_t size = 0; size < SIZES; size++)
-            print_ratios(sorted + from, to - from, size, out);
-        fputc('\n', out);
-    }
     fputc('\n', out);
 }
 
@@ -362,9 +313,6 @@ void print_results(const study *all, FILE *out) {
     print_bounds(some, count, out);
     print_families(some, count, out);
     print_contests(some, count, out);
-    qsort(some, count, sizeof *some, compare_straight);
-    print_groups(some, count, out);
-    print_kinds(all, some, out);
     print_grains(some, pick(all, GRAINS, some), out);
     print_trials(all, out);
     free(some);

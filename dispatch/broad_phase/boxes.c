@@ -14,11 +14,11 @@
 /* Bodies in a part: some 20 microseconds of work. */
 enum { PART = 1024 };
 
-narc_status narc_check_length(float length, const char *name, narc_error *error) {
+narc_status narc_check_length(float length, const char *owner, const char *name, narc_error *error) {
     if (!isfinite(length))
-        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)length, "options.%s is %g", name, (double)length);
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)length, "%s.%s is %g", owner, name, (double)length);
     if (length < 0)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)length, "options.%s is %g, less than 0", name,
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)length, "%s.%s is %g, less than 0", owner, name,
                          (double)length);
     return NARC_OK;
 }
@@ -27,10 +27,32 @@ typedef struct box_job {
     narc_box_batch batch;
     const narc_kernel_table *kernels;
     const narc_known_poses *known;
+    narc_float_column reach, ahead; /* known, too */
+    narc_index_column moved;        /* the bodies, where they are listed */
     size_t first;
     narc_box *out_boxes;
     atomic_size_t skipped;
 } box_job;
+
+/* ------------------------------------------------------------------------------------------------ room */
+
+/* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
+static float lower(float x, float by) {
+    const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
+    return by == 0 ? x : down < -FLT_MAX ? -FLT_MAX : down;
+}
+
+narc_box narc_widen_box(narc_box box, float by) {
+    return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
+}
+
+/* With so much room, and a reach of its own; empty if that is broken. */
+static narc_box add_room(narc_box box, float room, float own) {
+    const bool fine = narc_is_box(&box) && own >= 0 && own <= FLT_MAX;
+    return fine ? narc_widen_box(narc_widen_box(box, room), own) : narc_empty_box();
+}
+
+/* ------------------------------------------------------------------------------------------------ what has moved */
 
 /* The bits of an item of 32 bits of a column. */
 static uint64_t bits_at(const void *base, ptrdiff_t stride, size_t k) {
@@ -80,27 +102,52 @@ static bool are_rows(const narc_bodies *bodies) {
            bodies->shape.stride == stride;
 }
 
-/* Lists those of bodies first .. end - 1 whose poses are not the known ones, which they are then. */
-static size_t list_moved(const narc_bodies *given, const narc_known_poses *all, size_t first, size_t end,
-                         uint32_t *list) {
-    const narc_bodies bodies = *given; /* copies, which nothing that is written could change */
-    const narc_known_poses known = *all;
+static narc_motion_bits get_motion_bits(const box_job *job, size_t k) {
+    const narc_float_column column[4] = {job->batch.motion_x, job->batch.motion_y, job->reach, job->ahead};
+    narc_motion_bits bits = {{0}};
+    for (int i = 0; i < 4; i++)
+        if (column[i].base)
+            bits.word[i] = (uint32_t)bits_at(column[i].base, column[i].stride, k);
+    return bits;
+}
+
+/* Lists those of bodies first .. end - 1, or of the listed ones, whose poses or motions are not the known ones, which they
+ * are then. */
+static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t *list) {
+    const narc_bodies bodies = *job->batch.bodies; /* copies, which nothing that is written could change */
+    const narc_known_poses known = *job->known;
+    const narc_index_column moved = job->moved;
+    const bool listed = moved.base;
     const bool rows = are_rows(&bodies);
     size_t count = 0;
-    for (size_t k = first; k < end; k++) {
+    for (size_t i = first; i < end; i++) {
+        const size_t k = listed ? narc_index_at(moved, i) : i;
+        bool same_pose = k < known.count, same_motion = same_pose, same_shape = same_pose;
         narc_pose_bits now;
         if (rows)
             memcpy(&now, narc_at(bodies.x.base, bodies.x.stride, k), sizeof now);
         else
             now = get_pose_bits(&bodies, k);
-        if (k < known.count) {
+        if (same_pose) {
             const narc_pose_bits then = known.poses[k];
             const uint64_t other = (now.word[0] ^ then.word[0]) | (now.word[1] ^ then.word[1]) |
                                    (now.word[2] ^ then.word[2]) | (now.word[3] ^ then.word[3]);
-            if (other == 0)
-                continue;
+            same_pose = other == 0;
+            same_shape = now.word[3] == then.word[3];
         }
+        if (known.has_motions) {
+            const narc_motion_bits motion = get_motion_bits(job, k);
+            same_shape = same_shape && motion.word[3] == known.motions[k].word[3];
+            same_motion = same_motion && memcmp(&motion, &known.motions[k], sizeof motion) == 0;
+            known.motions[k] = motion;
+        }
+        if (same_pose && same_motion)
+            continue;
         known.poses[k] = now;
+        if (!same_shape)
+            known.changed[k] = NARC_ALL_CHANGED;
+        else if (!same_pose)
+            known.changed[k] |= NARC_CHANGED;
         known.moved[k] = 1;
         list[count++] = (uint32_t)k;
     }
@@ -114,21 +161,36 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
     uint32_t list[PART];
     (void)part;
     if (job->known)
-        count = list_moved(job->batch.bodies, job->known, first, job->first + end, list);
-    const size_t skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
+        count = list_moved(job, first, job->first + end, list);
+    size_t skipped = 0;
+    if (count > 0) /* mostly nothing moves */
+        skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
+    for (size_t i = 0; i < count && job->reach.base; i++)
+        job->out_boxes[list[i]] = add_room(job->out_boxes[list[i]], 0, narc_float_at(job->reach, list[i]));
     if (skipped > 0)
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
-/* Where boxes of some poses are known, from the same options and shapes, of all others. */
+/* Room for what a step needs beside the bodies of a box batch: options.reach and what is known. */
 static narc_status compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
-                                 const narc_known_poses *known, narc_box *out_boxes, narc_error *error) {
+                                 size_t count, box_job *job, narc_error *error) {
+    narc_status status = NARC_OK;
+    job->batch = (narc_box_batch){shapes, bodies, options->margin, options->motion_x, options->motion_y};
+    job->kernels = narc_kernels(&status, error);
+    job->first = options->first;
+    if (job->kernels)
+        narc_run_ranges(options->workers, count, PART, compute_part, job);
+    return status;
+}
+
+narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
+                               narc_box *out_boxes, narc_error *error) {
     static const narc_box_options defaults = {0};
     const narc_box_options *const o = options ? options : &defaults;
     if (!shapes || !bodies)
         return narc_fail_missing(error, shapes ? "bodies" : "shapes");
     size_t count = o->count;
-    narc_status status = narc_check_length(o->margin, "margin", error);
+    narc_status status = narc_check_length(o->margin, "options", "margin", error);
     if (status == NARC_OK)
         status = narc_check_reserved(o->reserved, 4, "options", error);
     if (status == NARC_OK)
@@ -137,42 +199,18 @@ static narc_status compute_boxes(const narc_shapes *shapes, const narc_bodies *b
         return status;
     if (count > 0 && !out_boxes)
         return narc_fail_missing(error, "out_boxes");
-    box_job job = {{shapes, bodies, o->margin, o->motion_x, o->motion_y},
-                   narc_kernels(&status, error),
-                   .known = known,
-                   .first = o->first,
-                   .out_boxes = out_boxes};
-    if (!job.kernels)
-        return status;
-    narc_run_ranges(o->workers, count, PART, compute_part, &job);
-    if (o->out_skipped)
+    box_job job = {.out_boxes = out_boxes};
+    status = compute_boxes(shapes, bodies, o, count, &job, error);
+    if (status == NARC_OK && o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
-    return NARC_OK;
-}
-
-narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
-                               narc_box *out_boxes, narc_error *error) {
-    return compute_boxes(shapes, bodies, options, NULL, out_boxes, error);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------ boxes of a step */
 
-/* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
-static float lower(float x, float by) {
-    const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
-    return by == 0 ? x : down < -FLT_MAX ? -FLT_MAX : down;
-}
-
-narc_box narc_widen_box(narc_box box, float by) {
-    return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
-}
-
 void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes) {
-    for (size_t k = 0; k < count; k++) {
-        const float own = reach.base ? narc_float_at(reach, k) : 0;
-        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
-        out_boxes[k] = fine ? narc_widen_box(narc_widen_box(boxes[k], room), own) : narc_empty_box();
-    }
+    for (size_t k = 0; k < count; k++)
+        out_boxes[k] = add_room(boxes[k], room, narc_float_or(reach, k, 0));
 }
 
 void narc_forget_poses(narc_broad_phase *broad) {
@@ -180,24 +218,62 @@ void narc_forget_poses(narc_broad_phase *broad) {
     memset(broad->known.moved, 1, broad->body_capacity);
 }
 
+/* Are the listed bodies, and their shapes, there? */
+static narc_status check_moved(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column moved,
+                               size_t count, narc_error *error) {
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t body = narc_index_at(moved, i);
+        size_t one = 1;
+        if (body >= bodies->count)
+            return narc_fail(error, NARC_ERROR_INDEX, i, body, "step.moved[%zu] is body %lu, but there are %zu bodies",
+                             i, (unsigned long)body, bodies->count);
+        const narc_status status = narc_check_bodies(shapes, bodies, body, &one, NULL, error);
+        if (status != NARC_OK)
+            return status;
+    }
+    return NARC_OK;
+}
+
+static bool has_motions(const narc_pair_options *options, const narc_moved_bodies *moved) {
+    return options->motion_x.base || options->motion_y.base || options->reach.base || (moved && moved->ahead.base);
+}
+
+bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                          const narc_pair_options *options, const narc_moved_bodies *moved) {
+    const narc_known_poses *const known = &broad->known;
+    return known->precision == bodies->x.precision && known->shapes == shapes && known->history == shapes->history &&
+           known->margin == options->margin && known->skin == options->skin &&
+           known->has_motions == has_motions(options, moved);
+}
+
 narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, narc_error *error) {
+                                    const narc_pair_options *options, const narc_moved_bodies *moved,
+                                    narc_error *error) {
     const narc_box_options box_options = {.margin = options->margin * 0.5f,
                                           .motion_x = options->motion_x,
                                           .motion_y = options->motion_y,
                                           .workers = options->workers};
-    const bool by_pose = !options->motion_x.base && !options->motion_y.base && !options->reach.base;
     narc_known_poses *const known = &broad->known;
-    if (!by_pose || known->precision != bodies->x.precision || known->shapes != shapes ||
-        known->history != shapes->history || known->margin != options->margin || known->skin != options->skin)
+    const bool listed = moved && moved->listed;
+    if (!narc_are_poses_known(broad, shapes, bodies, options, moved))
         narc_forget_poses(broad);
-    const narc_status status =
-        compute_boxes(shapes, bodies, &box_options, by_pose ? known : NULL, broad->boxes_now, error);
+    known->has_motions = has_motions(options, moved);
+    box_job job = {.known = known,
+                   .reach = options->reach,
+                   .ahead = moved ? moved->ahead : (narc_float_column){NULL, 0},
+                   .out_boxes = broad->boxes_now};
+    size_t count = listed ? moved->count : 0;
+    narc_status status = NARC_OK;
+    if (listed) {
+        job.moved = moved->body;
+        status = check_moved(shapes, bodies, moved->body, count, error);
+    } else
+        status = narc_check_bodies(shapes, bodies, 0, &count, options->workers, error);
+    if (status == NARC_OK)
+        status = compute_boxes(shapes, bodies, &box_options, count, &job, error);
     if (status != NARC_OK)
         return status;
-    if (options->reach.base)
-        narc_add_room(broad->boxes_now, bodies->count, 0, options->reach, broad->boxes_now);
-    known->count = by_pose ? bodies->count : 0;
+    known->count = bodies->count;
     known->precision = bodies->x.precision;
     known->shapes = shapes;
     known->history = shapes->history;

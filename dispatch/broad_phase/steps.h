@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-/* "options.`name` is ...": it is at least 0 and finite. */
-narc_status narc_check_length(float length, const char *name, narc_error *error);
+/* "`owner`.`name` is ...": it is at least 0 and finite. */
+narc_status narc_check_length(float length, const char *owner, const char *name, narc_error *error);
 
 /* The items of each of `parts` parts of equal size, at least 1. */
 static inline size_t narc_part_size(size_t count, size_t parts) { return count / parts + (count % parts || !count); }
@@ -87,10 +87,31 @@ narc_box narc_widen_box(narc_box box, float by);
 /* The boxes with so much room, and each body's own reach. A body whose reach is broken has none. */
 void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes);
 
-/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, unless boxes depend on more than
- * poses. Errors as narc_compute_boxes() has them. */
+/* The only bodies that may be others than in the last call: by pose, motion, filter, id; each once. */
+typedef struct narc_moved_bodies {
+    narc_index_column body;
+    size_t count;
+    bool listed;             /* else all may be others */
+    narc_float_column ahead; /* narc_step.ahead: who has another is reshaped */
+} narc_moved_bodies;
+
+/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, and without a look at them if they
+ * are not listed; `moved` NULL: all may have moved. Errors as narc_compute_boxes() has them. */
 narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, narc_error *error);
+                                    const narc_pair_options *options, const narc_moved_bodies *moved,
+                                    narc_error *error);
+
+/* Does what is known of all poses still count? */
+bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                          const narc_pair_options *options, const narc_moved_bodies *moved);
+
+/* narc_update_pairs(), where bodies that moved may be listed; NULL: all may have. */
+narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options, const narc_moved_bodies *moved,
+                                    const narc_pair_list **out_list, narc_error *error);
+
+/* Takes the list before the last one back, if it is still whole: what follows the last one failed. */
+void narc_take_back_pairs(narc_broad_phase *broad);
 
 /* Knows no pose: all bodies may have moved. */
 void narc_forget_poses(narc_broad_phase *broad);

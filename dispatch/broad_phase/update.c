@@ -150,6 +150,40 @@ static uint64_t id_of(const update *u, size_t body) {
     return u->options->id.base ? narc_word_at(u->options->id, body) : body;
 }
 
+/* Can a look at the listed bodies stand for one at all, as the others are those of the last list? */
+static bool may_trust(const update *u, const narc_shapes *shapes, const narc_bodies *bodies,
+                      const narc_moved_bodies *moved) {
+    const narc_broad_phase *const broad = u->broad;
+    const narc_kept_list *const last = &broad->lists[broad->last];
+    return broad->is_current && u->count == last->body_count && u->count == broad->known.count &&
+           narc_are_poses_known(broad, shapes, bodies, u->options, moved) &&
+           !broad->has_filter == !u->options->filter && broad->has_sets == has_sets(u) &&
+           !last->has_ids == !u->options->id.base;
+}
+
+/* What listed bodies ask for: nothing, REST, or a look at all, WHOLE. */
+static unsigned look_at_listed(const update *u, const narc_moved_bodies *listed) {
+    const narc_broad_phase *const broad = u->broad;
+    const narc_kept_list *const last = &broad->lists[broad->last];
+    unsigned found = 0;
+    for (size_t i = 0; i < listed->count; i++) {
+        const size_t k = narc_index_at(listed->body, i);
+        const narc_box *const box = &u->boxes[k];
+        if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
+            (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k)))
+            return WHOLE;
+        if (!broad->has_filter)
+            continue;
+        const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
+        const unsigned other = now.kind ^ broad->kinds[k];
+        if (other & (NARC_STATIC | NARC_SENSOR) || now.category != then->category || now.mask != then->mask ||
+            now.group != then->group)
+            return WHOLE;
+        found |= other & NARC_ASLEEP ? REST : 0;
+    }
+    return found;
+}
+
 /* Are body k and body k of the last list the same, for all of both? */
 static bool are_same(const update *u) {
     const narc_kept_list *const last = &u->broad->lists[u->broad->last];
@@ -172,6 +206,7 @@ static void keep_list(const update *u, bool rest) {
     broad->renewed = false;
     last->list.kept = true;
     last->list.added_count = last->list.lost_count = 0;
+    broad->marked = rest;
     if (!rest)
         return;
     for (size_t k = 0; k < u->count; k++)
@@ -229,6 +264,8 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
         memset(broad->taken, 0, last->body_count);
     for (size_t k = 0; k < u->count; k++) {
         const uint32_t index = broad->last_index[k];
+        if (index != k) /* its pose was compared with another body's */
+            broad->known.changed[k] = NARC_ALL_CHANGED;
         if (index != NARC_NO_MATCH && broad->taken[index]++)
             return narc_fail(u->error, NARC_ERROR_ARGUMENT, k, (double)made->ids[k],
                              "body %zu: id %llu is also that of a body before it", k, (unsigned long long)made->ids[k]);
@@ -346,8 +383,14 @@ static narc_status make_list(const update *u, bool same, unsigned found, size_t 
     return NARC_OK;
 }
 
-static narc_status finish(const update *u, const narc_pair_list **out_list) {
+static narc_status finish(const update *u, const narc_moved_bodies *moved, const narc_pair_list **out_list) {
     narc_broad_phase *const broad = u->broad;
+    const unsigned asked = moved && moved->listed ? look_at_listed(u, moved) : WHOLE;
+    if (!(asked & WHOLE)) {
+        keep_list(u, asked & REST);
+        *out_list = &broad->lists[broad->last].list;
+        return NARC_OK;
+    }
     const bool same = are_same(u);
     size_t fresh_count = 0;
     const unsigned found = same ? look_at_all(u, &fresh_count) : WHOLE;
@@ -358,7 +401,7 @@ static narc_status finish(const update *u, const narc_pair_list **out_list) {
         if (status != NARC_OK)
             return status;
         broad->last = next;
-        broad->is_current = broad->is_sorted = broad->renewed = true;
+        broad->is_current = broad->is_sorted = broad->renewed = broad->marked = true;
     } else
         keep_list(u, found & REST);
     *out_list = &broad->lists[broad->last].list;
@@ -371,9 +414,9 @@ static narc_status finish(const update *u, const narc_pair_list **out_list) {
 static narc_status begin(const update *u, const narc_pair_list **out_list) {
     if (!u->broad || !out_list)
         return narc_fail_missing(u->error, u->broad ? "out_list" : "broad");
-    narc_status status = narc_check_length(u->options->margin, "margin", u->error);
+    narc_status status = narc_check_length(u->options->margin, "options", "margin", u->error);
     if (status == NARC_OK)
-        status = narc_check_length(u->options->skin, "skin", u->error);
+        status = narc_check_length(u->options->skin, "options", "skin", u->error);
     if (status == NARC_OK)
         status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
     if (status == NARC_OK && u->options->filter)
@@ -390,19 +433,33 @@ static narc_status begin(const update *u, const narc_pair_list **out_list) {
 
 static const narc_pair_options defaults = {.margin = 0};
 
-narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                              const narc_pair_options *options, const narc_pair_list **out_list, narc_error *error) {
+narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options, const narc_moved_bodies *given,
+                                    const narc_pair_list **out_list, narc_error *error) {
     if (!shapes || !bodies)
         return narc_fail_missing(error, shapes ? "bodies" : "shapes");
     update u = {broad, NULL, bodies->count, options ? options : &defaults, error};
     narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;
-    status = narc_compute_step_boxes(broad, shapes, bodies, u.options, error);
+    narc_moved_bodies moved = given ? *given : (narc_moved_bodies){.listed = false};
+    moved.listed = moved.listed && may_trust(&u, shapes, bodies, &moved);
+    status = narc_compute_step_boxes(broad, shapes, bodies, u.options, &moved, error);
     if (status != NARC_OK)
         return status;
     u.boxes = broad->boxes_now;
-    return finish(&u, out_list);
+    return finish(&u, &moved, out_list);
+}
+
+narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                              const narc_pair_options *options, const narc_pair_list **out_list, narc_error *error) {
+    return narc_update_moved_pairs(broad, shapes, bodies, options, NULL, out_list, error);
+}
+
+void narc_take_back_pairs(narc_broad_phase *broad) {
+    broad->last = 1 - broad->last;
+    broad->is_current = false;
+    memset(broad->known.changed, NARC_ALL_CHANGED, broad->body_capacity);
 }
 
 narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
@@ -421,7 +478,7 @@ narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes
         narc_add_room(boxes, count, u.options->margin * 0.5f, u.options->reach, broad->boxes_now);
         u.boxes = broad->boxes_now;
     }
-    return finish(&u, out_list);
+    return finish(&u, NULL, out_list);
 }
 
 void narc_forget_pairs(narc_broad_phase *broad) {

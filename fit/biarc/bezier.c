@@ -44,15 +44,10 @@ static narc_status check_controls(const narc_point *controls, size_t degree, dou
 }
 
 static struct frame find_frame(const narc_point *controls, size_t degree) {
-    narc_point low = controls[0], high = controls[0];
-    double largest = 0;
-    for (size_t k = 0; k <= degree; k++) {
-        low = (narc_point){fmin(low.x, controls[k].x), fmin(low.y, controls[k].y)};
-        high = (narc_point){fmax(high.x, controls[k].x), fmax(high.y, controls[k].y)};
-        largest = fmax(largest, fmax(fabs(controls[k].x), fabs(controls[k].y)));
-    }
-    struct frame frame = {.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2}};
-    frame.extent = fmax(high.x - low.x, high.y - low.y);
+    const narc_aabb box = bound_points(controls, degree + 1);
+    const double largest = largest_in(box);
+    struct frame frame = {.middle = {(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2},
+                          .extent = extent_of(box)};
     if (frame.extent > 0) {
         frexp(frame.extent, &frame.exponent);
         /* Moving to the frame and back rounds each coordinate by half an epsilon of the largest, twice; what is done
@@ -83,26 +78,8 @@ static narc_cubic raise_degree(const narc_point *c, size_t degree) {
     return (narc_cubic){{c[0], c[1], c[2], c[3]}};
 }
 
-static void reverse_spline(narc_spline *spline) {
-    for (size_t i = 0, j = spline->count; i < j; i++) {
-        j--;
-        const narc_spline_arc arcs[2] = {spline->arcs[i], spline->arcs[j]};
-        for (int k = 0; k < 2; k++) {
-            const narc_spline_arc a = arcs[k];
-            spline->arcs[k ? i : j] = (narc_spline_arc){
-                .start = a.end,
-                .end = a.start,
-                .start_tangent = {-a.end_tangent.x, -a.end_tangent.y},
-                .end_tangent = {-a.start_tangent.x, -a.start_tangent.y},
-                .curvature = -a.curvature,
-                .turn = -a.turn,
-            };
-        }
-    }
-}
-
 /* Takes over `other` if it has fewer arcs, or as many and they are closer; frees the one that is not kept. */
-static void keep_better(narc_spline *best, narc_spline *other) {
+static void keep_better(narc_arc_list *best, narc_arc_list *other) {
     const bool better = best->count == 0 || other->count < best->count ||
                         (other->count == best->count && other->distance < best->distance);
     free(better ? best->arcs : other->arcs);
@@ -110,18 +87,18 @@ static void keep_better(narc_spline *best, narc_spline *other) {
 }
 
 /* Cuts are sought from both ends, so that the direction of the curve makes no difference. */
-static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
+static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_arc_list *best,
                                  narc_error *error) {
     const narc_cubic reversed = narc_reverse_cubic(curve);
     narc_status status = NARC_OK;
     for (int way = 0; way < 2 && status == NARC_OK; way++) {
-        narc_spline spline = {0};
+        narc_arc_list spline = {0};
         status = narc_fit_spline(way ? &reversed : curve, tolerance, rounding, &spline, error);
         if (status != NARC_OK) {
             free(spline.arcs);
         } else {
             if (way)
-                reverse_spline(&spline);
+                narc_reverse_arcs(spline.arcs, spline.count);
             keep_better(best, &spline);
         }
     }
@@ -130,12 +107,12 @@ static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, doub
 
 /* The furthest cuts are not always the best: where a curve turns sharply, less tolerance may lead to cuts that need
  * fewer arcs, and it often leads to as many that are closer. It is tried while the arcs are few. */
-static narc_status fit_best(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
+static narc_status fit_best(const narc_cubic *curve, double tolerance, double rounding, narc_arc_list *best,
                             narc_error *error) {
     enum { TRIES = 5, FEW_ARCS = 24 };
     narc_status status = fit_both_ways(curve, tolerance, rounding, best, error);
     for (int k = 0; k < TRIES && status == NARC_OK && best->count <= FEW_ARCS; k++) {
-        narc_spline closer = {0};
+        narc_arc_list closer = {0};
         tolerance *= 0.65;
         const narc_status tried =
             tolerance < 1e-9 ? NARC_ERROR_SIZE : fit_both_ways(curve, tolerance, rounding, &closer, NULL);
@@ -151,16 +128,6 @@ static narc_status fit_best(const narc_cubic *curve, double tolerance, double ro
             break;
     }
     return status;
-}
-
-narc_curve_arc narc_describe_arc(const narc_spline_arc *arc) {
-    narc_curve_arc out = {.start = arc->start, .end = arc->end, .center = arc->start, .radius = INFINITY};
-    if (arc->curvature != 0) {
-        out.center = along(arc->start, 1 / arc->curvature, turned(arc->start_tangent));
-        out.radius = fabs(1 / arc->curvature);
-        out.turn = arc->turn;
-    }
-    return out;
 }
 
 /* The checks of a curve, and its frame. */
@@ -186,7 +153,7 @@ narc_status narc_check_curve(const narc_point *controls, size_t degree, double t
 narc_status narc_add_curve(const narc_point *controls, size_t degree, double tolerance, narc_arc_list *to,
                            narc_error *error) {
     struct frame frame;
-    narc_spline spline = {0};
+    narc_arc_list spline = {0};
     narc_status status = prepare(controls, degree, tolerance, &frame, error);
     if (status || frame.extent == 0)
         return status;
@@ -202,7 +169,7 @@ narc_status narc_add_curve(const narc_point *controls, size_t degree, double tol
     if (!status && !arcs)
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
     for (size_t k = 0; k < spline.count && !status; k++) {
-        narc_curve_arc arc = narc_describe_arc(&spline.arcs[k]);
+        narc_curve_arc arc = spline.arcs[k];
         arc.start = k ? from_frame(&frame, arc.start) : controls[0];
         arc.end = k + 1 < spline.count ? from_frame(&frame, arc.end) : controls[degree];
         arc.center = from_frame(&frame, arc.center);

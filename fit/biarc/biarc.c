@@ -63,6 +63,26 @@ size_t narc_join_posts(narc_post start, narc_post end, double share, narc_spline
     return 2;
 }
 
+narc_curve_arc narc_describe_arc(const narc_spline_arc *arc) {
+    narc_curve_arc out = {.start = arc->start, .end = arc->end, .center = arc->start, .radius = INFINITY};
+    if (arc->curvature != 0) {
+        out.center = along(arc->start, 1 / arc->curvature, turned(arc->start_tangent));
+        out.radius = fabs(1 / arc->curvature);
+        out.turn = arc->turn;
+    }
+    return out;
+}
+
+void narc_reverse_arcs(narc_curve_arc *arcs, size_t count) {
+    for (size_t i = 0; i < (count + 1) / 2; i++) {
+        const narc_curve_arc pair[2] = {arcs[i], arcs[count - 1 - i]};
+        for (int k = 0; k < 2; k++) {
+            const narc_curve_arc a = pair[k];
+            arcs[k ? i : count - 1 - i] = (narc_curve_arc){a.end, a.start, a.center, a.radius, -a.turn};
+        }
+    }
+}
+
 static double value_at(const double p[5], double t) { return p[0] + t * (p[1] + t * (p[2] + t * (p[3] + t * p[4]))); }
 
 /* The root in (0, 1) that is nearest the middle, of those that a coarse grid shows, of a polynomial of degree 4 with

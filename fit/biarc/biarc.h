@@ -75,19 +75,8 @@ double narc_find_share(const narc_cubic *curve, narc_post start, narc_post end);
 double narc_bound_distance(const narc_cubic *curve, const narc_spline_arc *arcs, size_t count, double rounding,
                            double limit);
 
-/* Arcs one after the other, and a bound of their distance from the curve. */
-typedef struct narc_spline {
-    narc_spline_arc *arcs; /* from malloc() */
-    size_t count, capacity;
-    double distance;
-} narc_spline;
-
-/* Adds the arcs for a curve. `rounding` bounds what rounding does to points of the curve; the arcs' own is not in it.
- * NARC_ERROR_MEMORY, NARC_ERROR_NO_SOLUTION. On error the list may have some of the arcs. */
-narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double rounding, narc_spline *spline,
-                            narc_error *error);
-
-/* What comes of curves and chains of lines: arcs in the form of the interface, from malloc(), and their distance. */
+/* What comes of curves and chains of lines: arcs one after the other in the form of the interface, from malloc(), and a
+ * bound of their distance. */
 typedef struct narc_arc_list {
     narc_curve_arc *arcs;
     size_t count, capacity;
@@ -95,6 +84,14 @@ typedef struct narc_arc_list {
 } narc_arc_list;
 
 narc_curve_arc narc_describe_arc(const narc_spline_arc *arc);
+
+/* The same arcs the other way round. */
+void narc_reverse_arcs(narc_curve_arc *arcs, size_t count);
+
+/* Adds the arcs for a curve. `rounding` bounds what rounding does to points of the curve; the arcs' own is not in it.
+ * NARC_ERROR_MEMORY, NARC_ERROR_NO_SOLUTION. On error the list may have some of the arcs. */
+narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double rounding, narc_arc_list *list,
+                            narc_error *error);
 
 /* Lines from each of `points[0 .. count-1]` to the next; if `closed` the last is the first. No two successive ones are
  * the same. `slack` is how far the points may be from what they were traced in. */

@@ -60,26 +60,25 @@ static narc_status add_lines(struct builder *builder, const narc_point *points, 
     return status;
 }
 
-/* A contour's moves after the first, `count` of them, and the line that closes it. */
-static narc_status add_contour(struct builder *builder, const unsigned char *degrees, size_t count,
-                               const narc_point *points, double slack) {
-    const narc_point start = points[0];
-    const bool closes = !builder->open;
+/* The moves of a contour from its first one on, and the line that closes it. */
+static narc_status add_contour(struct builder *builder, const narc_path *path, narc_drawn_move move) {
+    const size_t contour = move.contour;
+    const narc_point start = move.controls[0];
     narc_status status = NARC_OK;
-    for (size_t k = 0; !status && (k < count || (closes && k == count && !is_same(points[0], start)));) {
+    for (bool more = true, whole = true; more && !status; whole = false) {
+        const narc_point *points = move.controls;
+        const unsigned degree = move.degree;
         size_t lines = 0;
-        while (k + lines < count && degrees[k + lines] == 1)
-            lines++;
-        const bool closing = closes && k + lines == count;
-        if (lines || closing) {
-            status = add_lines(builder, points, lines, closing ? &start : NULL, closing && k == 0, slack);
-            points += lines;
-            k += lines + closing;
-        } else {
-            status = narc_add_curve(points, degrees[k], builder->tolerance, &builder->list,
-                                    builder->error); /* the pen's place stands before the move's points */
-            points += degrees[k++];
-        }
+        do {
+            lines += degree == 1;
+            more = narc_next_drawn(path, &move) && move.contour == contour;
+        } while (more && degree == 1 && move.degree == 1);
+        const bool closing = !more && !builder->open;
+        if (degree > 1)
+            status = narc_add_curve(points, degree, builder->tolerance, &builder->list, builder->error);
+        if (!status && (degree == 1 || closing)) /* a curve's end stands behind its controls */
+            status = add_lines(builder, degree == 1 ? points : points + degree, lines, closing ? &start : NULL,
+                               closing && degree == 1 && whole, path->slack);
     }
     return status;
 }
@@ -121,21 +120,6 @@ static double measure_chain(const narc_arc_list *list, size_t begin) {
         twice += cross(minus(piece->start, base), middle) + cross(middle, minus(piece->end, base));
     }
     return 0.5 * twice;
-}
-
-static void reverse_chain(narc_arc_list *list, size_t begin) {
-    for (size_t i = begin; i < list->count; i++) {
-        narc_curve_arc *piece = &list->arcs[i];
-        const narc_point end = piece->end;
-        piece->end = piece->start;
-        piece->start = end;
-        piece->turn = -piece->turn;
-    }
-    for (size_t i = begin, j = list->count - 1; i < j; i++, j--) {
-        const narc_curve_arc piece = list->arcs[i];
-        list->arcs[i] = list->arcs[j];
-        list->arcs[j] = piece;
-    }
 }
 
 /* Is a contour inside an odd number of others? */
@@ -264,12 +248,11 @@ static narc_status check_contour(const struct builder *builder, const narc_path 
     return crossing ? fail_crossing(builder, path, crossing) : NARC_OK;
 }
 
-/* Fits a contour, which begins with `points[0]`, and asks the store; no arcs come of a point. */
-static narc_status fit_contour(struct builder *builder, const narc_path *path, size_t contour,
-                               const unsigned char *degrees, size_t count, const narc_point *points) {
+/* Fits a contour, from its first move on, and asks the store; no arcs come of a point. */
+static narc_status fit_contour(struct builder *builder, const narc_path *path, narc_drawn_move first) {
     narc_arc_list *list = &builder->list;
+    const size_t contour = first.contour, begin = list->count;
     struct effort *effort = &builder->efforts[contour];
-    const size_t begin = list->count;
     const double whole = builder->tolerance, before = list->distance;
     const double flatness = fmax(0, builder->drawn.flatness - path->slack);
     const bool hole = !builder->open && is_hole(builder, contour);
@@ -287,13 +270,12 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
         const bool lines = flatness <= whole && !is_round && (effort->lines || tries + 1 == MOST_TRIES);
         list->count = begin;
         list->distance = 0;
-        status =
-            lines ? add_chords(builder, contour, flatness) : add_contour(builder, degrees, count, points, path->slack);
+        status = lines ? add_chords(builder, contour, flatness) : add_contour(builder, path, first);
         if (status || list->count == begin)
             break;
         is_round = builder->open && is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
         if (!builder->open && (hole ? measure_chain(list, begin) > 0 : measure_chain(list, begin) < 0))
-            reverse_chain(list, begin);
+            narc_reverse_arcs(list->arcs + begin, list->count - begin);
         const double room = whole - list->distance;
         bool any = false;
         for (size_t i = begin; i < list->count; i++)
@@ -333,21 +315,6 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, s
     return status ? narc_fail(error, status, contour, reason.value, "contour %zu: %s", contour,
                               is_round ? "it ends where it begins, as no open stroke does" : reason.message)
                   : NARC_OK;
-}
-
-static narc_status add_moves(struct builder *builder, const narc_path *path) {
-    const narc_point *points = path->points;
-    narc_status status = NARC_OK;
-    for (size_t k = 0, contour = 0; k < path->move_count && !status;) {
-        size_t count = 0, point_count = 1;
-        for (; k + 1 + count < path->move_count && path->degrees[k + 1 + count] > 0; count++)
-            point_count += path->degrees[k + 1 + count];
-        if (count > 0)
-            status = fit_contour(builder, path, contour++, path->degrees + k + 1, count, points);
-        points += point_count;
-        k += 1 + count;
-    }
-    return status;
 }
 
 /* ---------------------------------------------------------------------------- chains that cross each other */
@@ -466,7 +433,13 @@ static narc_status fit_contours(struct builder *builder, const narc_path *path) 
     for (int tries = 1; any && !status; tries++) {
         builder->list.count = builder->count = 0;
         builder->list.distance = 0;
-        status = add_moves(builder, path);
+        narc_drawn_move move = {0};
+        for (bool more = narc_next_drawn(path, &move); more && !status;) {
+            const narc_drawn_move first = move;
+            status = fit_contour(builder, path, first);
+            while (more && move.contour == first.contour)
+                more = narc_next_drawn(path, &move);
+        }
         if (status || builder->count < 2)
             break;
         status = compare_chains(builder, &any);
@@ -490,8 +463,7 @@ static const double CROSSING = 1e-6;
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
     const narc_contours *drawn = &builder->drawn;
-    const narc_aabb box = bound_points(drawn->points, drawn->point_count);
-    const double largest = drawn->point_count ? fmax(fmax(-box.min_x, box.max_x), fmax(-box.min_y, box.max_y)) : 0;
+    const double largest = drawn->point_count ? largest_in(bound_points(drawn->points, drawn->point_count)) : 0;
     builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
     builder->efforts = malloc((drawn->count + 1) * sizeof *builder->efforts);
     for (size_t k = 0; builder->boxes && k < drawn->count; k++) {

@@ -187,27 +187,27 @@ static narc_status advance(struct search *s, narc_error *error) {
 }
 
 /* Adds the arcs that lead to a node, and makes their distance a close one. */
-static bool take_arcs(struct search *s, const struct node *last, narc_spline *spline) {
-    const size_t count = spline->count + last->total;
-    narc_spline_arc *arcs = narc_grow(spline->arcs, &spline->capacity, count, sizeof *arcs);
+static bool take_arcs(struct search *s, const struct node *last, narc_arc_list *list) {
+    const size_t count = list->count + last->total;
+    narc_curve_arc *arcs = narc_grow(list->arcs, &list->capacity, count, sizeof *arcs);
     if (!arcs)
         return false;
-    spline->arcs = arcs;
-    spline->count = count;
+    list->arcs = arcs;
+    list->count = count;
     size_t end = count;
     for (const struct node *n = last; n->arc_count; n = &s->nodes[n->previous]) {
         end -= n->arc_count;
         for (size_t k = 0; k < n->arc_count; k++)
-            arcs[end + k] = n->arcs[k];
+            arcs[end + k] = narc_describe_arc(&n->arcs[k]);
         const narc_cubic part = narc_cut_cubic(s->curve, s->nodes[n->previous].t, n->t);
         const double bound = narc_bound_distance(&part, n->arcs, n->arc_count, s->rounding, INFINITY);
         /* It was found to be within the tolerance, which a bound that is close only to some per mille may not be. */
-        spline->distance = fmax(spline->distance, fmin(bound + find_arc_rounding(n), s->tolerance));
+        list->distance = fmax(list->distance, fmin(bound + find_arc_rounding(n), s->tolerance));
     }
     return true;
 }
 
-static narc_status fit_smooth_part(struct search *s, narc_spline *spline, narc_error *error) {
+static narc_status fit_smooth_part(struct search *s, narc_arc_list *list, narc_error *error) {
     struct node end;
     s->front[0] = 0;
     s->front_count = 1;
@@ -216,10 +216,10 @@ static narc_status fit_smooth_part(struct search *s, narc_spline *spline, narc_e
         if (status != NARC_OK)
             return status;
     }
-    return take_arcs(s, &end, spline) ? NARC_OK : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
+    return take_arcs(s, &end, list) ? NARC_OK : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
 }
 
-narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double rounding, narc_spline *spline,
+narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double rounding, narc_arc_list *list,
                             narc_error *error) {
     narc_cusp cusps[3];
     narc_point ends[2];
@@ -236,7 +236,7 @@ narc_status narc_fit_spline(const narc_cubic *curve, double tolerance, double ro
             status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for arcs");
             break;
         }
-        status = fit_smooth_part(&s, spline, error);
+        status = fit_smooth_part(&s, list, error);
         start.t = s.last;
         start.post = (narc_post){s.final.point, at_end ? ends[1] : cusps[k].leaving};
     }

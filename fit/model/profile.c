@@ -75,16 +75,11 @@ size_t narc_make_profile(const narc_chain *chain, const narc_hull *hull, narc_in
     return count;
 }
 
-double narc_least_difference(const narc_interval *intervals, size_t count) {
-    double least = INFINITY;
-    for (size_t k = 0; k < count; k++)
-        least = fmin(least, intervals[k].least.difference);
-    return least;
-}
-
-double narc_largest_difference(const narc_interval *intervals, size_t count) {
-    double largest = -INFINITY;
-    for (size_t k = 0; k < count; k++)
-        largest = fmax(largest, intervals[k].largest.difference);
-    return largest;
+narc_difference_range narc_find_range(const narc_interval *intervals, size_t count) {
+    narc_difference_range range = {INFINITY, -INFINITY};
+    for (size_t k = 0; k < count; k++) {
+        range.least = fmin(range.least, intervals[k].least.difference);
+        range.largest = fmax(range.largest, intervals[k].largest.difference);
+    }
+    return range;
 }

@@ -31,7 +31,9 @@ size_t narc_count_intervals(size_t arcs, size_t corners);
 size_t narc_make_profile(const narc_chain *chain, const narc_hull *hull, narc_interval *out_intervals);
 
 /* The least and the largest difference of all. */
-double narc_least_difference(const narc_interval *intervals, size_t count);
-double narc_largest_difference(const narc_interval *intervals, size_t count);
+typedef struct narc_difference_range {
+    double least, largest;
+} narc_difference_range;
+narc_difference_range narc_find_range(const narc_interval *intervals, size_t count);
 
 #endif

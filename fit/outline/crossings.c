@@ -100,25 +100,22 @@ static int compare_crossings(const void *left, const void *right) {
 
 /* Lines without a length are none. */
 static void list_lines(sweep *s, const narc_contours *contours, bool closed) {
-    double low = INFINITY, high = -INFINITY, extent = 0;
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
     for (size_t k = 0, begin = 0; k < contours->count; begin = contours->ends[k++])
         for (size_t i = begin; i < contours->ends[k]; i++) {
             const bool is_last = i + 1 == contours->ends[k];
             const narc_point p = contours->points[i], q = contours->points[is_last ? begin : i + 1];
-            extent = fmax(extent, fmax(fabs(p.x), fabs(p.y)));
-            low = fmin(low, p.y);
-            high = fmax(high, p.y);
             if (!is_same(p, q) && (closed || !is_last))
                 s->lines[s->count++] = (line){p, q, fmin(p.x, q.x), fmax(p.x, q.x), 0, 0, i};
         }
-    s->near = fmax(s->near, ON_LINE * extent);
+    s->near = fmax(s->near, ON_LINE * largest_in(box));
     qsort(s->lines, s->count, sizeof *s->lines, compare_lines);
     s->strips = 1 + (size_t)sqrt((double)s->count);
-    const double height = (high - low) / (double)s->strips;
+    const double height = (box.max_y - box.min_y) / (double)s->strips;
     for (size_t i = 0; i < s->count; i++) {
         line *of = &s->lines[i];
-        const double from = (fmin(of->from.y, of->to.y) - s->near - low) / height;
-        const double to = (fmax(of->from.y, of->to.y) + s->near - low) / height;
+        const double from = (fmin(of->from.y, of->to.y) - s->near - box.min_y) / height;
+        const double to = (fmax(of->from.y, of->to.y) + s->near - box.min_y) / height;
         const double most = (double)s->strips - 1;
         of->first = height > 0 ? (size_t)fmin(fmax(0, from), most) : 0;
         of->last = height > 0 ? (size_t)fmin(fmax(0, to), most) : 0;

@@ -13,8 +13,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "elementary.h"
 #include "error.h"
+#include "outline/vector.h"
 
 /* Most chords of one curve. The default flatness never needs 1000: with E the larger side of the curve's bounding box,
  * Markov's inequality bounds the second derivative of a cubic by 48 E in each coordinate, so D by 8 sqrt(2) E. */
@@ -53,10 +53,7 @@ static double find_bend(const narc_point *controls, unsigned degree) {
 }
 
 static double find_rounding(const narc_point *controls, unsigned degree) {
-    double largest = 0;
-    for (unsigned i = 0; i <= degree; i++)
-        largest = fmax(largest, fmax(fabs(controls[i].x), fabs(controls[i].y)));
-    return ROUNDING * DBL_EPSILON * largest;
+    return ROUNDING * DBL_EPSILON * largest_in(bound_points(controls, degree + 1));
 }
 
 /* The least flatness that a curve can be had with. */
@@ -75,24 +72,15 @@ static size_t count_chords(const narc_point *controls, unsigned degree, double f
 
 /* ---------------------------------------------------------------------------- a path's extent */
 
-struct box {
-    narc_point low, high;
-};
-
-static void widen_box(struct box *box, narc_point p) {
-    box->low = (narc_point){fmin(box->low.x, p.x), fmin(box->low.y, p.y)};
-    box->high = (narc_point){fmax(box->high.x, p.x), fmax(box->high.y, p.y)};
-}
-
 /* Widens the box by a curve's point at t, if that is on the curve (no root, a division by 0: it is not). */
-static void widen_at(struct box *box, const narc_point *controls, unsigned degree, double t) {
+static void widen_at(narc_aabb *box, const narc_point *controls, unsigned degree, double t) {
     if (t > 0 && t < 1)
-        widen_box(box, evaluate_curve(controls, degree, t));
+        *box = widen_box(*box, evaluate_curve(controls, degree, t));
 }
 
 /* Widens the box by the points where one coordinate turns back: c0 .. c3 are that coordinate of the control points.
  * The derivative is proportional to (1 - t)^2 p + 2 t (1 - t) q + t^2 r with the differences p, q and r. */
-static void widen_by_turns(struct box *box, const narc_point *controls, unsigned degree, const double *c) {
+static void widen_by_turns(narc_aabb *box, const narc_point *controls, unsigned degree, const double *c) {
     if (degree == 2) {
         widen_at(box, controls, degree, (c[0] - c[1]) / (c[0] - 2 * c[1] + c[2]));
     } else if (degree == 3) {
@@ -105,31 +93,20 @@ static void widen_by_turns(struct box *box, const narc_point *controls, unsigned
     }
 }
 
-static void widen_by_curve(struct box *box, const narc_point *controls, unsigned degree) {
+static void widen_by_curve(narc_aabb *box, const narc_point *controls, unsigned degree) {
     double x[4], y[4];
     for (unsigned i = 0; i <= degree; i++) {
         x[i] = controls[i].x;
         y[i] = controls[i].y;
     }
-    widen_box(box, controls[0]);
-    widen_box(box, controls[degree]);
+    *box = widen_box(widen_box(*box, controls[0]), controls[degree]);
     widen_by_turns(box, controls, degree, x);
     widen_by_turns(box, controls, degree, y);
 }
 
 /* ---------------------------------------------------------------------------- the walk over the moves */
 
-/* A drawn move: degree 1 to 3, controls[0 .. degree]. */
-struct drawn {
-    const narc_point *controls;
-    unsigned degree;
-    size_t move, point; /* what comes next */
-    size_t contour;     /* number of drawn contours before this one's */
-    bool begins;        /* the first of its contour */
-};
-
-/* The next drawn move; `move` is all 0 before the first. False at the end. */
-static bool next_drawn(const narc_path *path, struct drawn *move) {
+bool narc_next_drawn(const narc_path *path, narc_drawn_move *move) {
     bool begins = false;
     while (move->move < path->move_count) {
         const unsigned degree = path->degrees[move->move++];
@@ -149,7 +126,7 @@ static bool next_drawn(const narc_path *path, struct drawn *move) {
 
 /* What is known of a path before it is flattened. */
 struct survey {
-    struct box extent;
+    narc_aabb extent;
     size_t contour_count;
     bool has_curves;
     double least_flatness; /* of all curves */
@@ -157,8 +134,8 @@ struct survey {
 };
 
 static struct survey survey_path(const narc_path *path) {
-    struct survey found = {.extent = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}}};
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    struct survey found = {.extent = {INFINITY, INFINITY, -INFINITY, -INFINITY}};
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         found.contour_count = move.contour + 1;
         widen_by_curve(&found.extent, move.controls, move.degree);
         if (move.degree > 1) {
@@ -177,10 +154,8 @@ static narc_status choose_flatness(const struct survey *found, double *flatness,
     if (!found->has_curves) {
         *flatness = 0;
     } else if (*flatness == 0) {
-        const struct box *box = &found->extent;
-        const double extent = fmax(box->high.x - box->low.x, box->high.y - box->low.y);
         /* The least one is more only where doubles cannot tell: a speck far from the origin. */
-        *flatness = fmax(NARC_FLATNESS * extent, found->least_flatness);
+        *flatness = fmax(NARC_FLATNESS * extent_of(found->extent), found->least_flatness);
     } else if (*flatness < found->least_flatness) {
         return narc_fail(error, NARC_ERROR_SIZE, found->worst_contour, *flatness,
                          "flatness %g is too small for a curve of contour %zu: at least %g is fine", *flatness,
@@ -194,7 +169,7 @@ static narc_status choose_flatness(const struct survey *found, double *flatness,
 /* At most that many points come of a path, the closing ones that are left out again included. */
 static size_t count_points(const narc_path *path, double flatness) {
     size_t count = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         const size_t more = count_chords(move.controls, move.degree, flatness) + move.begins;
         count = count > SIZE_MAX - more ? SIZE_MAX : count + more;
     }
@@ -204,15 +179,14 @@ static size_t count_points(const narc_path *path, double flatness) {
 /* Ends the last contour; a point that repeats the first one is left out. */
 static void end_contour(narc_contours *contours, size_t first) {
     const narc_point *points = contours->points;
-    while (contours->point_count > first + 1 && points[contours->point_count - 1].x == points[first].x &&
-           points[contours->point_count - 1].y == points[first].y)
+    while (contours->point_count > first + 1 && is_same(points[contours->point_count - 1], points[first]))
         contours->point_count--;
     contours->ends[contours->count++] = contours->point_count;
 }
 
 static void draw_chords(const narc_path *path, narc_contours *contours) {
     size_t first = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         if (move.begins) {
             if (contours->point_count > 0)
                 end_contour(contours, first);
@@ -256,7 +230,7 @@ narc_status narc_flatten_path(const narc_path *path, double flatness, narc_conto
 
 size_t narc_find_drawn_line(const narc_path *path, const narc_contours *contours, size_t contour, size_t chord) {
     size_t line = 0;
-    for (struct drawn move = {0}; next_drawn(path, &move);) {
+    for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         if (move.contour != contour)
             continue;
         const size_t chords = count_chords(move.controls, move.degree, contours->flatness - path->slack);

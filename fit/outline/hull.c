@@ -18,29 +18,29 @@ static const double STRAIGHT = 1e-12;
  * the side between two corners further apart keeps its direction, to 1e-6 radians, wherever the hull is moved. */
 static const double COINCIDENT = 1e-10;
 
-static bool turns_left(narc_point a, narc_point b, narc_point c) {
+static bool turns_left(narc_point a, narc_point b, narc_point c, double straight) {
     const narc_point incoming = minus(b, a), outgoing = minus(c, b);
-    const bool turns_back = dot(incoming, outgoing) < 0; /* a reversal is no straight line, its sine is as small */
-    return cross(incoming, outgoing) > (turns_back ? 0 : STRAIGHT * length(incoming) * length(outgoing));
+    /* A reversal is no straight line, its sine is as small. */
+    const bool any = straight == 0 || dot(incoming, outgoing) < 0;
+    return cross(incoming, outgoing) > (any ? 0 : straight * length(incoming) * length(outgoing));
 }
 
 /* Adds p to a chain of corners that all turn left; those that no longer do are dropped, but none below `keep`. */
-static size_t extend_chain(narc_point *chain, size_t count, size_t keep, narc_point p) {
-    while (count > keep && !turns_left(chain[count - 2], chain[count - 1], p))
+static size_t extend_chain(narc_point *chain, size_t count, size_t keep, narc_point p, double straight) {
+    while (count > keep && !turns_left(chain[count - 2], chain[count - 1], p, straight))
         count--;
     chain[count] = p;
     return count + 1;
 }
 
-/* Both chains of `sorted` points into `corners` (room for count + 1). Returns how many there are. */
-static size_t chain_corners(const narc_point *sorted, size_t count, narc_point *corners) {
+size_t narc_wrap_sorted(const narc_point *sorted, size_t count, double straight, narc_point *out_corners) {
     size_t found = 0;
     for (size_t i = 0; i < count; i++)
-        found = extend_chain(corners, found, 1, sorted[i]);
+        found = extend_chain(out_corners, found, 1, sorted[i], straight);
     const size_t lower = found;
     for (size_t i = count - 1; i-- > 0;)
-        found = extend_chain(corners, found, lower, sorted[i]);
-    return found - 1;
+        found = extend_chain(out_corners, found, lower, sorted[i], straight);
+    return count > 1 ? found - 1 : found;
 }
 
 static double find_extent(const narc_point *corners, size_t count) {
@@ -60,7 +60,7 @@ static size_t clean_corners(narc_point *corners, size_t count) {
         count = 0;
         for (size_t k = 0; k < before; k++) {
             const narc_point last = corners[(count ? count : before) - 1], p = corners[k];
-            if (length(minus(p, last)) > least && turns_left(last, p, corners[(k + 1) % before]))
+            if (length(minus(p, last)) > least && turns_left(last, p, corners[(k + 1) % before], STRAIGHT))
                 corners[count++] = p;
         }
     }
@@ -120,7 +120,7 @@ narc_status narc_make_hull(const narc_point *points, size_t count, narc_hull *ou
     } else {
         memcpy(sorted, points, count * sizeof *sorted);
         qsort(sorted, count, sizeof *sorted, compare_points);
-        status = narc_adopt_corners(corners, chain_corners(sorted, count, corners), out_hull, error);
+        status = narc_adopt_corners(corners, narc_wrap_sorted(sorted, count, STRAIGHT, corners), out_hull, error);
     }
     free(sorted);
     free(corners);

@@ -18,6 +18,10 @@ typedef struct narc_hull {
     double area, perimeter;
 } narc_hull;
 
+/* The corners of the hull of points that are sorted by compare_points(), Andrew's monotone chain; those that turn by less
+ * than `straight`, as the sine of the angle, are left out. `out_corners` has room for count + 1. Returns how many. */
+size_t narc_wrap_sorted(const narc_point *sorted, size_t count, double straight, narc_point *out_corners);
+
 /* The hull of `points`. NARC_ERROR_COUNT: no points. NARC_ERROR_NOT_CONVEX: no area. NARC_ERROR_MEMORY. */
 narc_status narc_make_hull(const narc_point *points, size_t count, narc_hull *out_hull, narc_error *error);
 

@@ -25,6 +25,18 @@ struct narc_path {
 /* The points that a move of this degree has. */
 static inline size_t narc_count_move_points(unsigned degree) { return degree ? degree : 1; }
 
+/* A drawn move: degree 1 to 3, controls[0 .. degree]. */
+typedef struct narc_drawn_move {
+    const narc_point *controls;
+    unsigned degree;
+    size_t move, point; /* what comes next */
+    size_t contour;     /* number of drawn contours before this one's */
+    bool begins;        /* the first of its contour */
+} narc_drawn_move;
+
+/* The next drawn move; `move` is all 0 before the first. False at the end. */
+bool narc_next_drawn(const narc_path *path, narc_drawn_move *move);
+
 /* A length of a path to return to: a reader marks the path first, and rewinds it on an error. */
 typedef struct narc_path_mark {
     size_t point_count, move_count;

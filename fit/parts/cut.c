@@ -14,6 +14,7 @@
 
 #include "error.h"
 #include "outline/crossings.h"
+#include "outline/hull.h"
 #include "outline/path.h"
 #include "outline/vector.h"
 
@@ -68,27 +69,9 @@ typedef struct work {
 
 /* ---------------------------------------------------------------------------- hulls */
 
-static size_t extend(narc_point *chain, size_t count, size_t keep, narc_point p) {
-    while (count > keep && cross(minus(chain[count - 1], chain[count - 2]), minus(p, chain[count - 1])) <= 0)
-        count--;
-    chain[count] = p;
-    return count + 1;
-}
-
-/* Andrew's monotone chain, of points in order. */
-static size_t wrap_sorted(const narc_point *points, size_t count, narc_point *out_corners) {
-    size_t found = 0;
-    for (size_t k = 0; k < count; k++)
-        found = extend(out_corners, found, 1, points[k]);
-    const size_t lower = found;
-    for (size_t k = count - 1; k-- > 0;)
-        found = extend(out_corners, found, lower, points[k]);
-    return count > 1 ? found - 1 : found;
-}
-
 size_t narc_wrap_points(narc_point *points, size_t count, narc_point *out_corners) {
     qsort(points, count, sizeof *points, compare_points);
-    return wrap_sorted(points, count, out_corners);
+    return narc_wrap_sorted(points, count, 0, out_corners);
 }
 
 static narc_point place(const work *w, node at) { return w->region->points[at.point]; }
@@ -252,7 +235,7 @@ static double measure_side(const work *w, const ring *of, size_t i, size_t j) {
         if (i < j ? n >= i && n <= j : n >= i || n <= j)
             w->points[count++] = w->order[k].at;
     }
-    return narc_measure_emptiness(w->region, w->corners, wrap_sorted(w->points, count, w->corners));
+    return narc_measure_emptiness(w->region, w->corners, narc_wrap_sorted(w->points, count, 0, w->corners));
 }
 
 static int compare_places(const void *left, const void *right) {

@@ -20,13 +20,6 @@ static const double PRECISION = 1.0 / 2048;
 /* Half of a cell's diagonal, in cells. */
 static const double REACH = 0.7072;
 
-static double line_distance(narc_point p, narc_point a, narc_point b) {
-    const narc_point side = minus(b, a), from = minus(p, a);
-    const double square = dot(side, side), part = square > 0 ? fmin(1, fmax(0, dot(from, side) / square)) : 0;
-    const narc_point away = {from.x - part * side.x, from.y - part * side.y};
-    return dot(away, away);
-}
-
 static size_t count_lines(const narc_region *region) { return region->kept_ends[region->count - 1]; }
 
 static bool list_lines(narc_region *region) {
@@ -120,7 +113,7 @@ static bool is_in_region(const narc_region *region, narc_point p) {
 static double search_bucket(const narc_region *region, narc_point p, size_t bucket, double best) {
     for (uint32_t i = region->bucket_ends[bucket]; i < region->bucket_ends[bucket + 1]; i++) {
         const narc_line *line = &region->lines[region->bucket_items[i]];
-        best = fmin(best, line_distance(p, line->a, line->b));
+        best = fmin(best, side_distance(p, line->a, line->b));
     }
     return best;
 }
@@ -216,13 +209,9 @@ narc_status narc_survey_region(narc_region *region, narc_error *error) {
     static const float NEVER = 4.0f * CELLS * CELLS;
     region->cell = region->extent / CELLS;
     const narc_point old = region->corner;
-    double width = 0, height = 0;
-    for (size_t k = 0; k < region->point_count; k++) {
-        width = fmax(width, region->points[k].x - old.x);
-        height = fmax(height, region->points[k].y - old.y);
-    }
-    region->columns = (size_t)ceil(width / region->cell) + 2 * MARGIN;
-    region->rows = (size_t)ceil(height / region->cell) + 2 * MARGIN;
+    const narc_aabb box = bound_points(region->points, region->point_count);
+    region->columns = (size_t)ceil((box.max_x - old.x) / region->cell) + 2 * MARGIN;
+    region->rows = (size_t)ceil((box.max_y - old.y) / region->cell) + 2 * MARGIN;
     region->corner = (narc_point){old.x - MARGIN * region->cell, old.y - MARGIN * region->cell};
     const size_t count = region->rows * region->columns;
     const size_t longer = region->rows > region->columns ? region->rows : region->columns;
@@ -353,7 +342,7 @@ static double find_outside(const struct search *s, narc_point p, double enough) 
     if (outside <= 0 || outside >= enough || !s->is_whole) /* beyond a sharp tip no side is far */
         return outside;
     for (size_t k = 0; k < s->count; k++)
-        square = fmin(square, line_distance(p, s->corners[k], s->corners[k + 1 < s->count ? k + 1 : 0]));
+        square = fmin(square, side_distance(p, s->corners[k], s->corners[k + 1 < s->count ? k + 1 : 0]));
     return sqrt(square);
 }
 
@@ -393,52 +382,43 @@ static void search_cells(struct search *s, const struct spans *spans) {
     }
 }
 
-static bool may_be_within(const narc_region *region, const struct spans *spans) {
-    for (size_t row = spans->low; row <= spans->high; row++)
-        if (sum_row(region, spans, row).far)
-            return false;
-    return true;
-}
-
 bool narc_may_be_within_limit(const narc_region *region, const narc_point *corners, size_t count) {
     struct spans spans;
     find_spans(region, corners, count, &spans);
-    return may_be_within(region, &spans);
+    for (size_t row = spans.low; row <= spans.high; row++)
+        if (sum_row(region, &spans, row).far)
+            return false;
+    return true;
 }
 
 /* The sides of a large polygon are too many to look at for each cell: of these some are left out, which only makes it
  * larger. */
 enum { MOST_SIDES = 64 };
 
-static struct search begin_search(const narc_region *region, const narc_point *corners, size_t count, double allowed,
-                                  double precision, narc_point *points, narc_point *normals) {
+/* The largest distance of a point of the polygon from the region, or a little more; infinity if it is above what is
+ * allowed. */
+static double search_polygon(const narc_region *region, const narc_point *corners, size_t count, double allowed,
+                             double precision) {
     const size_t step = (count + MOST_SIDES - 1) / MOST_SIDES;
-    size_t sides = 0;
-    for (size_t k = 0; k < count; k += step) {
+    narc_point points[MOST_SIDES], normals[MOST_SIDES];
+    struct search s = {region, points, normals, 0, allowed, 0, precision * region->extent, false, step == 1};
+    struct spans spans;
+    for (size_t k = 0; k < count; k += step, s.count++) {
         const narc_point side = minus(corners[k + 1 < count ? k + 1 : 0], corners[k]);
         const double size = length(side);
-        points[sides] = corners[k];
-        normals[sides++] = size > 0 ? (narc_point){side.y / size, -side.x / size} : (narc_point){0, 0};
+        points[s.count] = corners[k];
+        normals[s.count] = size > 0 ? (narc_point){side.y / size, -side.x / size} : (narc_point){0, 0};
     }
-    return (struct search){region, points, normals, sides, allowed, 0, precision, false, step == 1};
+    find_spans(region, corners, count, &spans);
+    search_cells(&s, &spans);
+    return s.over ? INFINITY : s.best + s.precision;
 }
 
 bool narc_is_within_limit(const narc_region *region, const narc_point *corners, size_t count) {
-    struct spans spans;
-    narc_point points[MOST_SIDES], normals[MOST_SIDES];
-    struct search s = begin_search(region, corners, count, region->limit, PRECISION * region->extent, points, normals);
-    find_spans(region, corners, count, &spans);
-    if (!may_be_within(region, &spans))
-        return false;
-    search_cells(&s, &spans);
-    return !s.over;
+    return narc_may_be_within_limit(region, corners, count) &&
+           isfinite(search_polygon(region, corners, count, region->limit, PRECISION));
 }
 
 double narc_measure_gap(const narc_region *region, const narc_point *corners, size_t count) {
-    struct spans spans;
-    narc_point points[MOST_SIDES], normals[MOST_SIDES];
-    struct search s = begin_search(region, corners, count, 0, 0.5 * PRECISION * region->extent, points, normals);
-    find_spans(region, corners, count, &spans);
-    search_cells(&s, &spans);
-    return s.best + s.precision;
+    return search_polygon(region, corners, count, 0, 0.5 * PRECISION);
 }

@@ -19,21 +19,9 @@ typedef struct joining {
     size_t count; /* at the beginning */
     double *own;
     float *costs;
-    size_t *partners; /* with which each costs least */
-    narc_point *points, *corners;
-    size_t room;
+    size_t *partners;             /* with which each costs least */
+    narc_point *points, *corners; /* room for those of all pieces, and one more */
 } joining;
-
-static bool make_room(joining *j, size_t count) {
-    if (count <= j->room)
-        return true;
-    narc_point *points = realloc(j->points, count * sizeof *points);
-    j->points = points ? points : j->points;
-    narc_point *corners = realloc(j->corners, (count + 1) * sizeof *corners);
-    j->corners = corners ? corners : j->corners;
-    j->room = points && corners ? count : j->room;
-    return points && corners;
-}
 
 /* The hull of two pieces, into j->corners. */
 static size_t wrap_pair(const joining *j, size_t a, size_t b) {
@@ -47,24 +35,19 @@ static float *cost_of(const joining *j, size_t a, size_t b) {
     return &j->costs[a < b ? a * j->count + b : b * j->count + a];
 }
 
-static bool measure_pair(joining *j, size_t a, size_t b) {
-    if (!make_room(j, j->pieces->items[a].count + j->pieces->items[b].count))
-        return false;
+static void measure_pair(joining *j, size_t a, size_t b) {
     const size_t count = wrap_pair(j, a, b);
     *cost_of(j, a, b) = narc_may_be_within_limit(j->region, j->corners, count)
                             ? (float)(narc_measure_emptiness(j->region, j->corners, count) - j->own[a] - j->own[b])
                             : INFINITY;
-    return true;
 }
 
 /* A piece that is gone has no corners. */
-static bool measure_pairs(joining *j, size_t a) {
-    bool done = true;
+static void measure_pairs(joining *j, size_t a) {
     j->own[a] = narc_measure_emptiness(j->region, j->pieces->items[a].corners, j->pieces->items[a].count);
-    for (size_t b = 0; b < j->count && done; b++)
+    for (size_t b = 0; b < j->count; b++)
         if (b != a && j->pieces->items[b].count)
-            done = measure_pair(j, a, b);
-    return done;
+            measure_pair(j, a, b);
 }
 
 static float cost_with_partner(const joining *j, size_t a) {
@@ -120,7 +103,8 @@ static bool join_pair(joining *j, size_t a, size_t b) {
     free(items[b].corners);
     items[a] = (narc_piece){corners, count};
     items[b] = (narc_piece){0};
-    return measure_pairs(j, a);
+    measure_pairs(j, a);
+    return true;
 }
 
 narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces) {
@@ -130,12 +114,17 @@ narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces) {
     j.own = calloc(j.count, sizeof *j.own);
     j.costs = malloc(j.count * j.count * sizeof *j.costs);
     j.partners = malloc(j.count * sizeof *j.partners);
-    bool done = j.own && j.costs && j.partners && make_room(&j, 64);
+    size_t corners = 1;
+    for (size_t a = 0; a < j.count; a++)
+        corners += pieces->items[a].count;
+    j.points = malloc(corners * sizeof *j.points);
+    j.corners = malloc(corners * sizeof *j.corners);
+    bool done = j.own && j.costs && j.partners && j.points && j.corners;
     for (size_t a = 0; done && a < j.count; a++)
         j.own[a] = narc_measure_emptiness(region, pieces->items[a].corners, pieces->items[a].count);
-    for (size_t a = 0; a < j.count; a++)
-        for (size_t b = a + 1; done && b < j.count; b++)
-            done = measure_pair(&j, a, b);
+    for (size_t a = 0; done && a < j.count; a++)
+        for (size_t b = a + 1; b < j.count; b++)
+            measure_pair(&j, a, b);
     for (size_t a = 0; done && a < j.count; a++)
         find_partner(&j, a);
     for (size_t a; done && cost_with_partner(&j, a = find_cheapest(&j)) < INFINITY;) {

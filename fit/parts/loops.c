@@ -169,11 +169,6 @@ typedef struct riser {
     int way; /* 1: down, with the inside on its left, to the right of it */
 } riser;
 
-static int compare_numbers(const void *left, const void *right) {
-    const double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
 static int compare_lows(const void *left, const void *right) {
     const riser *a = left, *b = right;
     return (a->low.y > b->low.y) - (a->low.y < b->low.y);

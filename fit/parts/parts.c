@@ -259,8 +259,7 @@ static narc_status cut_contours(const narc_contours *contours, bool crosses, con
                                 narc_parts *out_parts, narc_error *error) {
     narc_region region = {0};
     narc_pieces pieces = {0};
-    const narc_aabb box = bound_points(contours->points, contours->point_count);
-    const double extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+    const double extent = extent_of(bound_points(contours->points, contours->point_count));
     const double lap = NARC_LAP_REACH * request->lap, tolerance = request->tolerance - contours->flatness - lap;
     const double least = contours->flatness + lap + LEAST_TOLERANCE * extent;
     if (request->tolerance > 0 && !(tolerance >= LEAST_TOLERANCE * extent))

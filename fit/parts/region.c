@@ -17,12 +17,6 @@ static const double LONGEST_LINE = 1.0 / 32;
 
 /* ---------------------------------------------------------------------------- contours */
 
-static void find_extent(narc_region *region, const narc_contours *contours) {
-    const narc_aabb box = bound_points(contours->points, contours->point_count);
-    region->corner = (narc_point){box.min_x, box.min_y};
-    region->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
-}
-
 static bool add_point(narc_region *region, narc_point p) {
     narc_point *points = narc_grow(region->points, &region->point_capacity, region->point_count + 1, sizeof *points);
     if (!points)
@@ -69,23 +63,17 @@ double narc_measure_region(const narc_region *region) {
 
 /* ---------------------------------------------------------------------------- simpler contours */
 
-static double find_distance(narc_point p, narc_point a, narc_point b) {
-    const narc_point side = minus(b, a), from = minus(p, a);
-    const double square = dot(side, side), part = square > 0 ? dot(from, side) / square : 0;
-    return length(minus(from, along((narc_point){0, 0}, fmin(1, fmax(0, part)), side)));
-}
-
 /* Marks what is left of the points after `first` and before `last`, of a contour of `count` (Douglas and Peucker). The
  * stack has ends of stretches; of two halves the shorter one comes first, so it holds few. */
 static void keep_points(const narc_point *points, size_t count, size_t first, size_t last, double slack, double longest,
                         bool *kept) {
     size_t stack[2 * 64], depth = 0;
     for (;;) {
-        double furthest = slack;
+        double furthest = slack * slack;
         size_t worst = 0;
         const narc_point a = points[first], b = points[last % count];
         for (size_t k = first + 1; k < last; k++) {
-            const double distance = find_distance(points[k], a, b);
+            const double distance = side_distance(points[k], a, b);
             if (distance > furthest) {
                 furthest = distance;
                 worst = k;
@@ -204,10 +192,10 @@ static bool find_holes(narc_region *region) {
 }
 
 narc_status narc_make_region(const narc_contours *contours, double slack, narc_region *out_region, narc_error *error) {
-    narc_region region = {.slack = slack};
+    const narc_aabb box = bound_points(contours->points, contours->point_count);
+    narc_region region = {.slack = slack, .corner = {box.min_x, box.min_y}, .extent = extent_of(box)};
     if (contours->point_count == 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the outline has no points");
-    find_extent(&region, contours);
     if (!(region.extent > 0))
         return narc_fail(error, NARC_ERROR_SIZE, 0, 0, "all points of the outline are in one place");
     /* Turned contours have other points left: they are simplified again. */

@@ -267,32 +267,23 @@ static double measure_difference(const narc_arc *arcs, size_t count, const narc_
     return isfinite(area) ? area : narc_chain_area(&chain) + hull->area; /* the shape's centroid is outside the hull */
 }
 
-static bool find_range(const narc_chain *chain, const narc_hull *hull, double *out_least, double *out_largest) {
-    narc_interval *intervals = malloc(narc_count_intervals(chain->count, hull->count) * sizeof *intervals);
-    if (intervals) {
-        const size_t count = narc_make_profile(chain, hull, intervals);
-        *out_least = narc_least_difference(intervals, count);
-        *out_largest = narc_largest_difference(intervals, count);
-    }
-    free(intervals);
-    return intervals;
-}
-
 static bool measure(const narc_hull *hull, narc_fit_result *result) {
     narc_chain chain;
     chain_arcs(result->arcs, result->arc_count, &chain);
     narc_hull bare = *hull;
     bare.inflation = 0;
-    double least, largest;
-    if (!find_range(&chain, &bare, &least, &largest))
+    narc_interval *intervals = malloc(narc_count_intervals(chain.count, hull->count) * sizeof *intervals);
+    if (!intervals)
         return false;
+    const narc_difference_range range = narc_find_range(intervals, narc_make_profile(&chain, &bare, intervals));
+    free(intervals);
     narc_mass mass;
     narc_compute_mass(result->arcs, result->arc_count, &mass);
     narc_compute_perimeter(result->arcs, result->arc_count, &result->perimeter);
     result->area = mass.area;
     result->hull_area = hull->area;
     result->hull_perimeter = hull->perimeter;
-    result->max_distance = fmax(-least, largest);
+    result->max_distance = fmax(-range.least, range.largest);
     result->mean_distance = mean_distance(&chain, hull);
     result->edge_count = 0;
     for (size_t i = 0; i < chain.count; i++)

@@ -30,21 +30,20 @@ static void make_model(void *context) {
 
 bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
     *programme = (narc_programme){.columns = columns, .row_capacity = row_capacity};
-    double **const arrays[] = {&programme->objective, &programme->lower, &programme->upper, &programme->solution};
-    bool whole = true;
-    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) {
-        *arrays[k] = malloc(columns * sizeof(double));
-        whole = whole && *arrays[k];
-    }
-    programme->row_lower = malloc(row_capacity * sizeof(double));
-    programme->row_upper = malloc(row_capacity * sizeof(double));
-    const size_t entries_size = row_capacity * columns * sizeof(double);
-    programme->entries = malloc(entries_size > LARGE_BLOCK ? entries_size : LARGE_BLOCK);
-    programme->packed = malloc(row_capacity * columns * sizeof(double));
-    programme->packed_index = malloc(row_capacity * columns * sizeof(int));
-    programme->packed_start = malloc(((columns > row_capacity ? columns : row_capacity) + 1) * sizeof(int));
-    if (!whole || !programme->row_lower || !programme->row_upper || !programme->entries || !programme->packed ||
-        !programme->packed_index || !programme->packed_start || !narc_call_guarded(make_model, programme)) {
+    const size_t entries = row_capacity * columns, longer = columns > row_capacity ? columns : row_capacity;
+    double **const arrays[] = {&programme->objective, &programme->lower,     &programme->upper,   &programme->solution,
+                               &programme->row_lower, &programme->row_upper, &programme->entries, &programme->packed};
+    const size_t sizes[] = {columns, columns, columns, columns, row_capacity, row_capacity, entries, entries};
+    const size_t size =
+        (4 * columns + 2 * row_capacity + 2 * entries) * sizeof(double) + (entries + longer + 1) * sizeof(int);
+    double *next = programme->memory = malloc(size > LARGE_BLOCK ? size : LARGE_BLOCK);
+    if (!next)
+        return false;
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; next += sizes[k++])
+        *arrays[k] = next;
+    programme->packed_index = (int *)next;
+    programme->packed_start = programme->packed_index + entries;
+    if (!narc_call_guarded(make_model, programme)) {
         narc_close_programme(programme);
         return false;
     }
@@ -53,16 +52,7 @@ bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_c
 }
 
 void narc_close_programme(narc_programme *programme) {
-    free(programme->objective);
-    free(programme->lower);
-    free(programme->upper);
-    free(programme->solution);
-    free(programme->row_lower);
-    free(programme->row_upper);
-    free(programme->entries);
-    free(programme->packed);
-    free(programme->packed_index);
-    free(programme->packed_start);
+    free(programme->memory);
     if (programme->model)
         Clp_deleteModel(programme->model);
     *programme = (narc_programme){0};

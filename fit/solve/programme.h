@@ -12,6 +12,7 @@
  * infinite. */
 typedef struct narc_programme {
     size_t columns, rows;
+    void *memory;                            /* of all arrays */
     double *objective, *lower, *upper;       /* of the columns */
     double *row_lower, *row_upper, *entries; /* entries[row * columns + column] */
     size_t row_capacity, loaded;             /* rows that the model has */

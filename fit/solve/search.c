@@ -99,10 +99,11 @@ static bool take_solution(const narc_search *search, const narc_chain *chain, na
 
 double narc_settle(narc_search *search, narc_chain *chain) {
     size_t count = narc_make_profile(chain, search->problem.hull, search->intervals);
-    const double least = narc_least_difference(search->intervals, count);
-    if (narc_must_bound(&search->problem) && least < 0) {
-        narc_offset_chain(chain, -least, search->problem.family == NARC_FIT_POLYGON);
+    narc_difference_range range = narc_find_range(search->intervals, count);
+    if (narc_must_bound(&search->problem) && range.least < 0) {
+        narc_offset_chain(chain, -range.least, search->problem.family == NARC_FIT_POLYGON);
         count = narc_make_profile(chain, search->problem.hull, search->intervals);
+        range = narc_find_range(search->intervals, count);
     }
     switch (search->problem.goal) {
     case NARC_FIT_BOUND_AREA:
@@ -114,8 +115,7 @@ double narc_settle(narc_search *search, narc_chain *chain) {
                    ? INFINITY
                    : narc_difference_area(chain, search->problem.hull, (narc_point){0, 0}, NULL);
     default:
-        return fmax(-narc_least_difference(search->intervals, count),
-                    narc_largest_difference(search->intervals, count));
+        return fmax(-range.least, range.largest);
     }
 }
 

@@ -16,11 +16,6 @@
 #include "outline/vector.h"
 #include "solve/flush.h"
 
-static int compare_numbers(const void *left, const void *right) {
-    const double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
 size_t narc_find_widest(const double *angles, size_t count, double *out_sweep) {
     size_t widest = 0;
     *out_sweep = 0;

@@ -12,6 +12,29 @@
 
 static const narc_point triangle[] = {{0.25, 0.5}, {3, 0.125}, {1, 2}};
 
+size_t stride(size_t step) { return test_trials(10) < 10 ? step : 1; }
+
+unsigned char *read_file(const char *name, size_t *out_size) {
+    FILE *file = fopen(name, "rb");
+    if (!file)
+        fail_msg("%s can't be read", name);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *out_size = (size_t)ftell(file);
+    rewind(file);
+    unsigned char *data = malloc(*out_size);
+    assert_non_null(data);
+    assert_int_equal(fread(data, 1, *out_size, file), *out_size);
+    fclose(file);
+    return data;
+}
+
+unsigned read_big_endian(const unsigned char *at, int size) {
+    unsigned value = 0;
+    for (int i = 0; i < size; i++)
+        value = value << 8 | at[i];
+    return value;
+}
+
 narc_path *make_path(void) {
     narc_path *path = NULL;
     assert_int_equal(narc_create_path(&path), NARC_OK);

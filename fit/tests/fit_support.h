@@ -12,6 +12,15 @@
 #include "narc_fit.h"
 #include "support.h"
 
+/* Where trials are few, of cases that take long only each `step`th is looked at: 1 otherwise. */
+size_t stride(size_t step);
+
+/* A whole file; to be freed. */
+unsigned char *read_file(const char *name, size_t *out_size);
+
+/* The number in `size` bytes, the most significant first. */
+unsigned read_big_endian(const unsigned char *at, int size);
+
 narc_path *make_path(void);
 
 /* Closed contours of straight lines. */

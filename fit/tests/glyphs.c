@@ -14,29 +14,6 @@
 static const char **files;
 static int file_count;
 
-struct font_file {
-    unsigned char *data;
-    size_t size;
-    narc_font *font;
-};
-
-static struct font_file open_font(const char *name) {
-    struct font_file file = {0};
-    FILE *stream = fopen(name, "rb");
-    if (!stream)
-        fail_msg("%s can't be read", name);
-    assert_int_equal(fseek(stream, 0, SEEK_END), 0);
-    file.size = (size_t)ftell(stream);
-    rewind(stream);
-    file.data = malloc(file.size);
-    assert_non_null(file.data);
-    assert_int_equal(fread(file.data, 1, file.size, stream), file.size);
-    fclose(stream);
-    narc_error error;
-    expect_ok(narc_open_font(file.data, file.size, &file.font, &error), &error);
-    return file;
-}
-
 static size_t count_characters(narc_font *font) {
     size_t count = 0;
     for (uint32_t c = narc_next_character(font, 0); c; c = narc_next_character(font, c))
@@ -101,14 +78,18 @@ static void fit_glyph(narc_font *font, uint32_t character, size_t arcs, struct t
 TEST(test_glyphs) {
     enum { ARCS = 8, USUAL = 12 };
     for (int k = 0; k < file_count; k++) {
-        struct font_file file = open_font(files[k]);
-        const size_t all = count_characters(file.font), some = test_trials(USUAL);
+        size_t size;
+        unsigned char *data = read_file(files[k], &size);
+        narc_font *font = NULL;
+        narc_error error;
+        expect_ok(narc_open_font(data, size, &font, &error), &error);
+        const size_t all = count_characters(font), some = test_trials(USUAL);
         const size_t step = some < all ? all / some : 1;
         struct tally tally = {.glyphs = 0};
         size_t index = 0;
-        for (uint32_t c = narc_next_character(file.font, 0); c; c = narc_next_character(file.font, c))
+        for (uint32_t c = narc_next_character(font, 0); c; c = narc_next_character(font, c))
             if (index++ % step == step / 2)
-                fit_glyph(file.font, c, ARCS, &tally);
+                fit_glyph(font, c, ARCS, &tally);
         assert_true(tally.glyphs > 0);
         printf("%s: %zu of %zu, area / hull's area on average %.4f, at most %.4f (U+%04X); glyphs by steps of %g:",
                files[k], tally.glyphs, all, tally.sum / (double)tally.glyphs, tally.worst,
@@ -116,8 +97,8 @@ TEST(test_glyphs) {
         for (int class = 0; class <= CLASSES; class ++)
             printf(" %zu", tally.count[class]);
         printf("\n");
-        narc_close_font(file.font);
-        free(file.data);
+        narc_close_font(font);
+        free(data);
     }
 }
 

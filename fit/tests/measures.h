@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * measures.h - what a fit must tell of itself, in double precision, the slow obvious way.
+ * measures.h - what a fit must tell of itself, in long double, the slow obvious way: it shares nothing with the library.
  */
 #ifndef NARC_TEST_MEASURES_H
 #define NARC_TEST_MEASURES_H
@@ -9,37 +9,43 @@
 
 #include "narc_fit.h"
 
+typedef long double real;
+
+typedef struct real_point {
+    real x, y;
+} real_point;
+
 /* A convex polygon, counter-clockwise; free `corners`. */
 struct reference_hull {
-    narc_point *corners;
+    real_point *corners;
     size_t count;
-    double area, perimeter;
-    double radius; /* the largest distance of a corner from the mean of all */
+    real area, perimeter;
+    real radius; /* the largest distance of a corner from the mean of all */
 };
 
-/* The hull of points less `origin`: going round, always to the point that has none to the right. */
+/* The hull of points less `origin`. */
 struct reference_hull reference_wrap(const narc_point *points, size_t count, narc_point origin);
 
 /* How far shapes reach in the direction of an angle: the largest of all their points. */
-double reference_hull_support(const struct reference_hull *hull, double angle);
-double reference_arcs_support(const narc_arc *arcs, size_t count, double angle);
+real reference_hull_support(const struct reference_hull *hull, real angle);
+real reference_arcs_support(const narc_arc *arcs, size_t count, real angle);
 
 /* The least and the largest of (support function of the arcs - that of the hull), sought over directions that hold all
  * normals of edges and junctions and many between, and refined between them. */
 struct reference_range {
-    double least, largest;
+    real least, largest;
 };
 struct reference_range reference_compare(const narc_arc *arcs, size_t count, const struct reference_hull *hull);
 
-/* By polygons with corners on the arcs, and Richardson's extrapolation. */
-double reference_area(const narc_arc *arcs, size_t count);
-double reference_perimeter(const narc_arc *arcs, size_t count);
+/* Of arcs and the lines between them. */
+real reference_area(const narc_arc *arcs, size_t count);
+real reference_perimeter(const narc_arc *arcs, size_t count);
 
 /* Mean over the outline of the distance to the hull's outline, by some ten thousand points. */
-double reference_mean_distance(const narc_arc *arcs, size_t count, const struct reference_hull *hull);
+real reference_mean_distance(const narc_arc *arcs, size_t count, const struct reference_hull *hull);
 
 /* Area of the symmetric difference, by `rays` strips from the hull's mean outwards. */
-double reference_difference(const narc_arc *arcs, size_t count, const struct reference_hull *hull, size_t rays);
+real reference_difference(const narc_arc *arcs, size_t count, const struct reference_hull *hull, size_t rays);
 
 /* The number of straight edges longer than `length`. */
 size_t reference_count_edges(const narc_arc *arcs, size_t count, double length);

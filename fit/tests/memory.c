@@ -162,13 +162,8 @@ static const char *font_name;
 TEST(test_fonts) {
     if (!CAN_FAIL || !font_name)
         skip();
-    FILE *file = fopen(font_name, "rb");
-    assert_non_null(file);
-    enum { MOST = 1 << 24 };
-    unsigned char *data = malloc(MOST);
-    assert_non_null(data);
-    const size_t size = fread(data, 1, MOST, file);
-    fclose(file);
+    size_t size;
+    unsigned char *data = read_file(font_name, &size);
     fail_all("font", read_glyph, &(struct bytes){data, size});
     free(data);
 }
@@ -280,7 +275,7 @@ TEST(test_fits) {
     if (!CAN_FAIL)
         skip();
     struct outline star = make_star();
-    for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k++) {
+    for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k += stride(4)) {
         char name[20];
         snprintf(name, sizeof name, "fit %zu", k);
         fail_all(name, fit_path, &(struct wanted){star.path, requests[k]});

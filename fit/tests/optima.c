@@ -68,10 +68,6 @@ TEST(test_polygons) {
     /* The least triangle around a square has twice its area. */
     struct outline square = make_box(1, 1);
     expect_exact("triangle around a square", fit_shape(&square, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, 3).area, 2);
-    /* And the paper's route starts from a polygon that bounds, and bounds. */
-    const narc_fit_result paper = fit_shape(&square, NARC_FIT_PAPER, NARC_FIT_BOUND_AREA, 4);
-    check_contained(&square, &paper, "paper");
-    assert_true(paper.area >= 1);
     free_outline(&square);
 }
 
@@ -84,6 +80,7 @@ TEST(test_circles) {
             for (int goal = NARC_FIT_BOUND_AREA; goal <= NARC_FIT_BOUND_PERIMETER; goal++) {
                 const narc_fit_result fit = fit_shape(&of, NARC_FIT_N_ARC, (narc_fit_goal)goal, arcs);
                 assert_int_equal(fit.arc_count, 1);
+                assert_true(fabs(fit.arcs[0].end - fit.arcs[0].start - 2 * PI) <= 1e-12);
                 if (!(fit.arcs[0].radius <= radius * (1 + CLOSE) && fit.arcs[0].radius >= radius * (1 - 1e-9)))
                     fail_msg("smallest circle: radius %.9g, known %.9g", fit.arcs[0].radius, radius);
             }
@@ -135,7 +132,7 @@ static double measure_four_arcs(const struct reference_hull *hull, int what, dou
     for (int k = 0; k <= DIRECTIONS; k++) {
         const double angle = PI / 2 * k / DIRECTIONS;
         const double center = angle <= f ? c * cos(angle) : s - d * sin(angle);
-        const double needed = reference_hull_support(hull, angle) - center;
+        const double needed = (double)reference_hull_support(hull, angle) - center;
         radius = fmax(radius, needed);
         least = fmin(least, needed);
     }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---------------------------------------------------------------------------- outlines */
 
@@ -183,6 +184,22 @@ double goal_value(const narc_fit_result *of, narc_fit_goal goal) {
     }
 }
 
+narc_error refuse_fit(const narc_path *path, narc_fit_request request, narc_status expected, const char *words) {
+    narc_fit_result fit, junk;
+    narc_error error = {0};
+    memset(&fit, 0x5a, sizeof fit);
+    memset(&junk, 0x5a, sizeof junk);
+    expect_error(narc_fit_path(path, &request, &fit, &error), expected, &error, words);
+    assert_memory_equal(&fit, &junk, sizeof fit);
+    return error;
+}
+
+narc_fit_result fit_and_check(const struct outline *of, narc_fit_request request) {
+    const narc_fit_result fit = fit_outline(of, request);
+    check_fit(of, &request, &fit);
+    return fit;
+}
+
 /* ---------------------------------------------------------------------------- checks */
 
 static size_t store(const narc_fit_result *fit, narc_arc out_arcs[NARC_MAX_ARCS]) {
@@ -196,32 +213,28 @@ static size_t store(const narc_fit_result *fit, narc_arc out_arcs[NARC_MAX_ARCS]
     return count;
 }
 
-static void expect_near(const char *name, const char *what, double told, double expected, double limit) {
-    if (!(fabs(told - expected) <= limit)) {
-        fail_msg("%s: %s is %.17g, expected %.17g, off by %.3g of %.3g", name, what, told, expected,
-                 fabs(told - expected), limit);
+static void expect_near(const char *name, const char *what, real told, real expected, real limit) {
+    if (!(fabsl(told - expected) <= limit)) {
+        fail_msg("%s: %s is %.17Lg, expected %.17Lg, off by %.3Lg of %.3Lg", name, what, told, expected,
+                 fabsl(told - expected), limit);
     }
 }
 
-/* Rounding of the reference's own numbers: some tens of roundings of the hull's size, the largest radius, and, since
- * points are taken less the origin, of how far away that is. */
-static double rounding_of(const narc_fit_result *fit, double size) {
-    double largest = size + fabs(fit->origin.x) + fabs(fit->origin.y);
-    for (size_t k = 0; k < fit->arc_count; k++)
-        largest = fmax(largest, fit->arcs[k].radius);
-    return 32 * 0x1p-52 * largest;
-}
-
-void check_contained(const struct outline *of, const narc_fit_result *fit, const char *what) {
+/* The least room of a point inside the shape that a store makes of the fit, seen from `origin`. */
+static real find_room(const struct outline *of, const narc_fit_result *fit) {
     narc_arc arcs[NARC_MAX_ARCS];
     const size_t count = store(fit, arcs);
     struct reference_hull points = reference_wrap(of->points, of->count, fit->origin);
-    const double least = reference_compare(arcs, count, &points).least;
-    if (!(least >= -rounding_of(fit, points.radius))) {
-        fail_msg("%s, %s, %zu arcs: a point is outside by %.3g of the size", of->name, what, fit->arc_count,
-                 -least / points.radius);
-    }
+    const real least = reference_compare(arcs, count, &points).least;
     free(points.corners);
+    return least;
+}
+
+void check_contained(const struct outline *of, const narc_fit_result *fit, const char *what) {
+    const real least = find_room(of, fit);
+    if (!(least > 0 && fit->clearance > 0 && fit->clearance <= least))
+        fail_msg("%s, %s, %zu arcs: the least room is %.3Lg, told %.3g", of->name, what, fit->arc_count, least,
+                 fit->clearance);
 }
 
 /* Through memory: GCC 12 may leave out a conversion there and back. */
@@ -241,7 +254,6 @@ static void check_family(const struct outline *of, const narc_fit_request *reque
     for (size_t k = 0; k < fit->arc_count; k++) {
         const narc_arc *arc = &fit->arcs[k];
         assert_true(is_single(arc->center_x) && is_single(arc->center_y) && is_single(arc->radius));
-        assert_true(request->family != NARC_FIT_POLYGON || arc->radius == 0);
     }
     if ((request->family == NARC_FIT_N_ARC || request->family == NARC_FIT_PAPER) && edges > 0)
         fail_msg("%s: an n-arc with %zu edges", of->name, edges);
@@ -250,67 +262,85 @@ static void check_family(const struct outline *of, const narc_fit_request *reque
 /* Centres and radii of a result are rounded to single precision, each by up to 2^-25 of itself: neighbours, two centres
  * and two radii, then miss each other by up to 2 (sqrt(2) + 1) 2^-25 of the largest. What is between them is
  * anybody's. */
-static double miss_of(const narc_fit_result *fit, double size) {
-    double largest = size;
+static real miss_of(const narc_fit_result *fit, real size) {
+    real largest = size;
     for (size_t k = 0; k < fit->arc_count; k++)
-        largest = fmax(largest, size + fit->arcs[k].radius);
-    return 0x1p-22 * largest;
+        largest = fmaxl(largest, size + fit->arcs[k].radius);
+    return 0x1p-22L * largest;
 }
 
-/* Measures of the shape itself; it is centred. */
-static void check_shape(const char *name, const narc_fit_result *fit, double size) {
-    const double area = reference_area(fit->arcs, fit->arc_count);
-    expect_near(name, "area", fit->area, area, 1e-9 * area);
-    const double perimeter = reference_perimeter(fit->arcs, fit->arc_count);
-    expect_near(name, "perimeter", fit->perimeter, perimeter, 1e-9 * perimeter);
-    narc_mass mass;
-    assert_true(narc_compute_mass(fit->arcs, fit->arc_count, &mass));
-    expect_near(name, "centroid x", mass.centroid_x, 0, miss_of(fit, size));
-    expect_near(name, "centroid y", mass.centroid_y, 0, miss_of(fit, size));
+/* The hull is that of the flattened curves, which are off by up to the flatness told. */
+static struct reference_hull wrap_outline(const struct outline *of, const narc_fit_request *request,
+                                          const narc_fit_result *fit, const char *name) {
+    narc_contours contours;
+    narc_error error = {0};
+    expect_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
+    if (request->arc_count)
+        expect_near(name, "flatness", fit->flatness, contours.flatness, 1e-3L * contours.flatness);
+    const struct reference_hull hull = reference_wrap(contours.points, contours.point_count, fit->origin);
+    narc_release_contours(&contours);
+    return hull;
+}
+
+static void describe(char *out, size_t size, const struct outline *of, const narc_fit_request *request) {
+    snprintf(out, size, "%s, family %d, goal %d, %zu arcs, tolerance %g", of->name, (int)request->family,
+             (int)request->goal, request->arc_count, request->tolerance);
+}
+
+void check_fit(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit) {
+    char name[160];
+    describe(name, sizeof name, of, request);
+    check_family(of, request, fit);
+    struct reference_hull hull = wrap_outline(of, request, fit, name);
+    /* Corners of the hull that are closer than 1e-10 of its size are one to the library. */
+    const real size = hull.radius, off = fit->flatness + 1e-9L * size;
+    assert_true(fit->seconds >= 0);
+    assert_true(of->curved || fit->flatness == 0);
+    expect_near(name, "hull's perimeter", fit->hull_perimeter, hull.perimeter, 8 * off);
+    expect_near(name, "hull's area", fit->hull_area, hull.area, hull.perimeter * off);
+    const real area = reference_area(fit->arcs, fit->arc_count);
+    expect_near(name, "area", fit->area, area, 1e-9L * area);
+    const real perimeter = reference_perimeter(fit->arcs, fit->arc_count);
+    expect_near(name, "perimeter", fit->perimeter, perimeter, 1e-9L * perimeter);
+    const struct reference_range range = reference_compare(fit->arcs, fit->arc_count, &hull);
+    expect_near(name, "largest distance", fit->max_distance, fmaxl(-range.least, range.largest),
+                off + miss_of(fit, size));
+    assert_true(request->arc_count || fit->max_distance + fit->flatness <= request->tolerance);
+    if (request->goal <= NARC_FIT_BOUND_DISTANCE)
+        check_contained(of, fit, name);
+    free(hull.corners);
 }
 
 void check_fit_result(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit) {
     const bool bound = request->goal <= NARC_FIT_BOUND_DISTANCE;
-    char name[120];
-    snprintf(name, sizeof name, "%s, family %d, goal %d, %zu arcs", of->name, (int)request->family, (int)request->goal,
-             request->arc_count);
-    check_family(of, request, fit);
-    /* The hull is that of the flattened curves, which are off by up to the flatness told. */
-    narc_contours contours;
-    narc_error error = {0};
-    expect_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
-    struct reference_hull hull = reference_wrap(contours.points, contours.point_count, fit->origin);
-    const double rounding = rounding_of(fit, hull.radius), size = hull.radius;
-    const double miss = miss_of(fit, size), closure = miss * hull.perimeter;
-    assert_true(fit->seconds >= 0);
-    expect_near(name, "flatness", fit->flatness, contours.flatness, 1e-3 * contours.flatness);
-    assert_true(of->curved || fit->flatness == 0);
-    expect_near(name, "hull's perimeter", fit->hull_perimeter, hull.perimeter, 8 * (fit->flatness + rounding));
-    expect_near(name, "hull's area", fit->hull_area, hull.area, hull.perimeter * (fit->flatness + rounding));
-    check_shape(name, fit, size);
-    const struct reference_range range = reference_compare(fit->arcs, fit->arc_count, &hull);
-    expect_near(name, "largest distance", fit->max_distance, fmax(-range.least, range.largest), fit->flatness + miss);
+    char name[160];
+    check_fit(of, request, fit);
+    describe(name, sizeof name, of, request);
+    struct reference_hull hull = wrap_outline(of, request, fit, name);
+    const real size = hull.radius, miss = miss_of(fit, size), closure = miss * hull.perimeter;
+    narc_mass mass;
+    assert_true(narc_compute_mass(fit->arcs, fit->arc_count, &mass));
+    for (size_t k = 0; k < fit->arc_count; k++)
+        assert_true(request->family != NARC_FIT_POLYGON || fit->arcs[k].radius == 0);
+    expect_near(name, "centroid x", mass.centroid_x, 0, miss);
+    expect_near(name, "centroid y", mass.centroid_y, 0, miss);
     /* Ten thousand points here, a thousand there. */
-    const double mean = reference_mean_distance(fit->arcs, fit->arc_count, &hull);
-    expect_near(name, "mean distance", fit->mean_distance, mean, 1e-2 * mean + fit->flatness + 1e-6 * size);
+    const real mean = reference_mean_distance(fit->arcs, fit->arc_count, &hull);
+    expect_near(name, "mean distance", fit->mean_distance, mean, 1e-2L * mean + fit->flatness + 1e-6L * size);
     if (bound) {
-        check_contained(of, fit, name);
-        assert_true(fit->clearance >= 0);
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = store(fit, arcs);
-        const double least = reference_compare(arcs, count, &hull).least - fit->flatness;
-        /* Certified: what is told is no more than what there is; and not much less, since a sector is known to 2^-21,
-         * which moves the end of an edge or a corner by that part of its length. */
-        assert_true(fit->clearance <= least + rounding);
-        expect_near(name, "clearance", fit->clearance, least, 2 * 0x1p-21 * 4 * size + rounding);
+        const real least = reference_compare(arcs, count, &hull).least - fit->flatness;
+        /* What is told is not much less than what there is, since a sector is known to 2^-21, which moves the end of an
+         * edge or a corner by that part of its length. */
+        expect_near(name, "clearance", fit->clearance, least, 2 * 0x1p-21L * 4 * size);
         /* Nothing of the hull is outside. */
         expect_near(name, "difference of a bound", fit->difference_area, fit->area - fit->hull_area,
-                    closure + hull.perimeter * (fit->flatness + rounding));
+                    closure + hull.perimeter * (fit->flatness + 1e-9L * size));
     } else {
-        const double difference = reference_difference(fit->arcs, fit->arc_count, &hull, 4000);
+        const real difference = reference_difference(fit->arcs, fit->arc_count, &hull, 4000);
         expect_near(name, "difference", fit->difference_area, difference,
-                    2e-3 * difference + 1e-6 * hull.area + closure + hull.perimeter * fit->flatness);
+                    2e-3L * difference + 1e-6L * hull.area + closure + hull.perimeter * fit->flatness);
     }
     free(hull.corners);
-    narc_release_contours(&contours);
 }

@@ -42,13 +42,19 @@ struct outline make_moved(const struct outline *of, double scale, double angle, 
 narc_fit_result fit_outline(const struct outline *of, narc_fit_request request);
 narc_fit_result fit_shape(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs);
 
+/* A fit ends with this error, in these words, and leaves its result as it was. Returns the error. */
+narc_error refuse_fit(const narc_path *path, narc_fit_request request, narc_status expected, const char *words);
+
 /* What the goal makes least. */
 double goal_value(const narc_fit_result *of, narc_fit_goal goal);
 
-/* Fails the test unless the shape that a store makes of the fit holds all points. */
+/* Fails the test unless the shape that a store makes of the fit holds all points, with the clearance that is told. */
 void check_contained(const struct outline *of, const narc_fit_result *fit, const char *what);
 
-/* Every field against the reference, and what family and goal promise. */
+/* Areas, perimeters, largest distance and clearance against the reference, and what family and goal promise; and every
+ * field, of outlines that are not thin. */
+void check_fit(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit);
+narc_fit_result fit_and_check(const struct outline *of, narc_fit_request request);
 void check_fit_result(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit);
 
 #endif

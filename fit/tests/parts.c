@@ -41,8 +41,8 @@ static walls wall_in(const narc_fit_result *fit) {
     for (size_t k = 0; k < DIRECTIONS; k++) {
         const double angle = k < 96 ? 2 * PI * (double)k / 96 : fit->arcs[k % fit->arc_count].start;
         made.normals[k] = (narc_point){cos(angle), sin(angle)};
-        made.supports[k] = reference_arcs_support(fit->arcs, fit->arc_count, angle) + fit->origin.x * cos(angle) +
-                           fit->origin.y * sin(angle);
+        made.supports[k] = (double)reference_arcs_support(fit->arcs, fit->arc_count, angle) +
+                           fit->origin.x * cos(angle) + fit->origin.y * sin(angle);
     }
     return made;
 }

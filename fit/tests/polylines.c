@@ -97,13 +97,10 @@ static void check_arcs(const narc_arc_chains *chains) {
 
 /* How many arcs and lines, which join, and with a common tangent but at `corners` places. */
 static size_t fit_ring(const char *name, const narc_point *points, size_t count, double tolerance, size_t corners) {
-    narc_path *path = NULL;
+    narc_path *path = make_path();
     narc_error error;
     narc_arc_chains chains;
-    assert_int_equal(narc_create_path(&path), NARC_OK);
-    narc_move_to(path, points[0], NULL);
-    for (size_t k = 1; k < count; k++)
-        narc_line_to(path, points[k], NULL);
+    draw_polygon(path, points, count);
     if (narc_fit_chains(path, tolerance, false, &chains, &error) != NARC_OK)
         fail_msg("%s: %s", name, error.message);
     assert_int_equal(chains.count, 1);
@@ -149,7 +146,7 @@ TEST(test_smooth_rings) {
 /* Sides of many lines are one line each, wherever the chain begins. */
 TEST(test_square) {
     static const narc_point corners[] = {{0, 0}, {3, 1}, {2, 4}, {-1, 3}};
-    for (size_t first = 0; first < COUNT; first += 75) {
+    for (size_t first = 0; first < COUNT; first += 75 * stride(4)) {
         narc_point points[COUNT];
         for (size_t k = 0; k < COUNT; k++) {
             const size_t place = (k + first + 7) % COUNT, side = place / (COUNT / 4);
@@ -186,7 +183,7 @@ TEST(test_random_rings) {
 /* Lines that are nearly one, and arcs that are nearly lines: the chain keeps the tolerance, and the store takes it. */
 TEST(test_flat_chains) {
     static const double tolerances[] = {0.3, 0.01, 1e-4};
-    for (int bow = 0; bow < 14; bow++) {
+    for (int bow = 0; bow < 14; bow += (int)stride(3)) {
         const double depth = (bow % 2 ? -1 : 1) * 2 * pow(10, -bow / 2); /* from 2 % of the length to less than 1e-7 */
         narc_point points[103];
         for (size_t k = 0; k <= 100; k++)
@@ -237,17 +234,18 @@ TEST(test_near_contours) {
         double phase[6];
         for (int w = 0; w < 6; w++)
             phase[w] = 2 * PI * random_unit(&random);
-        narc_path *path = NULL;
-        assert_int_equal(narc_create_path(&path), NARC_OK);
-        for (int inner = 0; inner < 2; inner++)
+        narc_path *path = make_path();
+        for (int inner = 0; inner < 2; inner++) {
+            narc_point points[SIDES];
             for (size_t k = 0; k < SIDES; k++) {
                 const double a = 2 * PI * ((double)k + 0.37 * inner) / SIDES;
                 double r = inner ? 1 - gap - 1e-4 : 1; /* chords are nearer by less than 1e-4 */
                 for (int w = 0; w < 6; w++)
                     r += 0.15 / (w + 1) * cos((w + 1) * a + phase[w]);
-                const narc_point p = {4 * r * cos(a), 4 * r * sin(a)};
-                assert_int_equal(k ? narc_line_to(path, p, NULL) : narc_move_to(path, p, NULL), NARC_OK);
+                points[k] = (narc_point){4 * r * cos(a), 4 * r * sin(a)};
             }
+            draw_polygon(path, points, SIDES);
+        }
         narc_arc_chains chains;
         narc_error error;
         expect_ok(narc_fit_chains(path, tolerance, false, &chains, &error), &error);
@@ -322,15 +320,12 @@ TEST(test_crossings) {
                  {box, beside, 4, NULL},
                  {box, across, 4, NULL}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        narc_path *path = NULL;
+        narc_path *path = make_path();
         narc_arc_chains chains;
         narc_error error;
-        assert_int_equal(narc_create_path(&path), NARC_OK);
-        for (int c = 0; c < (cases[k].second ? 2 : 1); c++)
-            for (size_t i = 0; i < cases[k].count; i++) {
-                const narc_point p = c ? cases[k].second[i] : cases[k].first[i];
-                assert_int_equal(i ? narc_line_to(path, p, NULL) : narc_move_to(path, p, NULL), NARC_OK);
-            }
+        draw_polygon(path, cases[k].first, cases[k].count);
+        if (cases[k].second)
+            draw_polygon(path, cases[k].second, cases[k].count);
         const narc_status status = narc_fit_chains(path, 0.05, false, &chains, &error);
         if (cases[k].message)
             expect_error(status, NARC_ERROR_NOT_SIMPLE, &error, cases[k].message);

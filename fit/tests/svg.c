@@ -50,9 +50,6 @@ static double find_support(const narc_point *points, size_t count, double angle)
     return most;
 }
 
-/* Each drawing takes a tenth of a second: where trials are few, every fourth case. */
-static size_t every(void) { return test_trials(10) < 10 ? 4 : 1; }
-
 /* ---------------------------------------------------------------------------- how near the outline is */
 
 /* Ink whose hull is that of discs with one radius round some points; y up. */
@@ -206,7 +203,7 @@ struct seen {
 };
 
 static void expect_seen(const struct seen *cases, size_t count) {
-    for (size_t k = 0; k < count; k += every()) {
+    for (size_t k = 0; k < count; k += stride(4)) {
         const struct seen *c = &cases[k];
         narc_contours contours = read_contours(c->attributes, c->body);
         const double sides[4] = {c->right, c->top, -c->left, -c->bottom};
@@ -301,7 +298,7 @@ TEST(leaves_out_faint_shadows) {
          "<rect x='30' y='22' width='40' height='20' filter='url(#f)' opacity='%g'/>",
          0.24, 73},
     };
-    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += every()) {
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += stride(4)) {
         char body[600];
         const double opacity = cases[k].opacity;
         snprintf(body, sizeof body, cases[k].shadow, opacity);
@@ -312,7 +309,7 @@ TEST(leaves_out_faint_shadows) {
         assert_true(fabs(reach.y + 20) <= near);
         reach = measure_reach(body, (narc_image_request){.threshold = 0.005});
         assert_true(reach.x > cases[k].right - near);
-        if (every() > 1 || strstr(body, "Blur")) /* which takes seconds to draw */
+        if (stride(4) > 1 || strstr(body, "Blur")) /* which takes seconds to draw */
             continue;
         reach = measure_reach(body, (narc_image_request){.threshold = opacity + 0.01});
         assert_true(fabs(reach.x - 50) <= near);
@@ -331,7 +328,7 @@ TEST(leaves_out_faint_shadows) {
 /* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
 TEST(keeps_strong_ink_at_any_threshold) {
     static const char body[] = "<path d='M20 20H80L50 76z'/><path d='M10 90L90 79V90z'/>";
-    for (double threshold = 0.05; threshold < 1; threshold += 0.15 * (double)every()) {
+    for (double threshold = 0.05; threshold < 1; threshold += 0.15 * (double)stride(4)) {
         const narc_point reach = measure_reach(body, (narc_image_request){.threshold = threshold});
         assert_true(fabs(reach.x - 90) <= 1.001 * 80 / 4096 && fabs(reach.y + 20) <= 1.001 * 80 / 4096);
     }
@@ -346,22 +343,29 @@ TEST(takes_dark_and_light) {
     static const char on_nothing[] = "<rect x='20' y='20' width='30' height='30' fill='black'/><rect x='60' y='60' "
                                      "width='10' height='10' fill='white'/>";
     static const double pixel = 100.0 / 4096;
-    bool whole = false;
-    narc_point reach = measure_reach(on_white, (narc_image_request){.out_whole = &whole});
-    assert_true(whole && fabs(reach.x - 100) <= pixel && fabs(reach.y) <= pixel);
-    reach = measure_reach(on_white, (narc_image_request){NARC_SILHOUETTE_DARK, .out_whole = &whole});
-    assert_true(!whole && fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
-    reach = measure_reach(on_black, (narc_image_request){NARC_SILHOUETTE_LIGHT, .out_whole = &whole});
-    assert_true(!whole && fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
-    reach = measure_reach(on_black, (narc_image_request){NARC_SILHOUETTE_DARK, .threshold = 0.1});
-    assert_true(fabs(reach.x - 100) <= pixel);
-    reach = measure_reach(on_nothing, (narc_image_request){.silhouette = NARC_SILHOUETTE_DARK});
-    assert_true(fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
-    reach = measure_reach(on_nothing, (narc_image_request){.silhouette = NARC_SILHOUETTE_LIGHT});
-    assert_true(fabs(reach.x - 70) <= pixel && fabs(reach.y + 60) <= pixel);
-    whole = true;
-    measure_reach(square, (narc_image_request){.out_whole = &whole});
-    assert_false(whole);
+    const struct {
+        const char *body;
+        narc_silhouette silhouette;
+        double threshold;
+        bool whole;
+        narc_point reach;
+    } cases[] = {
+        {on_white, NARC_SILHOUETTE_ALPHA, 0, true, {100, 0}},
+        {on_white, NARC_SILHOUETTE_DARK, 0, false, {50, -20}},
+        {on_black, NARC_SILHOUETTE_LIGHT, 0, false, {50, -20}},
+        {on_black, NARC_SILHOUETTE_DARK, 0.1, true, {100, 0}},
+        {on_nothing, NARC_SILHOUETTE_DARK, 0, false, {50, -20}},
+        {on_nothing, NARC_SILHOUETTE_LIGHT, 0, false, {70, -60}},
+        {square, NARC_SILHOUETTE_ALPHA, 0, false, {50, -20}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k += stride(3)) {
+        bool whole = !cases[k].whole;
+        const narc_point reach = measure_reach(
+            cases[k].body, (narc_image_request){cases[k].silhouette, cases[k].threshold, .out_whole = &whole});
+        if (whole != cases[k].whole || !(fabs(reach.x - cases[k].reach.x) <= pixel) ||
+            !(fabs(reach.y - cases[k].reach.y) <= pixel))
+            fail_msg("case %zu: the outline reaches to %g, %g, whole: %d", k, reach.x, reach.y, whole);
+    }
 }
 
 /* Text too large for FreeType is left out, and no later text suffers for it, in this file or in the next. Without a font
@@ -399,7 +403,7 @@ TEST(tells_what_is_wrong) {
         {"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9e9 9e9'><circle r='8e9'/></svg>", NARC_ERROR_SIZE, 0,
          "coordinates reach up to 1e+09"},
     };
-    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k += stride(5)) {
         const struct wrong *w = &wrong[k];
         expect_wrong_text(read_usual, w->text, strlen(w->text), w->status, w->line, w->words);
     }
@@ -424,7 +428,7 @@ TEST(tells_what_is_wrong) {
          NARC_ERROR_FORMAT,
          "the SVG file has nothing light above the threshold 0.25"},
     };
-    for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k++)
+    for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k += stride(3))
         expect_error(narc_read_svg(faint, sizeof faint - 1, &requests[k].request, path, &error), requests[k].status,
                      &error, requests[k].words);
     narc_destroy_path(path);
@@ -453,7 +457,7 @@ TEST(reads_no_other_file) {
     fclose(file);
     char folder[2000], place[2200], text[2600];
     assert_non_null(getcwd(folder, sizeof folder));
-    for (size_t k = 0; k < 2 * sizeof cases / sizeof cases[0]; k++) {
+    for (size_t k = 0; k < 2 * sizeof cases / sizeof cases[0]; k += stride(7)) {
         snprintf(place, sizeof place, "%s%s%s%s", k % 2 ? "file://" : "", k % 2 ? folder : "", k % 2 ? "/" : "", name);
         const char *format = cases[k / 2].format, *hole = strstr(format, "%s");
         const int size = snprintf(text, sizeof text, "%.*s%s%s", (int)(hole - format), format, place, hole + 2);

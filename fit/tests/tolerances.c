@@ -17,11 +17,9 @@ static bool count_report(size_t done, size_t total, void *context) {
 /* Returns the distance that the error tells. */
 static double refuse(const struct outline *of, narc_fit_request request, const char *words, size_t most_reports) {
     size_t reports = 0;
-    narc_fit_result fit;
-    narc_error error = {0};
     request.progress = count_report;
     request.context = &reports;
-    expect_error(narc_fit_path(of->path, &request, &fit, &error), NARC_ERROR_NO_SOLUTION, &error, words);
+    const narc_error error = refuse_fit(of->path, request, NARC_ERROR_NO_SOLUTION, words);
     if (!(reports <= most_reports))
         fail_msg("%s, tolerance %g: %zu reports, at most %zu", of->name, request.tolerance, reports, most_reports);
     assert_true(error.value > request.tolerance);

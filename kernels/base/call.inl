@@ -28,6 +28,11 @@ struct call {
     struct queue *concave;           /* rows, with pieces: where pairs with a concave arc wait; else NULL */
 };
 
+/* Are there pieces of chains, and are they asked of as such? */
+static inline bool has_pieces(const narc_batch *batch) {
+    return NARC_PIECES && !batch->of_casts && batch->shapes->piece_count > 0;
+}
+
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */
 INLINE char *choose(bool first, char *a, char *b) {
     const uintptr_t mask = (uintptr_t)0 - first;

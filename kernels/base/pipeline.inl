@@ -182,11 +182,6 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         run_stages(call, course, queues, true);
 }
 
-/* Are there pieces of chains, and are they asked of as such? */
-static inline bool has_pieces(const narc_batch *batch) {
-    return NARC_PIECES && !batch->of_casts && batch->shapes->piece_count > 0;
-}
-
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                          uint64_t *out_bits) {
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
@@ -195,20 +190,6 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
                          .count = count,
                          .skipped = skipped,
                          .bits = out_bits,
-                         .pieces = has_pieces(batch)};
-}
-
-static inline struct call begin_rows(const struct question *question, const narc_batch *batch, size_t first,
-                                     size_t count, size_t *skipped, const narc_rows *out, struct rows *rows) {
-    start_rows(rows, count, out, batch->query->dense != 0);
-    return (struct call){.batch = batch,
-                         .first = first,
-                         .count = count,
-                         .skipped = skipped,
-                         .margin = batch->query->margin,
-                         .margins = batch->query->margins,
-                         .question = question,
-                         .rows = rows,
                          .pieces = has_pieces(batch)};
 }
 

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -37,6 +38,20 @@ INLINE void start_rows(struct rows *rows, size_t count, const narc_rows *out, bo
     rows->done = rows->listed = 0;
     rows->without = 0;
     memset(rows->known, 0, (count + 63) / 64 * 64);
+}
+
+static inline struct call begin_rows(const struct question *question, const narc_batch *batch, size_t first,
+                                     size_t count, size_t *skipped, const narc_rows *out, struct rows *rows) {
+    start_rows(rows, count, out, batch->query->dense != 0);
+    return (struct call){.batch = batch,
+                         .first = first,
+                         .count = count,
+                         .skipped = skipped,
+                         .margin = batch->query->margin,
+                         .margins = batch->query->margins,
+                         .question = question,
+                         .rows = rows,
+                         .pieces = has_pieces(batch)};
 }
 
 /* The place of a call's pair. */
@@ -81,9 +96,83 @@ INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
     rows->listed += COUNT_BITS(kept);
 }
 
+/* ------------------------------------------------------------------------------------------------ writing */
+
+/* Bytes of a contact's members: eight words from there to the end, behind the pair. */
+enum { CONTACT_WORDS = offsetof(narc_contact, feature) };
+_Static_assert(sizeof(narc_contact) == 36 && CONTACT_WORDS == 4, "two writes of four words follow the pair");
+
+INLINE void write_contacts(char *const *place, vi numbers, const struct answer *answer) {
+    const vf front[4] = {v_of_bits(pack_halves(answer->feature, vi_set(1))), answer->separation, answer->normal.x,
+                         answer->normal.y};
+    const vf rest[4] = {answer->point.x, answer->point.y, answer->radius_a, answer->radius_b};
+    int32_t number[V_WIDTH];
+    vi_store(number, numbers);
+    v_put_rows(place, CONTACT_WORDS, front);
+    v_put_rows(place, CONTACT_WORDS + 16, rest);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        memcpy(place[lane], &number[lane], sizeof number[lane]);
+}
+
+static inline void write_no_contact(char *place, uint32_t pair, float separation) {
+    const narc_contact contact = {.pair = pair, .separation = separation};
+    memcpy(place, &contact, sizeof contact);
+}
+
+/* Bytes of a manifold's members. */
+enum {
+    RADII = offsetof(narc_manifold, radius_a),
+    FIRST_POINT = offsetof(narc_manifold, point),
+    SECOND_POINT = FIRST_POINT + sizeof(narc_manifold_point)
+};
+_Static_assert(sizeof(narc_manifold) == 64 && RADII == 16 && FIRST_POINT == 32, "four writes of four words");
+
+/* What a manifold says of its points. */
+struct manifold_points {
+    vi count;
+    vf radius_a, radius_b, first[4], second[4];
+};
+
+INLINE void write_manifolds(char *const *place, vi numbers, const struct answer *answer,
+                            const struct manifold_points *points) {
+    const vf head[4] = {v_of_bits(numbers), v_of_bits(points->count), answer->normal.x, answer->normal.y};
+    const vf radii[4] = {points->radius_a, points->radius_b, v_of_bits(answer->reach_a), v_of_bits(answer->reach_b)};
+    v_put_rows(place, 0, head);
+    v_put_rows(place, RADII, radii);
+    v_put_rows(place, FIRST_POINT, points->first);
+    v_put_rows(place, SECOND_POINT, points->second);
+}
+
+INLINE void write_separations(char *const *place, vf separations) {
+    float separation[V_WIDTH];
+    v_store(separation, separations);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        memcpy(place[lane], &separation[lane], sizeof separation[lane]);
+}
+
+/* Writes rows of one point, of the kind that the question has: each is compiled into what finds answers, as a call would
+ * pass vectors in memory. */
+INLINE void write_rows(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
+    const enum row_kind kind = call->question->kind;
+    if (kind == CONTACT_ROWS) {
+        write_contacts(place, numbers, answer);
+    } else if (NARC_SMALL || kind == MANIFOLD_ROWS) {
+        const vf zero = v_set(0);
+        const struct manifold_points only = {
+            .count = vi_set(1),
+            .radius_a = answer->radius_a,
+            .radius_b = answer->radius_b,
+            .first = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)},
+            .second = {zero, zero, zero, zero}};
+        write_manifolds(place, numbers, answer, &only);
+    } else {
+        write_separations(place, answer->separation);
+    }
+}
+
 /* Lists the rows of pairs in the lanes `keep` behind those that are listed, where there is room for all lanes: packed, so
  * that their places follow each other. What is written behind the last one is overwritten. */
-INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer, row_writer *write) {
+INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
     struct rows *rows = call->rows;
     const vp packing = vm_packing(keep);
     const vi numbers = vi_bits(v_pack(packing, v_of_bits(find_numbers(call, pairs))));
@@ -96,9 +185,11 @@ INLINE void append_answers(const struct call *call, vi pairs, vm keep, const str
     char *place[V_WIDTH];
     for (int lane = 0; lane < V_WIDTH; lane++)
         place[lane] = rows->out.base + (rows->listed + lane) * rows->out.stride;
-    write(call, place, numbers, &packed, NULL);
+    write_rows(call, place, numbers, &packed);
     rows->listed += COUNT_BITS(vm_bits(keep));
 }
+
+/* ------------------------------------------------------------------------------------------------ pairs without a row */
 
 /* With an infinite margin every pair has a row. Writes that of pairs without an answer, in the lanes `which`. */
 INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {

@@ -9,7 +9,7 @@
  * at F, a kink at G, and a corner against a corner in each of the intervals; their signs and values are computed as
  * the formula computes them. What it looks at elsewhere is less, or rises or falls throughout: docs/algorithm.md,
  * section 9. Where signs contradict each other, and where a corner may just as well be in the next interval, the fan is
- * walked (box_walk.inl).
+ * walked (box_walk.c).
  */
 #ifndef NARC_BOX_BOX_CONTACT_INL
 #define NARC_BOX_BOX_CONTACT_INL
@@ -19,6 +19,7 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "box/box_pairs.inl"
+#include "kernels.h"
 #include "simd/simd.h"
 
 /* A pair in each lane, as it lies in the queue: registers are too few to hold it. */
@@ -194,6 +195,31 @@ INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_
     const struct box_side b = find_closest_side(pair, corner_b, contact->normal, true);
     contact->a = select_box_side(which, &a, &contact->a);
     contact->b = select_box_side(which, &b, &contact->b);
+}
+
+/* The deciding formula, for pairs that more than two edges may answer (box_walk.c): the largest gap, with a normal of unit
+ * length, and the numbers of the corners in place of records. */
+void NARC_NAMED(walk_boxes)(const struct box_pair *pair, struct gap *out_best);
+void NARC_NAMED(walk_capsules)(const struct box_pair *pair, struct gap *out_best);
+
+/* How the boxes of a pair touch, in the lanes `open`. */
+INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {
+    vm left, corners;
+    struct box_contact c = find_facing(pair, &left, &corners);
+    left = vm_and(open, left);
+    if (vm_any(vm_or(left, vm_and(open, corners)))) {
+        vi corner_a = find_box_touching(&c.a), corner_b = find_box_touching(&c.b);
+        if (vm_any(left)) {
+            struct gap gap;
+            NARC_NAMED(walk_boxes)(pair, &gap);
+            c.separation = v_select(left, gap.separation, c.separation);
+            c.normal = v2_select(left, gap.normal, c.normal);
+            corner_a = vi_select(left, gap.record_a, corner_a);
+            corner_b = vi_select(left, gap.record_b, corner_b);
+        }
+        find_closest_sides(pair, vm_or(left, corners), corner_a, corner_b, &c);
+    }
+    return c;
 }
 
 #endif

@@ -19,8 +19,10 @@
 #include "kernels.h"
 #include "simd/simd.h"
 
-INLINE void start_boxes(struct call *call, struct box_queue queues[BOX_QUEUES]) {
+INLINE void start_boxes(struct call *call, struct box_queue queues[BOX_QUEUES], box_stage *boxes, box_stage *capsules) {
     queues[OF_BOXES].count = queues[OF_CAPSULES].count = 0;
+    queues[OF_BOXES].answer = boxes;
+    queues[OF_CAPSULES].answer = capsules;
     call->boxes = queues;
 }
 
@@ -31,8 +33,7 @@ INLINE bool boxes_wait(const struct call *call) {
 /* Takes pairs of boxes or capsules, of those in the lanes `open`, and answers them a few vectors at a time. Returns the
  * other lanes. `number`: of the first pair. */
 INLINE vm take_detour(const struct call *call, const struct pair_indices *indices, int k,
-                      const struct placement *placement, vm open, int32_t number,
-                      box_stage *const answers[BOX_QUEUES]) {
+                      const struct placement *placement, vm open, int32_t number) {
     const narc_box_form *forms = call->batch->shapes->boxes;
     struct box_queue *const boxes = &call->boxes[OF_BOXES], *const capsules = &call->boxes[OF_CAPSULES];
     const struct box_form a = load_box_forms(forms, indices->shape_a + k);
@@ -51,16 +52,16 @@ INLINE vm take_detour(const struct call *call, const struct pair_indices *indice
     else if (call->rows && !vm_any(left) && !call->rows->dense && call->rows->done == number)
         call->rows->done += V_WIDTH;
     if (boxes->count >= BOX_FLUSH)
-        run_boxes(call, answers[OF_BOXES], boxes, false);
+        run_boxes(call, boxes, false);
     if (capsules->count >= BOX_FLUSH)
-        run_boxes(call, answers[OF_CAPSULES], capsules, false);
+        run_boxes(call, capsules, false);
     return left;
 }
 
 /* Answers all that wait. */
-INLINE void end_boxes(const struct call *call, box_stage *const answers[BOX_QUEUES]) {
+INLINE void end_boxes(const struct call *call) {
     for (int kind = 0; kind < BOX_QUEUES; kind++)
-        run_boxes(call, answers[kind], &call->boxes[kind], true);
+        run_boxes(call, &call->boxes[kind], true);
 }
 
 #endif

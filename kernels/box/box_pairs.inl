@@ -15,7 +15,7 @@
  * Is the formula's answer there, for certain? Yes if `best`, the largest value, exceeds two slacks, or exceeds those of
  * the six other junctions by two slacks; and if every half size exceeds two slacks, so that at each junction the slope
  * of g drops by four or more. docs/algorithm.md, section 9, proves it. Other pairs are walked around all of the fan
- * (box_walk.inl), and boxes with a side that short are left to the other stages, as are those whose size may be out of
+ * (box_walk.c), and boxes with a side that short are left to the other stages, as are those whose size may be out of
  * range. Apart: if best exceeds the radii, the margin and one slack (certificates.inl, 1). Colliding: if best is below
  * minus a slack, as a corner faces a corner only where sharp boxes are apart.
  */
@@ -58,6 +58,7 @@ enum { BOX_FLUSH = 32, BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
 struct box_queue {
     _Alignas(64) float item[BOX_FIELDS][BOX_CAPACITY];
     int count;
+    box_stage *answer;
 };
 
 /* Appends the lanes `keep` of `item`. */
@@ -70,12 +71,12 @@ INLINE void push_boxes(struct box_queue *queue, vm keep, const vf item[BOX_FIELD
 }
 
 /* Takes as many whole vectors as there are, from the front so that the order stays; at the `end` all. */
-INLINE void run_boxes(const struct call *call, box_stage *answer, struct box_queue *queue, bool end) {
+INLINE void run_boxes(const struct call *call, struct box_queue *queue, bool end) {
     int k = 0;
     for (int f = 0; f < BOX_FIELDS && end; f++)
         v_store(queue->item[f] + queue->count, v_set(0));
     for (; end ? k < queue->count : k + V_WIDTH <= queue->count; k += V_WIDTH)
-        answer(call, queue, k, queue->count - k < V_WIDTH ? queue->count - k : V_WIDTH);
+        queue->answer(call, queue, k, queue->count - k < V_WIDTH ? queue->count - k : V_WIDTH);
     for (int f = 0; f < BOX_FIELDS && k < queue->count; f++)
         v_store(queue->item[f], v_load(queue->item[f] + k));
     queue->count = k < queue->count ? queue->count - k : 0;

@@ -20,7 +20,6 @@
 #include "base/vec2.inl"
 #include "box/box_contact.inl"
 #include "box/box_pairs.inl"
-#include "box/box_walk.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
 #include "sat/manifold_edges.inl"
@@ -149,7 +148,7 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 
 /* Answers the pairs k ... of a queue. `edges`: are second points asked for? */
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
-                         row_writer *write, bool edges) {
+                         bool edges) {
     const struct box_pair pair = {queue, k, capsules};
     const vi pairs = vi_bits(get_box_field(&pair, BOX_PAIR));
     const vf margin = find_margins(call, pairs);
@@ -176,9 +175,10 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
         const struct sides sides = find_box_sides(call, &pair, &c, &on_a, &on_b, place, margin);
         answer.reach_a = find_box_reach(&pair, &c.a, &on_a);
         answer.reach_b = find_box_reach(&pair, &c.b, &on_b);
-        write(call, to, find_numbers(call, pairs), &answer, &sides);
+        const struct manifold_points points = find_manifold_points(call, &answer, &sides);
+        write_manifolds(to, find_numbers(call, pairs), &answer, &points);
     } else {
-        write(call, to, find_numbers(call, pairs), &answer, NULL);
+        write_rows(call, to, find_numbers(call, pairs), &answer);
     }
 }
 

@@ -23,7 +23,7 @@
 #include "base/vec2.inl"
 #include "box/box_contact.inl"
 #include "box/box_pairs.inl"
-#include "box/box_walk.inl"
+#include "kernels.h"
 #include "simd/simd.h"
 
 /* Bits of BOX_CODE, of the edge with the largest value: it is of B, and not of A; it lies at -y; the end at +x of the
@@ -96,27 +96,6 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
     return taken;
 }
 
-/* The largest gap, as walk_boxes() finds it. Of the couples 1 and 3 are left, 1 with that edge of B which lies within
- * half a turn from +x. */
-NOINLINE void walk_capsules(const struct box_pair *given, struct gap *out_best) {
-    const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
-    const vm all = vm_front(V_WIDTH);
-    const vi zero = vi_set(0);
-    const vf angle_1 = find_diamond_angle(find_side_normal(pair, vi_set(1), true));
-    const vf angle_3 = find_diamond_angle(find_side_normal(pair, vi_set(3), true));
-    const vi turn = vi_select(v_lt(angle_3, angle_1), vi_set(2), zero);
-    vm never;
-    const struct couple first = find_couple(pair, 1, turn, &never), last = find_couple(pair, 3, turn, &never);
-    struct gap best = {v_set(-INFINITY), first.low, v_set(1), zero, zero};
-    vm rises = v_lt(v2_cross(v2_sub(last.corner_b, last.corner_a), first.low), v_set(0));
-    rises = try_interval(pair, &last, &first, first.high, false, all, rises, &best);
-    rises = try_interval(pair, &last, &first, last.low, true, all, rises, &best);
-    rises = try_interval(pair, &first, &last, last.high, false, all, rises, &best);
-    try_interval(pair, &first, &last, first.low, true, all, rises, &best);
-    tell_box_normal(pair, &best);
-    *out_best = best;
-}
-
 INLINE vm has_bit(vi code, int bit) { return vi_lt(vi_set(0), vi_and(code, vi_set(bit))); }
 
 INLINE vec2 find_end_a(const struct box_pair *pair, vm right) {
@@ -161,7 +140,7 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     left = vm_and(open, left);
     if (vm_any(left)) {
         struct gap gap;
-        walk_capsules(pair, &gap);
+        NARC_NAMED(walk_capsules)(pair, &gap);
         c.separation = v_select(left, gap.separation, c.separation);
         c.normal = v2_select(left, gap.normal, c.normal);
         corner_a = vi_select(left, gap.record_a, corner_a);

@@ -136,9 +136,21 @@ INLINE struct arc_window find_window(const narc_record *records, const struct qu
     return (struct arc_window){narrow, v2_rotate(turn, back)};
 }
 
+/* Writes the rows of gaps to these places. */
+NOINLINE void write_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
+                         char *const *place) {
+    const struct pose pose = get_pose(queue, k);
+    const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
+    const vec2 n = v2_divide(gap->normal, gap->length);
+    const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, gap->record_a, false);
+    const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, gap->record_b, true);
+    const struct answer answer = find_answer(queue, k, gap->separation, n, &on_a, &on_b);
+    write_rows(call, place, find_numbers(call, get_bits(queue, PAIR, k)), &answer);
+}
+
 /* Puts the last of a pair's rows among those before it: they are in the order of their normals, counter-clockwise. */
-INLINE void sort_last_row(const struct question *question, char *rows, ptrdiff_t stride, int last) {
-    const size_t size = question->size, normal_at = question->normal_at;
+INLINE void sort_last_row(const struct call *call, char *rows, ptrdiff_t stride, int last) {
+    const size_t size = call->batch->row_size, normal_at = call->question->normal_at;
     char row[sizeof(narc_manifold)];
     float normal[2], other[2];
     int k = last;
@@ -167,13 +179,13 @@ INLINE void list_gaps(const struct call *call, const struct queue *queue, int k,
         const ptrdiff_t next = (ptrdiff_t)list->first + (ptrdiff_t)list->count;
         place[lane] = has_room ? rows->out.base + next * rows->out.stride : rows->spare;
     }
-    call->question->gaps(call, queue, k, gap, place);
+    write_gaps(call, queue, k, gap, place);
     for (uint32_t lanes = kept; lanes; lanes &= lanes - 1) {
         narc_row_list *const list = &rows->out.lists[pair[FIND_LOWEST(lanes)]];
         char *const first = rows->out.base + (ptrdiff_t)list->first * rows->out.stride;
         if (list->count == list->room)
             continue;
-        sort_last_row(call->question, first, rows->out.stride, (int)list->count++);
+        sort_last_row(call, first, rows->out.stride, (int)list->count++);
     }
     rows->done = (int)call->count;
 }
@@ -185,13 +197,10 @@ INLINE void note_more_rows(const struct call *call, vi counts, char *const *plac
         return;
     vi_store(count, counts);
     for (int lane = 0; lane < V_WIDTH; lane++) {
-        const uint32_t more = count[lane] > 1 ? (uint32_t)count[lane] - 1 : 0;
-        uint32_t word;
+        const uint8_t more = count[lane] > 1 ? (uint8_t)(count[lane] - 1) : 0;
         if (more == 0)
             continue;
-        memcpy(&word, place[lane] + sizeof word, sizeof word);
-        word += more * call->question->extra_row;
-        memcpy(place[lane] + sizeof word, &word, sizeof word);
+        memcpy(place[lane] + call->batch->more_at, &more, sizeof more);
         *call->rows->out.more += more;
     }
 }
@@ -251,7 +260,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         return;
     char *place[V_WIDTH];
     find_places(call, get_bits(queue, PAIR, k), any, place);
-    call->question->gaps(call, queue, k, &deepest, place);
+    write_gaps(call, queue, k, &deepest, place);
     note_more_rows(call, found, place);
 }
 

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "base/call.inl"
-#include "base/contact_point.inl"
 #include "base/pair_setup.inl"
 #include "base/question.inl"
 #include "base/queue.inl"
@@ -45,18 +44,6 @@ INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct 
     if (call->concave->count >= FLUSH)
         NARC_NAMED(search).concave(call);
     return vm_and_not(near, concave);
-}
-
-/* The rows of gaps, to these places. */
-INLINE void write_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
-                       char *const *place, row_writer *write) {
-    const struct pose pose = get_pose(queue, k);
-    const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
-    const vec2 n = v2_divide(gap->normal, gap->length);
-    const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, gap->record_a, false);
-    const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, gap->record_b, true);
-    const struct answer answer = find_answer(queue, k, gap->separation, n, &on_a, &on_b);
-    write(call, place, find_numbers(call, get_bits(queue, PAIR, k)), &answer, NULL);
 }
 
 #endif

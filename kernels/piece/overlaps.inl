@@ -41,6 +41,7 @@ static void ask_contacts(const narc_batch *batch, struct piece_pairs *pairs, uin
                               .front_only = batch->query->front_only};
     narc_batch selected = *batch;
     selected.query = &query;
+    selected.more_at = NARC_MORE_AT(narc_contact, count);
     const narc_rows rows = {.base = (char *)pairs->contact, .stride = sizeof *pairs->contact, .more = &more};
     const size_t found = NARC_NAMED(contact)(&selected, 0, pairs->count, &skipped, &rows);
     for (size_t k = 0; k < pairs->count; k++) {

@@ -61,7 +61,7 @@ INLINE struct edge find_touching_edge(const struct call *call, const struct queu
 
 /* Writes the rows of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void write_polygons(const struct call *call, const struct queue *queue, int k, vm keep, vf margin,
-                           const struct polygon_contact *c, row_writer *write, bool edges) {
+                           const struct polygon_contact *c, bool edges) {
     const vec2 n = c->normal, to_world = get_vec2(queue, ROTATION_A, k);
     const struct feature on_a = find_polygon_feature(&c->a, n, false), on_b = find_polygon_feature(&c->b, n, true);
     const vec2 place = find_contact_place(&on_a, &on_b);
@@ -94,9 +94,10 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
                                     .place = place,
                                     .margin = margin,
                                     .named = vm_front(V_WIDTH)};
-        write(call, to, find_numbers(call, pairs), &answer, &sides);
+        const struct manifold_points points = find_manifold_points(call, &answer, &sides);
+        write_manifolds(to, find_numbers(call, pairs), &answer, &points);
     } else {
-        write(call, to, find_numbers(call, pairs), &answer, NULL);
+        write_rows(call, to, find_numbers(call, pairs), &answer);
     }
 }
 

@@ -8,49 +8,47 @@
 #include <string.h>
 
 #include "base/call.inl"
-#include "base/contact_point.inl"
+#include "base/question.inl"
+#include "base/queue.inl"
+#include "base/rows.inl"
+#include "box/box_pairs.inl"
+#include "box/box_rows.inl"
 #include "kernels.h"
+#include "polygon/polygon_rows.inl"
 #include "sat/answers.inl"
-#include "sat/manifold_edges.inl"
-#include "simd/simd.h"
-
-/* Bytes of a row's members. */
-enum {
-    RADII = offsetof(narc_manifold, radius_a),
-    FIRST_POINT = offsetof(narc_manifold, point),
-    SECOND_POINT = FIRST_POINT + sizeof(narc_manifold_point)
-};
-_Static_assert(sizeof(narc_manifold) == 64 && RADII == 16 && FIRST_POINT == 32, "four writes of four words");
-
-INLINE void write_manifolds(const struct call *call, char *const *place, vi numbers, const struct answer *answer,
-                            const struct sides *sides) {
-    const vf zero = v_set(0);
-    struct manifold_points m = {
-        .count = vi_set(1),
-        .radius_a = answer->radius_a,
-        .radius_b = answer->radius_b,
-        .first = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)},
-        .second = {zero, zero, zero, zero}};
-    if (sides)
-        m = find_manifold_points(call, answer, sides);
-    const vf head[4] = {v_of_bits(numbers), v_of_bits(m.count), answer->normal.x, answer->normal.y};
-    const vf radii[4] = {m.radius_a, m.radius_b, v_of_bits(answer->reach_a), v_of_bits(answer->reach_b)};
-    v_put_rows(place, 0, head);
-    v_put_rows(place, RADII, radii);
-    v_put_rows(place, FIRST_POINT, m.first);
-    v_put_rows(place, SECOND_POINT, m.second);
-}
 
 static void write_no_manifold(char *place, uint32_t pair, float separation) {
     const narc_manifold manifold = {.pair = pair, .point = {{.separation = separation}}};
     memcpy(place, &manifold, sizeof manifold);
 }
 
-NARC_QUESTION(manifold, narc_manifold, offsetof(narc_manifold, normal_x), NARC_MORE_ROW, write_no_manifold,
-              write_manifolds, true)
-NARC_ROWS(manifolds, narc_manifold, write_manifolds, STAGES)
+static void answer_edges(const struct call *call, struct queue *queues, int begin) {
+    answer_settled(call, queues, begin, true);
+}
+
+static void answer_edges_of_polygons(const struct call *call, struct queue *queues, int begin) {
+    answer_polygons(call, queues, begin, true);
+}
+
+static void answer_edges_of_boxes(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, false, true);
+}
+
+static void answer_edges_of_capsules(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, true, true);
+}
 
 size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                             const narc_rows *out) {
-    return answer_manifolds(&manifold_question, batch, first, count, skipped, out);
+    static const struct question manifolds = {.kind = MANIFOLD_ROWS,
+                                              .normal_at = offsetof(narc_manifold, normal_x),
+                                              .none = write_no_manifold,
+                                              .edges = answer_edges,
+                                              .polygons = NARC_SHORTCUTS ? answer_edges_of_polygons : NULL,
+                                              .boxes = NARC_SHORTCUTS ? answer_edges_of_boxes : NULL,
+                                              .capsules = NARC_SHORTCUTS ? answer_edges_of_capsules : NULL};
+    struct rows rows;
+    const struct call call = begin_rows(&manifolds, batch, first, count, skipped, out, &rows);
+    NARC_NAMED(find_rows)(&call);
+    return end_rows(&call, sizeof(narc_manifold));
 }

@@ -18,8 +18,8 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/question.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
@@ -310,12 +310,6 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     const float asked = call->batch->query->second_margin;
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
-
-/* The words of a manifold's row behind its first ones. */
-struct manifold_points {
-    vi count;
-    vf radius_a, radius_b, first[4], second[4];
-};
 
 INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
                                                    const struct sides *s) {

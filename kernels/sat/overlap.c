@@ -16,9 +16,9 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_contact.inl"
 #include "box/box_detour.inl"
 #include "box/box_pairs.inl"
-#include "box/box_walk.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
 #include "piece/overlaps.inl"
@@ -126,20 +126,12 @@ static void answer_capsule_overlaps(const struct call *call, const struct box_qu
     mark_box_overlaps(call, queue, k, live, true);
 }
 
-static box_stage *const overlap_detours[BOX_QUEUES] = {NARC_SHORTCUTS ? answer_box_overlaps : NULL,
-                                                       NARC_SHORTCUTS ? answer_capsule_overlaps : NULL};
-
-INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *indices, int k,
-                          const struct placement *placement, vm open, int32_t number) {
-    return take_detour(call, indices, k, placement, open, number, overlap_detours);
-}
-
 /* All pairs; of those with a piece, which ones are near. */
 NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[STAGES] = {NARC_SHORTCUTS ? probe_overlaps : NULL,
                                           NARC_SHORTCUTS ? probe_overlaps_again : NULL,
                                           NARC_SHORTCUTS ? climb_overlaps : NULL, decide_overlaps};
-    const struct course course = {.take = detour_overlaps,
+    const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_overlaps,
                                   .fields = OVERLAP_FIELDS,
                                   .stages = stages,
@@ -150,10 +142,10 @@ NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count,
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     struct box_queue boxes[BOX_QUEUES];
     if (NARC_SHORTCUTS && batch->shapes->box_count > 0)
-        start_boxes(&call, boxes);
+        start_boxes(&call, boxes, answer_box_overlaps, answer_capsule_overlaps);
     run_pairs(&call, &course, queues);
-    if (call.boxes)
-        end_boxes(&call, overlap_detours);
+    if (NARC_SHORTCUTS && call.boxes)
+        end_boxes(&call);
 }
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {

@@ -7,19 +7,9 @@
 #include <string.h>
 
 #include "base/call.inl"
-#include "base/contact_point.inl"
+#include "base/question.inl"
+#include "base/rows.inl"
 #include "kernels.h"
-#include "sat/answers.inl"
-#include "simd/simd.h"
-
-INLINE void write_separations(const struct call *call, char *const *place, vi numbers, const struct answer *answer,
-                              const struct sides *sides) {
-    float separation[V_WIDTH];
-    (void)call, (void)numbers, (void)sides;
-    v_store(separation, answer->separation);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        memcpy(place[lane], &separation[lane], sizeof separation[lane]);
-}
 
 static void write_no_separation(char *place, uint32_t pair, float separation) {
     const float none = INFINITY;
@@ -27,10 +17,11 @@ static void write_no_separation(char *place, uint32_t pair, float separation) {
     memcpy(place, &none, sizeof none);
 }
 
-NARC_QUESTION(separation, float, 0, 0, write_no_separation, write_separations, false)
-NARC_ROWS(separations, float, write_separations, ANSWER_EDGES)
-
 size_t NARC_NAMED(separation)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                               const narc_rows *out) {
-    return answer_separations(&separation_question, batch, first, count, skipped, out);
+    static const struct question separations = {.kind = SEPARATION_ROWS, .none = write_no_separation};
+    struct rows rows;
+    const struct call call = begin_rows(&separations, batch, first, count, skipped, out, &rows);
+    NARC_NAMED(find_rows)(&call);
+    return end_rows(&call, sizeof(float));
 }

@@ -2,6 +2,7 @@
 //
 // cpp.cpp - narc.hpp: every part of it, with the answers of the functions in C, in empty containers and after moves.
 #include <narc.hpp>
+#include <narc_chains.h>
 
 #include <array>
 #include <cmath>
@@ -508,6 +509,44 @@ void test_broad_phase() {
     CHECK(broad.update(std::vector<narc_box>()).value()->pairs.count == 0);
 }
 
+void test_contacts_that_stay() {
+    Scene scene = make_scene(10);
+    narc_pair_filter filter = {};
+    filter.kind = narc::column(scene.entities, &Entity::is_static);
+    const narc_workers workers = narc_openmp_workers(1);
+    const std::vector<uint64_t> ids = {9, 8, 7, 6, 5, 4, 3, 2, 1, 0};
+    const std::vector<uint32_t> run(10, NARC_NO_RUN), none;
+    const narc_float_column motion = narc::column(scene.entities, &Entity::motion);
+    auto step = narc::step()
+                    .margin(0.02f)
+                    .second_margin(0.03f)
+                    .flat_angle(0.4f)
+                    .front_only()
+                    .skin(0.05f)
+                    .recycling(0.01f)
+                    .motion(motion, motion)
+                    .reach(motion)
+                    .ahead(motion)
+                    .id(narc::column(ids))
+                    .run(narc::column(run))
+                    .filter(filter)
+                    .workers(workers);
+    const narc_step &c = step;
+    CHECK(c.margin == 0.02f && c.second_margin == 0.03f && c.flat_angle == 0.4f && c.front_only && c.skin == 0.05f);
+    CHECK(c.recycling == 0.01f && c.motion_x.base == motion.base && c.motion_y.base == motion.base);
+    CHECK(c.reach.base == motion.base && c.ahead.base == motion.base && c.id.base == ids.data());
+    CHECK(c.run.base == run.data() && c.filter == &filter && c.workers == &workers && !c.bodies);
+    narc::contacts contacts = narc::contacts::make(NARC_MANIFOLD_ROWS, 8).value();
+    const narc_step_result *r = contacts.update(scene.shapes, scene.bodies, step).value();
+    CHECK(r->count >= 9 && r->touching_count > 3 && r->began_count >= r->touching_count && r->user);
+    CHECK(contacts.update(scene.shapes, scene.bodies, step.moved(none)).value()->asked_count == 0);
+    CHECK(status_of(contacts.update(scene.shapes, scene.bodies, narc::step().skin(-1))) == NARC_ERROR_ARGUMENT);
+    CHECK(status_of(narc::contacts::make(2, 0)) == NARC_ERROR_ARGUMENT);
+    narc::contacts plain;
+    CHECK(plain.update(scene.shapes, scene.bodies).value()->count > 0);
+    narc_forget_contacts(plain);
+}
+
 // ---------------------------------------------------------------------------- questions to a scene
 
 void test_index() {
@@ -670,6 +709,7 @@ int main() {
     test_small_batches();
     test_workers();
     test_broad_phase();
+    test_contacts_that_stay();
     test_index();
     test_rays_and_points();
     test_casts();

@@ -9,7 +9,6 @@
 #include "fit_support.h"
 #include "fuzz.h"
 #include "narc_files.h"
-#include "truetype.h"
 
 static const enum format { SHAPES, CSV, JSON, SVG, PNG, FONT } format = FUZZ_READER;
 

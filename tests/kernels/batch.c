@@ -9,6 +9,7 @@
 
 #include "check.h"
 #include "guard.h"
+#include "questions.h"
 
 /* Enough for every thread to get several chunks. */
 enum { PAIRS = 20011 };
@@ -100,7 +101,7 @@ TEST(test_pairs_with_itself) {
     for (uint32_t k = 0; k < 500; k++) {
         struct reference_body body = scene_reference(&scene, k);
         struct fractions errors = {0};
-        const double gap = reference_find_gap(&body, &body).gap;
+        const double gap = reference_solve_gap(&body, &body).gap;
         assert_true(bit_is_set(bits, k) || (body.count == 2 && gap >= -separation_bound(&body, &body)));
         const char *wrong = check_contact(&body, &body, gap, &all.rows[k], &errors);
         if (wrong) {
@@ -125,40 +126,35 @@ struct place {
     unsigned char after[20];
 };
 
-/* Queries for rows of either kind. */
-struct asked {
+/* A question of a scene. */
+struct batch {
     const struct scene *scene;
-    bool manifolds;
+    const struct question *question;
 };
 
-static size_t row_size(const struct asked *asked) {
-    return asked->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
-}
-
-static narc_status ask(const struct asked *asked, const narc_query *query, void *rows, size_t capacity,
+static narc_status ask(const struct batch *batch, const narc_query *query, void *rows, size_t capacity,
                        size_t *out_count, narc_error *error) {
-    const narc_bodies bodies = scene_bodies(asked->scene);
-    const narc_pairs pairs = scene_pairs(asked->scene);
-    const narc_shapes *store = asked->scene->store;
-    return asked->manifolds ? narc_find_manifolds(store, &bodies, &pairs, query, rows, capacity, out_count, error)
-                            : narc_find_contacts(store, &bodies, &pairs, query, rows, capacity, out_count, error);
+    const narc_bodies bodies = scene_bodies(batch->scene);
+    const narc_pairs pairs = scene_pairs(batch->scene);
+    const struct asked asked = {batch->scene->store, &bodies, &pairs, query, rows, capacity, out_count, NULL};
+    return batch->question->ask(batch->question, &asked, error);
 }
 
 /* Has a row a point, or is it that of a pair that has no answer? */
-static bool has_point(const struct asked *asked, const unsigned char *row) {
+static bool has_point(const struct batch *batch, const unsigned char *row) {
     narc_contact contact;
     narc_manifold manifold;
     memcpy(&contact, row, sizeof contact);
-    memcpy(&manifold, row, row_size(asked));
-    return asked->manifolds ? manifold.count > 0 : contact.count > 0;
+    memcpy(&manifold, row, batch->question->row_size);
+    return batch->question->row_size == sizeof manifold ? manifold.count > 0 : contact.count > 0;
 }
 
 /* The answers of a whole batch as dense rows must be: `listed` in their pairs' rows, and zeros but for the pair. */
-static unsigned char *make_dense(const struct asked *asked, const unsigned char *listed, size_t count) {
-    const size_t size = row_size(asked);
-    unsigned char *dense = calloc(asked->scene->pair_count, size);
+static unsigned char *make_dense(const struct batch *batch, const unsigned char *listed, size_t count) {
+    const size_t size = batch->question->row_size;
+    unsigned char *dense = calloc(batch->scene->pair_count, size);
     assert_non_null(dense);
-    for (uint32_t k = 0; k < asked->scene->pair_count; k++)
+    for (uint32_t k = 0; k < batch->scene->pair_count; k++)
         memcpy(dense + k * size, &k, sizeof k);
     for (size_t k = 0; k < count; k++) {
         uint32_t pair;
@@ -196,38 +192,38 @@ static void check_places(const struct place *places, const unsigned char *right,
 
 /* Dense rows and listed ones, without gaps and within larger structures, of all pairs, of some of them, of a sub-range;
  * with one margin and with margins of the pairs, with hints in a structure of the caller's. */
-static void check_rows(struct test_random *random, const struct asked *asked, float margin, unsigned threads) {
-    const size_t count = asked->scene->pair_count, size = row_size(asked);
+static void check_rows(struct test_random *random, const struct batch *batch, float margin, unsigned threads) {
+    const size_t count = batch->scene->pair_count, size = batch->question->row_size;
     const narc_workers workers = narc_openmp_workers(threads);
     const narc_query plain = {.margin = margin};
     unsigned char *listed = make_junk(count * size);
     uint32_t *selection = make_junk(count * sizeof *selection);
     size_t found = 0, again = 0, points = 0, part_points = 0;
-    assert_int_equal(ask(asked, &plain, listed, count, &found, NULL), NARC_OK);
-    unsigned char *dense = make_dense(asked, listed, found);
+    assert_int_equal(ask(batch, &plain, listed, count, &found, NULL), NARC_OK);
+    unsigned char *dense = make_dense(batch, listed, found);
     for (size_t k = 0; k < found; k++)
-        points += has_point(asked, listed + k * size);
+        points += has_point(batch, listed + k * size);
     struct place *places = make_junk(count * sizeof *places);
 
     narc_query query = {.margin = margin, .row_stride = sizeof *places, .workers = &workers};
-    assert_int_equal(ask(asked, &query, &places->row, found, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, &places->row, found, &again, NULL), NARC_OK);
     assert_int_equal(again, found);
     check_places(places, listed, found, size);
     assert_true(is_junk(places + found, (count - found) * sizeof *places));
     query.dense = 1;
-    assert_int_equal(ask(asked, &query, &places->row, count, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, &places->row, count, &again, NULL), NARC_OK);
     assert_int_equal(again, points);
     check_places(places, dense, count, size);
     query.row_stride = 0;
     unsigned char *rows = guard_allocate(count * size);
-    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
     assert_int_equal(again, points);
     assert_memory_equal(rows, dense, count * size);
 
     /* From the last one in memory backwards. */
     struct place *backwards = make_junk(count * sizeof *backwards);
     query.row_stride = -(ptrdiff_t)sizeof *places;
-    assert_int_equal(ask(asked, &query, &backwards[count - 1].row, count, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, &backwards[count - 1].row, count, &again, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_memory_equal(&backwards[k], &places[count - 1 - k], sizeof *places);
     free(backwards);
@@ -241,12 +237,12 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
     query.first = first;
     query.count = first + part < selected ? part : 0;
     memset(rows, 0xa5, count * size);
-    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
     bool *is_asked = calloc(count, sizeof *is_asked);
     assert_non_null(is_asked);
     for (size_t k = first; k < first + part; k++) {
         is_asked[selection[k]] = true;
-        part_points += has_point(asked, dense + selection[k] * size);
+        part_points += has_point(batch, dense + selection[k] * size);
     }
     assert_int_equal(again, part_points);
     for (size_t k = 0; k < count; k++)
@@ -255,7 +251,7 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
         else
             assert_true(is_junk(rows + k * size, size));
     query.dense = 0;
-    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
+    assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
     bool *is_listed = calloc(count, sizeof *is_listed);
     assert_non_null(is_listed);
     for (size_t k = 0; k < found; k++) {
@@ -284,12 +280,14 @@ TEST(test_places_of_rows) {
         struct scene scene = make_scene("places of rows", counts[c]);
         for (size_t k = 0; k < scene.body_count; k += 50)
             scene.bodies[k].sine = NAN;
-        for (int kind = 0; kind < 2; kind++) {
-            const struct asked asked = {&scene, kind == 1};
+        for (size_t q = 0; q < question_count; q++) {
+            const struct batch batch = {&scene, &questions[q]};
+            if (!questions[q].row_size)
+                continue;
             for (unsigned threads = 1; threads < 4; threads++) {
-                check_rows(&random, &asked, 0, threads);
-                check_rows(&random, &asked, 0.2f, threads);
-                check_rows(&random, &asked, INFINITY, threads);
+                check_rows(&random, &batch, 0, threads);
+                check_rows(&random, &batch, 0.2f, threads);
+                check_rows(&random, &batch, INFINITY, threads);
             }
         }
         destroy_scene(&scene);
@@ -300,25 +298,27 @@ TEST(test_places_of_rows) {
  * written. */
 TEST(test_dense_capacity) {
     struct scene scene = make_scene("dense capacity", 1500);
-    for (int kind = 0; kind < 2; kind++) {
-        const struct asked asked = {&scene, kind == 1};
-        unsigned char *rows = make_junk(1500 * row_size(&asked));
+    for (size_t q = 0; q < question_count; q++) {
+        const struct batch batch = {&scene, &questions[q]};
+        if (!questions[q].row_size)
+            continue;
+        unsigned char *rows = make_junk(1500 * batch.question->row_size);
         const uint32_t selection[] = {700, 1200, 3};
         size_t found = 12345;
-        assert_int_equal(ask(&asked, &(narc_query){.dense = 1}, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
-        assert_true(is_junk(rows, 1500 * row_size(&asked)));
+        assert_int_equal(ask(&batch, &(narc_query){.dense = 1}, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * batch.question->row_size));
         const narc_query range = {.dense = 1, .first = 100, .count = 200};
-        assert_int_equal(ask(&asked, &range, rows, 299, &found, NULL), NARC_ERROR_CAPACITY);
-        assert_true(is_junk(rows, 1500 * row_size(&asked)));
-        assert_int_equal(ask(&asked, &range, rows, 300, &found, NULL), NARC_OK);
-        assert_true(is_junk(rows, 100 * row_size(&asked)));
-        assert_true(is_junk(rows + 300 * row_size(&asked), 1200 * row_size(&asked)));
-        memset(rows, 0xa5, 300 * row_size(&asked));
+        assert_int_equal(ask(&batch, &range, rows, 299, &found, NULL), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * batch.question->row_size));
+        assert_int_equal(ask(&batch, &range, rows, 300, &found, NULL), NARC_OK);
+        assert_true(is_junk(rows, 100 * batch.question->row_size));
+        assert_true(is_junk(rows + 300 * batch.question->row_size, 1200 * batch.question->row_size));
+        memset(rows, 0xa5, 300 * batch.question->row_size);
         const narc_query some = {.dense = 1, .selection = NARC_ARRAY(selection), .selection_count = 3};
-        assert_int_equal(ask(&asked, &some, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
-        assert_true(is_junk(rows, 1500 * row_size(&asked)));
-        assert_int_equal(ask(&asked, &some, rows, 1500, &found, NULL), NARC_OK);
-        assert_false(is_junk(rows + 1200 * row_size(&asked), row_size(&asked)));
+        assert_int_equal(ask(&batch, &some, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * batch.question->row_size));
+        assert_int_equal(ask(&batch, &some, rows, 1500, &found, NULL), NARC_OK);
+        assert_false(is_junk(rows + 1200 * batch.question->row_size, batch.question->row_size));
         free(rows);
     }
     destroy_scene(&scene);

@@ -223,38 +223,6 @@ TEST(test_hard_places) {
     check_corpus("bits, polygons", NARC_FLOAT64, true);
 }
 
-/* A pair's answer depends on that pair alone: not on those in the other lanes, nor on how many there are. */
-TEST(test_neighbours) {
-    enum { PAIRS = 60, MOST = 40 };
-    struct test_random random = test_random_named("neighbours");
-    for (size_t q = 0; q < question_count; q++) {
-        const struct question *question = &questions[q];
-        if (!question->row_size)
-            continue;
-        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, BODIES, PAIRS);
-        struct answer all = ask_scene(question, &scene, (narc_query){.margin = INFINITY}, NULL);
-        for (uint32_t k = 0; k < PAIRS; k++) {
-            struct pair pairs[MOST];
-            struct scene repeated = scene;
-            for (size_t i = 0; i < MOST; i++)
-                pairs[i] = scene.pairs[k];
-            repeated.pairs = pairs;
-            repeated.pair_count = 1 + k % MOST;
-            struct answer same = ask_scene(question, &repeated, (narc_query){.margin = INFINITY}, NULL);
-            assert_int_equal(same.count, repeated.pair_count);
-            for (size_t i = 0; i < same.count; i++) {
-                assert_int_equal(same.outcomes[i], all.outcomes[k]);
-                *answer_pair(question, same.rows, i) = k;
-                assert_memory_equal(answer_row(question, same.rows, i), answer_row(question, all.rows, k),
-                                    question->row_size);
-            }
-            destroy_answer(&same);
-        }
-        destroy_answer(&all);
-        destroy_scene(&scene);
-    }
-}
-
 /* Pairs with margins of their own against calls with one margin. Pairs with a NaN there are skipped. */
 TEST(test_margins_of_pairs) {
     enum { PAIRS = 2000 };
@@ -300,32 +268,6 @@ TEST(test_margins_of_pairs) {
         free(hints);
         for (size_t m = 0; m < MARGINS; m++)
             destroy_answer(&each[m]);
-        destroy_scene(&scene);
-    }
-}
-
-/* Any bits at all as bodies: equal bits, no crash, and no endless loop. */
-TEST(test_garbage_bodies) {
-    struct test_random random = test_random_named("garbage");
-    for (size_t q = 0; q < question_count; q++) {
-        struct scene scene = make_question_scene(&random, &questions[q], NARC_FLOAT32, 200, 1000);
-        for (size_t k = 0; k < scene.body_count; k++) {
-            struct body *body = &scene.bodies[k];
-            float *const values[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
-            const uint32_t bits = (uint32_t)random_bits(&random);
-            static const float special[] = {NAN, INFINITY, -INFINITY, 0, -0.0f, 1e-38f, 1e-45f, 3e38f, -1, 1e17f};
-            if (k % 3 == 0)
-                memcpy(values[k / 3 % 5], &bits, sizeof bits);
-            else if (k % 3 == 1)
-                *values[k / 3 % 5] = special[bits % 10];
-        }
-        struct guarded guarded = guard_shapes(&scene);
-        uint32_t *hints = random_hints(&random, scene.pair_count);
-        struct expected expected = expect(&scene, &questions[q], q % 3 ? hints : NULL);
-        check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene.pair_count, 1);
-        destroy_expected(&expected);
-        free(hints);
-        release_guarded(&guarded);
         destroy_scene(&scene);
     }
 }

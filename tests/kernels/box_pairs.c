@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "layouts.h"
+#include "hard.h"
+#include "placements.h"
 #include "plain.h"
 
 enum { SHAPES = 24, PAIRS = 4000 };
@@ -34,7 +34,7 @@ static struct shape make_capsule(struct test_random *random, double length, doub
     return shape;
 }
 
-static struct shape make_form(struct test_random *random, enum sizes sizes, double unit, bool capsule) {
+static struct shape make_form(struct test_random *random, enum sizes sizes, bool capsule) {
     const double spread = sizes == THIN ? 1e3 : 4;
     double width = random_log_between(random, 1 / spread, spread),
            height = random_log_between(random, 1 / spread, spread);
@@ -43,22 +43,22 @@ static struct shape make_form(struct test_random *random, enum sizes sizes, doub
         height = sizes == ALIKE ? 1 : 0.25 * (double)(1 + random_below(random, 6));
     }
     if (capsule)
-        return make_capsule(random, width * unit, height * unit);
+        return make_capsule(random, width, height);
     const double least = fmin(width, height);
     const double radii[] = {0, 0, 0.0625, least * random_unit(random) / 2, least * 1e-7, least * 0.4999999};
     const double radius = fmin(radii[random_below(random, 6)], least / 4 * (1 + random_unit(random)));
-    return box_of(width * unit, height * unit, radius * unit);
+    return box_of(width, height, radius);
 }
 
 /* One that starts with another arc, or a shape that has no such form: turned, elsewhere, or something else. */
-static struct shape make_other(struct test_random *random, double unit) {
-    struct shape shape = make_form(random, USUAL, unit, random_below(random, 2));
+static struct shape make_other(struct test_random *random) {
+    struct shape shape = make_form(random, USUAL, random_below(random, 2));
     const size_t kind = random_below(random, 5);
     const double turns[] = {0.5, PI / 2}, turn = kind == 2 || kind == 4 ? turns[kind == 4] : 0;
-    const double move = kind == 1 ? unit * random_between(random, -1, 1) : 0;
+    const double move = kind == 1 ? random_between(random, -1, 1) : 0;
     struct shape other = {.count = shape.count};
     if (kind == 3)
-        return random_below(random, 2) ? circle_of(unit) : capsule_of(unit * 1e-7, unit);
+        return random_below(random, 2) ? circle_of(1) : capsule_of(1e-7, 1);
     for (size_t i = 0; i < shape.count; i++) {
         const narc_arc arc = shape.arcs[(i + 1) % shape.count];
         other.arcs[i] = (narc_arc){cos(turn) * arc.center_x - sin(turn) * arc.center_y + move,
@@ -68,146 +68,28 @@ static struct shape make_other(struct test_random *random, double unit) {
     return other;
 }
 
-/* A multiple of 45 degrees exactly, or beside it by a few units in the last place, or by any small angle. */
-static void turn_nearly(struct test_random *random, struct body *body, size_t steps) {
-    const double turn = PI / (double)steps * (double)random_below(random, 2 * steps);
-    const double beside = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-10, 1e-2);
-    const size_t kind = random_below(random, 4);
-    body->cosine = (float)cos(turn + (kind == 3 ? beside : 0));
-    body->sine = (float)sin(turn + (kind == 3 ? beside : 0));
-    body->cosine = fabsf(body->cosine) < 1e-9f ? 0 : body->cosine;
-    body->sine = fabsf(body->sine) < 1e-9f ? 0 : body->sine;
-    if (kind == 1) {
-        body->cosine += (float)random_between(random, -3, 3) * 0x1p-24f;
-        body->sine += (float)random_between(random, -3, 3) * 0x1p-24f;
-    }
-    if (random_below(random, 8) == 0) { /* zeros of either sign */
-        body->cosine = body->cosine == 0 ? -0.0f : body->cosine;
-        body->sine = body->sine == 0 ? -0.0f : body->sine;
-    }
-}
-
-static void turn(struct test_random *random, struct body *body) {
-    const double angle = random_between(random, -PI, PI);
-    const float drift = random_below(random, 3) ? 1 : (float)(1 + 2e-4 * random_between(random, -1, 1));
-    body->cosine = (float)cos(angle);
-    body->sine = (float)sin(angle);
-    if (random_below(random, 2))
-        turn_nearly(random, body, random_below(random, 2) ? 4 : 2);
-    body->cosine *= drift;
-    body->sine *= drift;
-}
-
-/* The rotation of a body times a nearly exact multiple of 90 or 45 degrees, or the same. */
-static void turn_like(struct test_random *random, struct body *body, const struct body *other) {
-    struct body by = {.cosine = 1};
-    if (random_below(random, 4))
-        turn_nearly(random, &by, random_below(random, 4) ? 2 : 4);
-    body->cosine = other->cosine * by.cosine - other->sine * by.sine;
-    body->sine = other->sine * by.cosine + other->cosine * by.sine;
-}
-
-/* How far a box or a capsule reaches along its own axes, turned by an angle of which these are cosine and sine. */
-static double reach(const struct shape *box, double c, double s) {
-    const narc_arc *arc = &box->arcs[0];
-    return fabs(c) * fabs(arc->center_x) + fabs(s) * fabs(arc->center_y) + arc->radius;
-}
-
-/* Puts B somewhere at A: side against side, corner against corner, one inside the other, or anywhere near. */
-static void place(struct test_random *random, const struct scene *scene, const struct body *a, struct body *b,
-                  bool grid) {
-    const struct shape *of_a = &scene->shapes[a->shape], *of_b = &scene->shapes[b->shape];
-    const size_t side = random_below(random, 4);
-    const double c_a = (double)a->cosine, s_a = (double)a->sine;
-    const double x = side % 2 ? -s_a : c_a, y = side % 2 ? c_a : s_a, sign = side / 2 ? -1 : 1;
-    const double c = x * (double)b->cosine + y * (double)b->sine, s = x * (double)b->sine - y * (double)b->cosine;
-    const double up_a = (double)a->scale * reach(of_a, side % 2 ? 0 : 1, side % 2 ? 1 : 0);
-    const double wide_a = (double)a->scale * reach(of_a, side % 2 ? 1 : 0, side % 2 ? 0 : 1);
-    const double up_b = (double)b->scale * reach(of_b, c, s), wide_b = (double)b->scale * reach(of_b, s, c);
-    const double tiny = random_between(random, -1, 1) * random_log_between(random, 1e-8, 0.1);
-    const double ups[] = {up_a + up_b,
-                          (up_a + up_b) * (1 + tiny),
-                          up_a + up_b - random_unit(random) * fmin(up_a, up_b),
-                          up_a + up_b + tiny * fmin(up_a, up_b),
-                          0,
-                          2 * random_unit(random) * (up_a + up_b)};
-    const double alongs[] = {0,
-                             wide_a + wide_b,
-                             wide_a - wide_b,
-                             (wide_a + wide_b) * (1 + tiny),
-                             (wide_a + wide_b) * random_unit(random),
-                             (wide_a + wide_b) * random_unit(random)};
-    double up = sign * ups[random_below(random, 6)], along = alongs[random_below(random, 6)];
-    along = random_below(random, 2) ? -along : along;
-    if (grid) {
-        up = 0.125 * nearbyint(8 * up);
-        along = 0.125 * nearbyint(8 * along);
-    }
-    b->x = a->x + x * up - y * along;
-    b->y = a->y + y * up + x * along;
-}
-
-/* Puts a corner of B straight before a corner of A, or behind it, along the normal of an edge of either. */
-static void place_corner(struct test_random *random, const struct scene *scene, const struct body *a, struct body *b) {
-    const struct shape *const shapes[2] = {&scene->shapes[a->shape], &scene->shapes[b->shape]};
-    const struct body *const bodies[2] = {a, b};
-    const size_t of = random_below(random, 2), edge = random_below(random, shapes[of]->count);
-    const double angle = shapes[of]->arcs[edge].start, x = round(cos(angle)), y = round(sin(angle));
-    const double c = (double)bodies[of]->cosine, s = (double)bodies[of]->sine;
-    double at[2][2], radii = 0;
-    for (int side = 0; side < 2; side++) {
-        const narc_arc *arc = &shapes[side]->arcs[random_below(random, shapes[side]->count)];
-        const double scale = (double)bodies[side]->scale;
-        const double turned_c = scale * (double)bodies[side]->cosine, turned_s = scale * (double)bodies[side]->sine;
-        at[side][0] = turned_c * arc->center_x - turned_s * arc->center_y;
-        at[side][1] = turned_s * arc->center_x + turned_c * arc->center_y;
-        radii += scale * arc->radius;
-    }
-    const double beside = radii + random_log_between(random, 1e-7, 1) * (double)a->scale * shapes[0]->arcs[0].center_x;
-    b->x = a->x + at[0][0] - at[1][0] + beside * (c * x - s * y);
-    b->y = a->y + at[0][1] - at[1][1] + beside * (s * x + c * y);
-}
-
 static struct scene make_boxes(struct test_random *random, enum sizes sizes, enum kinds kinds) {
+    static const enum placement exact[] = {PLACE_LATTICE,    PLACE_LATTICE, PLACE_PARALLEL, PLACE_PARALLEL,
+                                           PLACE_COINCIDENT, PLACE_TOUCH,   PLACE_DEEP,     PLACE_NEAR};
     const bool mixed = kinds == OTHERS;
     const narc_precision precision = random_below(random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
     struct scene scene = create_scene(precision, SHAPES, 2 * PAIRS, PAIRS);
-    const double units[] = {1, 1, 1e-5, 3e4}, unit = sizes == LATTICE ? 1 : units[random_below(random, 4)];
-    const double far = random_below(random, 3) ? unit : unit * random_log_between(random, 1, 1e4);
     for (size_t k = 0; k < SHAPES; k++) {
         const bool capsule = kinds == CAPSULES || (kinds != BOXES && random_below(random, 2));
-        const struct shape shape =
-            mixed && k % 4 == 0 ? make_other(random, unit) : make_form(random, sizes, unit, capsule);
+        const struct shape shape = mixed && k % 4 == 0 ? make_other(random) : make_form(random, sizes, capsule);
         scene_add_shape(&scene, &shape);
     }
-    for (size_t k = 0; k < PAIRS; k++) {
-        const bool grid = sizes == LATTICE && random_below(random, 4);
-        struct body a = {.cosine = 1, .scale = 1}, b = {.scale = 1};
-        a.shape = (uint32_t)random_below(random, SHAPES);
-        b.shape = random_below(random, 4) ? (uint32_t)random_below(random, SHAPES) : a.shape;
-        if (random_below(random, 4) == 0 && sizes != LATTICE) {
-            a.scale = (float)random_log_between(random, 0.01, 100);
-            b.scale = random_below(random, 2) ? a.scale : (float)random_log_between(random, 0.01, 100);
-        }
-        a.x = far * random_between(random, -1, 1);
-        a.y = far * random_between(random, -1, 1);
-        if (grid) {
-            a.x = nearbyint(a.x);
-            a.y = nearbyint(a.y);
-            turn_nearly(random, &a, 2);
-        } else {
-            turn(random, &a);
-        }
-        turn_like(random, &b, &a);
-        if (random_below(random, 4) == 0)
-            turn(random, &b);
+    while (scene.pair_count + HARD_BODIES / 2 + 8 <= PAIRS) {
+        const uint32_t a = (uint32_t)random_below(random, SHAPES);
+        const uint32_t b = random_below(random, 4) ? (uint32_t)random_below(random, SHAPES) : a;
+        if (random_below(random, 3) == 0)
+            add_hard_pairs(random, &scene, (enum hard_placement)random_below(random, HARD_PLACES), a, b);
+        for (int k = 0; k < 8; k++)
+            scene_add_placed(random, &scene, exact[random_below(random, 10)], a, b);
+    }
+    for (size_t k = 0; k < scene.pair_count; k++) {
         if (mixed && random_below(random, 40) == 0)
-            b.sine = NAN;
-        if (random_below(random, 4))
-            place(random, &scene, &a, &b, grid);
-        else
-            place_corner(random, &scene, &a, &b);
-        scene_add_two(&scene, a, b);
+            scene.bodies[scene.pairs[k].b].sine = NAN;
         if (random_below(random, 64) == 0)
             scene.pairs[k].b = scene.pairs[k].a;
         else if (random_below(random, 2))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * boxes.c - the boxes of bodies against the support function in double precision: never too small, and at most
- * NARC_BOX_ROOM too large. Layouts, sub-ranges and threads; motion; broken bodies; errors.
+ * NARC_BOX_ROOM too large; motion, sub-ranges, pieces of chains.
  */
 #include <float.h>
 #include <math.h>
@@ -10,7 +10,6 @@
 
 #include "expect.h"
 #include "guard.h"
-#include "layouts.h"
 #include "narc_broad_phase.h"
 #include "placements.h"
 #include "scene.h"
@@ -355,200 +354,40 @@ TEST(reads_no_further_than_the_store) {
 
 /* ------------------------------------------------------------------------------------------------ splits */
 
-/* Every layout and every count, each array with a guard page behind it; sub-ranges touch nothing but their own. Scalar
- * in one call decides. */
+/* Sub-ranges touch nothing but their own and count what is broken there; scalar in one call decides. */
 TEST(same_bits_whatever_the_split) {
+    enum { MOST = 2200 };
     struct test_random random = test_random_named("splits");
     for (int precision = 0; precision < 2; precision++) {
-        for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
-            enum { MOST = 2200 };
-            struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
-            suit_layout(&scene, layout);
-            if (layout != LAYOUT_SHARED)
-                scene.bodies[1].sine = 3;
-            test_use_isa("scalar");
-            narc_box *const right = compute(&scene, &(narc_box_options){.margin = 0.01f}, 1);
-            test_use_isa(test_isa());
-            for (size_t count = 0; count <= MOST; count += count < 70 ? 1 : 71) {
-                scene.body_count = count;
-                struct columns columns = create_columns(&scene, layout, 0, 0);
-                narc_shapes *const store = guard_store(&scene);
-                narc_box *const boxes = guard_allocate(count * sizeof *boxes), *const copy = malloc((count + 1) * 16);
-                size_t skipped = 99;
-                const size_t first = random_below(&random, count + 1), rest = count - first;
-                narc_box_options options = {
-                    .margin = 0.01f, .out_skipped = &skipped, .first = first, .count = random_below(&random, rest + 1)};
-                const size_t part = options.count ? options.count : rest;
-                memcpy(copy, boxes, count * sizeof *boxes);
-                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, boxes, NULL), NULL);
-                const bool has_broken = layout != LAYOUT_SHARED && first <= 1 && first + part > 1;
-                assert_int_equal(skipped, has_broken ? 1 : 0);
-                assert_memory_equal(boxes, copy, first * sizeof *boxes);
-                assert_memory_equal(boxes + first, right + first, part * sizeof *boxes);
-                assert_memory_equal(boxes + first + part, copy + first + part, (count - first - part) * sizeof *boxes);
-                const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
-                options = (narc_box_options){.margin = 0.01f, .workers = &workers};
-                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, boxes, NULL), NULL);
-                assert_memory_equal(boxes, right, count * sizeof *boxes);
-                free(copy);
-                guard_release(boxes);
-                narc_destroy_shapes(store);
-                destroy_columns(&columns);
-            }
-            guard_release(right);
-            destroy_scene(&scene);
+        struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
+        scene.bodies[1].sine = 3;
+        test_use_isa("scalar");
+        narc_box *const right = compute(&scene, &(narc_box_options){.margin = 0.01f}, 1);
+        test_use_isa(test_isa());
+        for (size_t count = 1; count <= MOST; count += count < 70 ? 1 : 71) {
+            narc_box *const boxes = guard_allocate(count * sizeof *boxes);
+            const size_t first = random_below(&random, count), rest = count - first;
+            const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
+            size_t skipped = 99;
+            const narc_box_options options = {.margin = 0.01f,
+                                              .out_skipped = &skipped,
+                                              .first = first,
+                                              .count = random_below(&random, rest + 1),
+                                              .workers = &workers};
+            const size_t part = options.count ? options.count : rest;
+            scene.body_count = count;
+            const narc_bodies bodies = scene_bodies(&scene);
+            expect_ok(narc_compute_boxes(scene.store, &bodies, &options, boxes, NULL), NULL);
+            assert_int_equal(skipped, first <= 1 && first + part > 1);
+            assert_true(is_junk(boxes, first * sizeof *boxes));
+            assert_memory_equal(boxes + first, right + first, part * sizeof *boxes);
+            assert_true(is_junk(boxes + first + part, (count - first - part) * sizeof *boxes));
+            guard_release(boxes);
         }
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------ broken bodies */
-
-TEST(gives_broken_bodies_empty_boxes) {
-    struct test_random random = test_random_named("broken");
-    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
-    static const float worse[][4] = {{0, -1, 1e-30f, 1e12f},
-                                     {0, 1.001f, 2, 1e20f}}; /* scales, cosines without a sine */
-    enum { COUNT = 40, KINDS = 8 };
-    static const narc_box none = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (int precision = 0; precision < 2; precision++) {
-        struct scene scene = make_random_scene(&random, (narc_precision)precision, COUNT, 1);
-        narc_box *const right = compute(&scene, NULL, 1);
-        for (size_t kind = 0; kind < KINDS; kind++) {
-            for (size_t value = 0; value < 4; value++) {
-                float motion[COUNT] = {0};
-                const size_t k = random_below(&random, COUNT);
-                struct body *const body = &scene.bodies[k];
-                const struct body whole = *body;
-                size_t skipped = 9;
-                float *const numbers[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine,
-                                          &body->scale,    &motion[k],      &body->scale,  &body->cosine};
-                *numbers[kind] = kind < 6 ? (float)bad[value] : worse[kind - 6][value];
-                if (kind < 2)
-                    *(kind ? &body->y : &body->x) = bad[value];
-                if (kind == 7)
-                    body->sine = 0;
-                narc_box *const found =
-                    compute(&scene, &(narc_box_options){.motion_y = NARC_ARRAY(motion), .out_skipped = &skipped}, 1);
-                assert_int_equal(skipped, 1);
-                for (size_t i = 0; i < COUNT; i++)
-                    assert_memory_equal(&found[i], i == k ? &none : &right[i], sizeof none);
-                guard_release(found);
-                *body = whole;
-            }
-        }
+        scene.body_count = MOST;
         guard_release(right);
         destroy_scene(&scene);
     }
-}
-
-/* Random bits as every number of every body: nothing hangs, crashes, or comes out as NaN. */
-TEST(survives_garbage) {
-    struct test_random random = test_random_named("garbage boxes");
-    enum { COUNT = 300 };
-    for (size_t trial = 0; trial < test_trials(60); trial++) {
-        struct scene scene = make_random_scene(&random, (narc_precision)(trial % 2), COUNT, 1);
-        float motion[COUNT];
-        size_t skipped = 0, empty = 0;
-        for (size_t k = 0; k < COUNT; k++) {
-            struct body *const body = &scene.bodies[k];
-            const uint64_t words[5] = {random_bits(&random), random_bits(&random), random_bits(&random),
-                                       random_bits(&random), random_bits(&random)};
-            const uint32_t shape = body->shape;
-            if (random_below(&random, 2)) {
-                memcpy(body, words, sizeof *body < sizeof words ? sizeof *body : sizeof words);
-                body->shape = shape;
-            }
-            memcpy(&motion[k], (const char *)words + 4, sizeof motion[k]);
-        }
-        const narc_float_column moves = NARC_ARRAY(motion);
-        const narc_box_options moving = {.motion_x = moves, .motion_y = moves, .out_skipped = &skipped};
-        narc_box *const boxes = compute(&scene, &moving, 1);
-        for (size_t k = 0; k < COUNT; k++) {
-            const narc_box *const box = &boxes[k];
-            const bool whole = box->min_x <= box->max_x && box->min_y <= box->max_y && fabsf(box->min_x) <= FLT_MAX &&
-                               fabsf(box->min_y) <= FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX;
-            assert_true(whole || (box->min_x == INFINITY && box->max_y == -INFINITY));
-            empty += !whole;
-        }
-        assert_int_equal(skipped, empty);
-        guard_release(boxes);
-        destroy_scene(&scene);
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-TEST(refuses_bad_arguments) {
-    struct test_random random = test_random_named("errors of boxes");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 1);
-    const narc_bodies bodies = scene_bodies(&scene), none = {0};
-    narc_bodies broken = bodies;
-    narc_box boxes[100];
-    narc_error error;
-    size_t skipped = 5;
-    narc_box_options options = {.out_skipped = &skipped};
-    memset(boxes, GUARD_JUNK, sizeof boxes);
-    broken.sine.base = NULL;
-#define EXPECT(shapes, bodies, options, boxes, status, words)                                                          \
-    expect_error(narc_compute_boxes(shapes, bodies, options, boxes, &error), status, &error, words)
-#define WRONG(status, words, ...)                                                                                      \
-    EXPECT(scene.store, &bodies, (&(narc_box_options){.out_skipped = &skipped, __VA_ARGS__}), boxes, status, words)
-    EXPECT(NULL, &bodies, NULL, boxes, NARC_ERROR_ARGUMENT, "shapes");
-    EXPECT(scene.store, NULL, NULL, boxes, NARC_ERROR_ARGUMENT, "bodies");
-    EXPECT(scene.store, &bodies, NULL, NULL, NARC_ERROR_ARGUMENT, "out_boxes");
-    EXPECT(scene.store, &broken, NULL, boxes, NARC_ERROR_ARGUMENT, "sine");
-#if SIZE_MAX > UINT32_MAX
-    narc_bodies many = bodies;
-    many.count = (size_t)UINT32_MAX + 1;
-    EXPECT(scene.store, &many, NULL, boxes, NARC_ERROR_ARGUMENT, "at most");
-#endif
-    WRONG(NARC_ERROR_ARGUMENT, "bodies 90 and the 11", .first = 90, .count = 11);
-    WRONG(NARC_ERROR_ARGUMENT, "bodies 101 and the 0", .first = 101);
-    WRONG(NARC_ERROR_ARGUMENT, "options.reserved[0] is not NULL", .reserved = {boxes});
-    WRONG(NARC_ERROR_ARGUMENT, "margin", .margin = -1);
-    WRONG(NARC_ERROR_NOT_FINITE, "margin", .margin = NAN);
-    WRONG(NARC_ERROR_NOT_FINITE, "margin", .margin = INFINITY);
-    scene.bodies[70].shape = 1000000;
-    scene.bodies[80].shape = 1000001;
-    for (unsigned threads = 1; threads < 4; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        options.workers = &workers;
-        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70");
-        assert_int_equal(error.index, 70);
-    }
-    assert_int_equal(skipped, 5);
-    assert_true(is_junk(boxes, sizeof boxes));
-    expect_ok(narc_compute_boxes(scene.store, &bodies, &(narc_box_options){.count = 70}, boxes, &error), &error);
-    options.workers = NULL;
-    expect_ok(narc_compute_boxes(scene.store, &none, &options, NULL, &error), &error);
-    assert_int_equal(skipped, 0);
-    destroy_scene(&scene);
-}
-
-/* The bodies of many parts: the first of several wrong shapes is named, whatever thread finds it. */
-TEST(names_the_first_wrong_shape) {
-    struct test_random random = test_random_named("wrong shapes");
-    enum { COUNT = 200000 };
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 1, 1);
-    uint32_t *const shape = calloc(COUNT, sizeof *shape);
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    narc_bodies bodies = scene_bodies(&scene);
-    narc_error error;
-    assert_non_null(shape);
-    bodies.count = COUNT;
-    bodies.x.stride = bodies.y.stride = bodies.cosine.stride = bodies.sine.stride = bodies.scale.stride = 0;
-    bodies.shape = NARC_ARRAY(shape);
-    shape[70000] = shape[70001] = shape[150000] = 12345;
-    for (unsigned threads = 1; threads < 5; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        narc_box_options options = {.workers = &workers};
-        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70000");
-        options.first = 70001, options.count = 100000;
-        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70001");
-    }
-    free(shape);
-    free(boxes);
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("boxes")

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * broken.c - which bodies are broken: all calls agree, for bodies at the limits of what they may be; and bodies that are
- * far away take nothing from the others.
+ * broken.c - which bodies are broken: all calls agree, for bodies at the limits of what they may be and beyond.
  */
 #include <float.h>
 #include <math.h>
@@ -292,6 +291,30 @@ TEST(rotations_at_the_limit) {
     destroy_trial(t);
 }
 
+/* One number of a body that is none, or a rotation without a length. */
+TEST(numbers_that_are_none) {
+    static const float none[] = {NAN, INFINITY, -INFINITY};
+    enum { NUMBERS = 5, WAYS = 3 * NUMBERS + 1 };
+    struct trial *const t = create_trial(4 * WAYS);
+    t->reach = 2.5;
+    t->from = 3 * t->reach;
+    for (size_t k = 0; k < t->count; k++) {
+        narc_body body = at_place(t, k);
+        const size_t way = k % WAYS;
+        t->mate[k] = body;
+        if (way == WAYS - 1)
+            body.cosine = 0;
+        else if (way / 3 < 2)
+            *(way / 3 ? &body.y : &body.x) = (double)none[way % 3];
+        else
+            *(float *[]){&body.cosine, &body.sine, &body.scale}[way / 3 - 2] = none[way % 3];
+        t->tried[k] = body;
+    }
+    ask_all(t);
+    assert_int_equal(expect_agreement(t, true), 0);
+    destroy_trial(t);
+}
+
 /* The last scale of a shape that is accepted, from one that is towards one that is not. */
 static float find_last_scale(const struct trial *t, uint32_t shape, float from, float to) {
     for (;;) {
@@ -378,168 +401,6 @@ TEST(shapes_that_were_removed) {
     ask_all(t);
     assert_int_equal(expect_agreement(t, false), t->count / 2);
     destroy_trial(t);
-}
-
-/* ------------------------------------------------------------------------------------------------ far bodies */
-
-enum { NEAR = 300, FAR = 24, ALL = NEAR + FAR, ASKING = 400, NEIGHBOURS = 3, MOST_PAIRS = 20000 };
-
-/* Bodies near the origin, and behind them some that are far away in all directions, if there are any. */
-struct flown {
-    struct scene scene;
-    narc_bodies bodies;
-    narc_box boxes[ALL];
-    narc_index *index;
-};
-
-/* What is asked of the near ones. */
-struct answers {
-    narc_box boxes[NEAR];
-    narc_distance nearest[ASKING * NEIGHBOURS], distances[ASKING];
-    narc_ray_hit rays[3][ASKING];
-    narc_impact movers[NEAR], casts[ASKING];
-    narc_contact contacts[ASKING];
-    narc_manifold manifolds[ASKING];
-    float separations[ASKING];
-    uint64_t bits[NARC_BIT_WORDS(ASKING)];
-    size_t regions, pairs, kept;
-    uint32_t region[2 * MOST_PAIRS], pair[2 * MOST_PAIRS], kept_pair[2 * MOST_PAIRS];
-};
-
-/* Whoever has a list of pairs, these are the ones of near bodies. */
-static size_t take_near(const narc_pairs *pairs, uint32_t *out) {
-    size_t count = 0;
-    for (size_t k = 0; k < pairs->count; k++)
-        if (pairs->b.base[k] < NEAR && count < MOST_PAIRS) {
-            out[2 * count] = pairs->a.base[k];
-            out[2 * count++ + 1] = pairs->b.base[k];
-        }
-    return count;
-}
-
-static void ask_near(const struct flown *f, struct test_random random, struct answers *out) {
-    static double x[ASKING], y[ASKING];
-    static float motion_x[ASKING], motion_y[ASKING];
-    static uint32_t a[MOST_PAIRS], b[MOST_PAIRS], numbers[ASKING], others[ASKING];
-    const narc_shapes *const store = f->scene.store;
-    narc_bodies movers = f->bodies;
-    movers.count = NEAR;
-    for (size_t k = 0; k < ASKING; k++) { /* rays in fans, which go together, and alone */
-        const double angle = random_between(&random, -PI, PI), length = random_log_between(&random, 1, 1e4);
-        const bool joins = k % 8 > 0 && k % 16 < 8;
-        x[k] = joins ? x[k - 1] : random_between(&random, -15, 15);
-        y[k] = joins ? y[k - 1] : random_between(&random, -15, 15);
-        motion_x[k] = joins ? motion_x[k - 1] + 0.01f : (float)(length * cos(angle));
-        motion_y[k] = joins ? motion_y[k - 1] : (float)(length * sin(angle));
-        numbers[k] = (uint32_t)random_below(&random, NEAR);
-        others[k] = (uint32_t)random_below(&random, NEAR);
-    }
-    const narc_points points = {.count = ASKING, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
-    const narc_rays rays = {.count = ASKING,
-                            .x = points.x,
-                            .y = points.y,
-                            .motion_x = NARC_ARRAY(motion_x),
-                            .motion_y = NARC_ARRAY(motion_y)};
-    const narc_pairs pairs = {.count = ASKING, .a = NARC_ARRAY(numbers), .b = NARC_ARRAY(others)};
-    const narc_motions motions = {.x = NARC_ARRAY(motion_x), .y = NARC_ARRAY(motion_y)};
-    const narc_query query = {.margin = INFINITY, .dense = 1};
-    narc_pairs found;
-    size_t count;
-    memset(out, 0, sizeof *out);
-    memcpy(out->boxes, f->boxes, sizeof out->boxes);
-    const narc_nearest_options most = {.most = NEIGHBOURS};
-    assert_int_equal(
-        narc_find_nearest(f->index, store, &f->bodies, &points, &most, out->nearest, ASKING * NEIGHBOURS, NULL),
-        NARC_OK);
-    assert_int_equal(narc_find_distances(store, &f->bodies, &points, pairs.a, NULL, out->distances, NULL), NARC_OK);
-    for (narc_inside inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++)
-        assert_int_equal(narc_cast_rays(f->index, store, &f->bodies, &rays, &(narc_ray_options){.inside = inside},
-                                        out->rays[inside], ASKING, NULL),
-                         NARC_OK);
-    assert_int_equal(
-        narc_cast_shapes(f->index, store, &f->bodies, &movers, &motions, NULL, NULL, out->movers, NEAR, NULL), NARC_OK);
-    assert_int_equal(narc_cast_pairs(store, &f->bodies, NULL, &pairs, NULL, NULL, out->casts, ASKING, NULL), NARC_OK);
-    assert_int_equal(narc_find_contacts(store, &f->bodies, &pairs, &query, out->contacts, ASKING, &count, NULL),
-                     NARC_OK);
-    assert_int_equal(narc_find_manifolds(store, &f->bodies, &pairs, &query, out->manifolds, ASKING, &count, NULL),
-                     NARC_OK);
-    assert_int_equal(narc_find_separations(store, &f->bodies, &pairs, &query, out->separations, NULL), NARC_OK);
-    assert_int_equal(narc_find_overlaps(store, &f->bodies, &pairs, NULL, out->bits, NULL), NARC_OK);
-    assert_int_equal(narc_query_index(f->index, f->boxes, NEAR, NULL, &found, NULL), NARC_OK);
-    out->regions = take_near(&found, out->region);
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    assert_int_equal(
-        narc_find_pairs(broad, f->boxes, f->bodies.count, NULL, NULL, a, b, MOST_PAIRS, &found.count, NULL), NARC_OK);
-    found.a = (narc_index_column){a, sizeof *a};
-    found.b = (narc_index_column){b, sizeof *b};
-    out->pairs = take_near(&found, out->pair);
-    narc_destroy_broad_phase(broad);
-}
-
-/* A list that is kept while the bodies fly away. */
-static void keep_list(struct flown *f, struct body *bodies, struct answers *out) {
-    const narc_pair_options options = {.margin = 0.125f, .skin = 0.25f};
-    const narc_pair_list *list = NULL;
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    for (int step = 0; step < 3; step++) {
-        for (size_t k = NEAR; k < f->bodies.count; k++)
-            f->scene.bodies[k] = step == 1 ? bodies[k] : fly_away(bodies[k], k - NEAR, f->scene.precision);
-        assert_int_equal(narc_update_pairs(broad, f->scene.store, &f->bodies, &options, &list, NULL), NARC_OK);
-        assert_int_equal(list->skipped, 0);
-        out->kept = step == 1 ? 0 : take_near(&list->pairs, out->kept_pair);
-    }
-    narc_destroy_broad_phase(broad);
-}
-
-TEST(far_bodies_take_nothing_from_others) {
-    static struct answers without, with;
-    struct test_random random = test_random_named("far bodies");
-    for (size_t round = 0; round < test_trials(12); round++) {
-        const narc_precision precision = (narc_precision)(round % 2);
-        struct flown f = {.scene = make_random_scene(&random, precision, ALL, 1)};
-        struct body at_home[ALL];
-        memcpy(at_home, f.scene.bodies, sizeof at_home);
-        for (size_t k = 0; k < ALL; k++) {
-            at_home[k].x = random_between(&random, -12, 12);
-            at_home[k].y = random_between(&random, -12, 12);
-            round_position(&at_home[k], precision);
-            f.scene.bodies[k] = at_home[k];
-        }
-        const size_t far = round % 3 == 0 ? FAR : 1, first = round % 3 == 0 ? 0 : random_below(&random, FAR);
-        const narc_index_options options = {.fast = round / 2 % 2};
-        f.bodies = scene_bodies(&f.scene);
-        f.bodies.count = NEAR;
-        f.index = index_bodies(f.scene.store, &f.bodies, &options, f.boxes);
-        ask_near(&f, random, &without);
-        keep_list(&f, at_home, &without);
-        narc_destroy_index(f.index);
-        f.bodies.count = NEAR + far;
-        f.index = index_bodies(f.scene.store, &f.bodies, &options, f.boxes);
-        for (int refitted = 1; refitted >= 0; refitted--) { /* from where all are at home, then built anew */
-            for (size_t k = NEAR; k < f.bodies.count; k++)
-                f.scene.bodies[k] = fly_away(at_home[k], first + k - NEAR, precision);
-            assert_int_equal(narc_compute_boxes(f.scene.store, &f.bodies, NULL, f.boxes, NULL), NARC_OK);
-            for (size_t k = NEAR; k < f.bodies.count; k++)
-                assert_true(f.boxes[k].min_x <= f.boxes[k].max_x);
-            if (refitted)
-                assert_int_equal(narc_refit_index(f.index, f.boxes, f.bodies.count, &options, NULL, NULL), NARC_OK);
-            else
-                assert_int_equal(narc_build_index(f.index, f.boxes, f.bodies.count, &options, NULL), NARC_OK);
-            ask_near(&f, random, &with);
-            keep_list(&f, at_home, &with);
-            assert_memory_equal(with.nearest, without.nearest, sizeof with.nearest);
-            assert_memory_equal(with.rays, without.rays, sizeof with.rays);
-            assert_memory_equal(with.movers, without.movers, sizeof with.movers);
-            assert_memory_equal(with.region, without.region, sizeof with.region);
-            assert_memory_equal(with.kept_pair, without.kept_pair, sizeof with.kept_pair);
-            assert_memory_equal(&with, &without, sizeof with);
-        }
-        assert_true(with.regions > NEAR && with.pairs > 0 && with.kept > 0 && with.kept < MOST_PAIRS);
-        narc_destroy_index(f.index);
-        destroy_scene(&f.scene);
-    }
 }
 
 TEST_MAIN("broken")

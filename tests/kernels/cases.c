@@ -2,6 +2,7 @@
  *
  * cases.c - pairs whose answer is known by hand: exact touch, faces on faces, corners, coincident centres.
  */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +32,7 @@ static struct answer ask_bodies(const struct shape *a, struct body body_a, const
     struct contacts all = scene_contacts(&scene, INFINITY);
     struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
     struct fractions errors = {0};
-    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
+    const char *wrong = check_contact(&at_a, &at_b, reference_solve_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
     if (wrong) {
         fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
                  "%.3g, %.3g",
@@ -233,6 +234,31 @@ TEST(test_last_interval_meets_first) {
     assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
 }
 
+/* Denormals and both zeros are numbers like others: the answer is that of 0. */
+TEST(test_denormals) {
+    static const float tiny[] = {0.0f, -0.0f, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MIN / 2, -FLT_MIN};
+    struct test_random random = test_random_named("denormals");
+    enum { DENORMALS = 200 };
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, DENORMALS, 5000);
+    for (size_t k = 0; k < DENORMALS; k++) {
+        struct body *body = &scene.bodies[k];
+        *(random_below(&random, 2) ? &body->x : &body->y) = (double)tiny[random_below(&random, 6)];
+        *body = (struct body){
+            body->x, body->y,    0, 0, random_below(&random, 2) ? 1.0f : -1.0f, tiny[random_below(&random, 6)],
+            1,       body->shape};
+        round_position(body, NARC_FLOAT32);
+    }
+    struct contacts all = scene_contacts(&scene, INFINITY);
+    for (size_t k = 0; k < scene.pair_count; k++) {
+        struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
+                              b = scene_reference(&scene, scene.pairs[k].b);
+        struct fractions errors = {0};
+        assert_null(check_contact(&a, &b, reference_solve_gap(&a, &b).gap, &all.rows[k], &errors));
+    }
+    free(all.rows);
+    destroy_scene(&scene);
+}
+
 /* ------------------------------------------------------------------------------------------------ corners */
 
 /* The outward normal of the edge before an arc, in the world; false if there is none to speak of. */
@@ -311,7 +337,7 @@ TEST(test_corners_within_rounding) {
             const struct reference_body at_a = scene_reference(&scene, scene.pairs[pair].a),
                                         at_b = scene_reference(&scene, scene.pairs[pair].b);
             const narc_contact *const row = &contacts.rows[pair];
-            const double gap = reference_find_gap(&at_a, &at_b).gap, bound = separation_bound(&at_a, &at_b);
+            const double gap = reference_solve_gap(&at_a, &at_b).gap, bound = separation_bound(&at_a, &at_b);
             const double n_x = (double)row->normal_x, n_y = (double)row->normal_y;
             struct fractions errors = {0};
             double sine;
@@ -339,7 +365,7 @@ TEST(test_corners_within_rounding) {
         destroy_scene(&scene);
     }
     print_message("%zu told of faces, %zu of corners\n", faces, corners);
-    assert_true(faces > 0 && corners > 0);
+    assert_true(test_trials(300) < 8 || (faces > 0 && corners > 0));
 }
 
 TEST_MAIN("cases")

@@ -11,33 +11,21 @@
 #include "expect.h"
 #include "guard.h"
 #include "hard.h"
-#include "layouts.h"
 #include "narc_scene.h"
 #include "placements.h"
-
-struct motion {
-    float x, y, angle;
-};
 
 /* A scene whose bodies move: body k by motion[k]. */
 struct moving {
     struct scene scene;
-    struct motion *motion;
+    struct test_motion *motion;
     float target, tolerance;
 };
 
-static narc_motions motions_of(const struct moving *m) {
-    return (narc_motions){
-        .x = NARC_COLUMN(m->motion, x), .y = NARC_COLUMN(m->motion, y), .angle = NARC_COLUMN(m->motion, angle)};
-}
-
-static narc_impact *cast_all(const struct moving *m, unsigned threads, size_t *out_skipped) {
+static narc_impact *cast_all(const struct moving *m, size_t *out_skipped) {
     const narc_bodies bodies = scene_bodies(&m->scene);
     const narc_pairs pairs = scene_pairs(&m->scene);
-    const narc_motions motions = motions_of(m);
-    const narc_workers workers = narc_openmp_workers(threads);
-    const narc_cast_options options = {
-        .target = m->target, .tolerance = m->tolerance, .workers = &workers, .out_skipped = out_skipped};
+    const narc_motions motions = view_motions(m->motion);
+    const narc_cast_options options = {.target = m->target, .tolerance = m->tolerance, .out_skipped = out_skipped};
     narc_impact *rows = guard_allocate(pairs.count * sizeof *rows);
     narc_error error;
     expect_ok(narc_cast_pairs(m->scene.store, &bodies, &motions, &pairs, NULL, &options, rows, pairs.count, &error),
@@ -83,7 +71,7 @@ static void go_to(struct way *w, double time) {
 
 static double separation_at(struct way *w, double time) {
     go_to(w, time);
-    return reference_find_gap(&w->a, &w->b).gap;
+    return reference_solve_gap(&w->a, &w->b).gap;
 }
 
 static bool turns(const struct way *w) { return w->angle_a != 0 || w->angle_b != 0; }
@@ -133,7 +121,7 @@ static double find_least(struct way *w, double end, double enough) {
 
 /* ------------------------------------------------------------------------------------------------ what is right */
 
-struct tally {
+struct summary {
     size_t outcomes[3], at_start, rounded;
     struct fractions worst;
 };
@@ -149,7 +137,7 @@ static void fail_cast(const struct moving *m, size_t pair, const narc_impact *ro
         w.motion_y, w.angle_a, w.angle_b, (double)m->target);
 }
 
-static void check_row(const struct moving *m, size_t pair, const narc_impact *row, struct tally *tally) {
+static void check_row(const struct moving *m, size_t pair, const narc_impact *row, struct summary *summary) {
     struct way w = find_way(m, pair);
     const double target = (double)m->target, fraction = (double)row->fraction;
     go_to(&w, fraction);
@@ -158,7 +146,7 @@ static void check_row(const struct moving *m, size_t pair, const narc_impact *ro
     const double rounding = 0x1p-24 * (hypot(w.motion_x, w.motion_y) + 3 * turning);
     assert_int_equal(row->pair, pair);
     assert_in_range(row->count, 0, 2);
-    tally->outcomes[row->count]++;
+    summary->outcomes[row->count]++;
     if (row->count == NARC_CAST_MISS) {
         const narc_impact none = {.pair = (uint32_t)pair};
         assert_memory_equal(row, &none, sizeof none);
@@ -173,10 +161,10 @@ static void check_row(const struct moving *m, size_t pair, const narc_impact *ro
     const narc_contact contact = {
         row->pair,     row->feature, 1, row->separation, row->normal_x, row->normal_y, row->point_x, row->point_y,
         row->radius_a, row->radius_b};
-    const char *const wrong = check_contact(&w.a, &w.b, now, &contact, &tally->worst);
+    const char *const wrong = check_contact(&w.a, &w.b, now, &contact, &summary->worst);
     if (wrong)
         fail_cast(m, pair, row, wrong, (double)row->separation, now);
-    tally->at_start += fraction == 0;
+    summary->at_start += fraction == 0;
     if (fraction == 0 && now < target) /* as deep as they were */
         return;
     const double smaller = fmin((double)m->scene.bodies[m->scene.pairs[pair].a].scale,
@@ -192,16 +180,16 @@ static void check_row(const struct moving *m, size_t pair, const narc_impact *ro
         fail_cast(m, pair, row, "too late", least - target, -bound);
 }
 
-static void check_moving(const struct moving *m, struct tally *tally) {
+static void check_moving(const struct moving *m, struct summary *summary) {
     size_t skipped = 9;
-    narc_impact *rows = cast_all(m, 1, &skipped);
+    narc_impact *rows = cast_all(m, &skipped);
     assert_int_equal(skipped, 0);
     for (size_t k = 0; k < m->scene.pair_count; k++)
-        check_row(m, k, &rows[k], tally);
+        check_row(m, k, &rows[k], summary);
     guard_release(rows);
 }
 
-static void print_tally(const char *name, const struct tally *t) {
+static void print_summary(const char *name, const struct summary *t) {
     print_message("%s: %zu miss, %zu hit (%zu at once), %zu unfinished; of the bounds: separation %.2f, normal %.2f, "
                   "point %.2f\n",
                   name, t->outcomes[0], t->outcomes[1], t->at_start, t->outcomes[2], t->worst.separation,
@@ -211,15 +199,15 @@ static void print_tally(const char *name, const struct tally *t) {
 /* ------------------------------------------------------------------------------------------------ what is cast */
 
 /* A way to a place: its length is of the order of the size, or far longer; sometimes there is none. */
-static struct motion random_motion(struct test_random *random, double size, double turning) {
+static struct test_motion random_motion(struct test_random *random, double size, double turning) {
     const double angle = random_between(random, -4, 4);
     const double way = random_below(random, 8) == 0 ? 0 : size * random_log_between(random, 0.05, 60);
     double turn = random_below(random, 4) == 0 ? 0 : turning * random_between(random, -1, 1);
-    return (struct motion){(float)(way * cos(angle)), (float)(way * sin(angle)), (float)turn};
+    return (struct test_motion){(float)(way * cos(angle)), (float)(way * sin(angle)), (float)turn};
 }
 
 /* Moves a body back from where it is after a part of its motion. */
-static void move_back(struct body *body, const struct motion *motion, double time, narc_precision precision) {
+static void move_back(struct body *body, const struct test_motion *motion, double time, narc_precision precision) {
     const double angle = atan2((double)body->sine, (double)body->cosine) - time * (double)motion->angle;
     body->x -= time * (double)motion->x;
     body->y -= time * (double)motion->y;
@@ -243,7 +231,7 @@ static struct moving set_in_motion(struct test_random *random, struct scene scen
         for (int side = 0; side < 2; side++)
             m.motion[two[side]] = random_motion(random, size, turning);
         if (random_below(random, 3) == 0) {
-            const struct reference_gap gap = reference_find_gap(&a, &b);
+            const struct reference_gap gap = reference_solve_gap(&a, &b);
             const double way = size * random_log_between(random, 0.05, 60);
             m.motion[two[0]].x = m.motion[two[0]].y = 0;
             m.motion[two[1]].x = (float)(-gap.normal_y * way);
@@ -260,96 +248,88 @@ static void destroy_moving(struct moving *m) {
     destroy_scene(&m->scene);
 }
 
-static const float targets[] = {0, 0, 0.05f, -0.05f, 1};
+static enum family random_family(struct test_random *random) { return (enum family)random_below(random, FAMILY_COUNT); }
 
-/* `unfinished`: at most this share of all. */
-static void check_families(const char *name, double turning, size_t trials, double unfinished) {
+/* Two shapes of any families, in all places. */
+static struct scene make_placed(struct test_random *random, narc_precision precision) {
+    const enum family a = random_family(random), b = random_family(random);
+    return make_placed_scene(random, precision, a, b, PLACE_COUNT * 4);
+}
+
+static struct scene make_hard(struct test_random *random, narc_precision precision) {
+    struct scene scene = create_scene(precision, 2, HARD_BODIES, HARD_BODIES / 2);
+    for (int side = 0; side < 2; side++) {
+        const struct shape shape = make_hard_shape(random, (enum hard_family)random_below(random, HARD_COUNT));
+        scene_add_shape(&scene, &shape);
+    }
+    add_hard_pairs(random, &scene, (enum hard_placement)random_below(random, HARD_PLACES), 0, 1);
+    return scene;
+}
+
+static struct scene make_deep(struct test_random *random, narc_precision precision) {
+    static const enum family families[] = {FAMILY_SMOOTH, FAMILY_LENS, FAMILY_THIN, FAMILY_UNEQUAL};
+    struct scene scene = create_scene(precision, 2, 48, 24);
+    for (int side = 0; side < 2; side++) {
+        const struct shape shape = make_shape(random, families[random_below(random, 4)]);
+        scene_add_shape(&scene, &shape);
+    }
+    for (int pair = 0; pair < 24; pair++)
+        scene_add_placed(random, &scene, PLACE_DEEP, 0, 1);
+    return scene;
+}
+
+/* `deepest`: targets are down to that; 0: a few. `unfinished`: at most this share of all. */
+static void check_scenes(const char *name, struct scene (*make)(struct test_random *, narc_precision), double turning,
+                         double deepest, size_t trials, double unfinished) {
+    static const float targets[] = {0, 0, 0.05f, -0.05f, 1};
     struct test_random random = test_random_named(name);
-    struct tally tally = {.at_start = 0};
-    for (size_t k = 0; k < trials; k++) {
-        const enum family a = (enum family)random_below(&random, FAMILY_COUNT),
-                          b = (enum family)random_below(&random, FAMILY_COUNT);
-        const struct scene scene = make_placed_scene(&random, (narc_precision)(k % 2), a, b, PLACE_COUNT * 4);
-        struct moving m = set_in_motion(&random, scene, turning);
-        m.target = targets[random_below(&random, 5)];
-        check_moving(&m, &tally);
+    struct summary summary = {.at_start = 0};
+    for (size_t k = 0; k < test_trials(trials); k++) {
+        struct moving m = set_in_motion(&random, make(&random, (narc_precision)(k % 2)), turning);
+        m.target =
+            deepest > 0 ? (float)-random_log_between(&random, 0.005, deepest) : targets[random_below(&random, 5)];
+        check_moving(&m, &summary);
         destroy_moving(&m);
     }
-    print_tally(name, &tally);
-    assert_true(tally.outcomes[0] > 0 && tally.outcomes[1] > 0);
-    assert_true((double)tally.outcomes[2] <= unfinished * (double)(tally.outcomes[0] + tally.outcomes[1]));
+    print_summary(name, &summary);
+    assert_true(test_trials(trials) < 5 || (summary.outcomes[0] > 0 && summary.outcomes[1] > 0));
+    assert_true((double)summary.outcomes[2] <=
+                (unfinished > 0) + unfinished * (double)(summary.outcomes[0] + summary.outcomes[1]));
 }
 
-TEST(test_lines) { check_families("lines", 0, test_trials(24), 0); }
+TEST(test_lines) { check_scenes("lines", make_placed, 0, 0, 24, 0); }
 
-/* So deep that the arcs which touch on the way are not those that touch at the target, or that it is never reached. */
-TEST(test_deep_targets) {
-    struct test_random random = test_random_named("deep targets");
-    struct tally tally = {.at_start = 0};
-    for (size_t k = 0; k < test_trials(60); k++) {
-        static const enum family families[] = {FAMILY_SMOOTH, FAMILY_LENS, FAMILY_THIN, FAMILY_UNEQUAL};
-        struct scene scene = create_scene(NARC_FLOAT64, 2, 48, 24);
-        for (int side = 0; side < 2; side++) {
-            const struct shape shape = make_shape(&random, families[random_below(&random, 4)]);
-            scene_add_shape(&scene, &shape);
-        }
-        for (int pair = 0; pair < 24; pair++)
-            scene_add_placed(&random, &scene, PLACE_DEEP, 0, 1);
-        struct moving m = set_in_motion(&random, scene, 0);
-        m.target = (float)-random_log_between(&random, 0.005, 0.6);
-        check_moving(&m, &tally);
-        destroy_moving(&m);
-    }
-    print_tally("deep targets", &tally);
-}
+TEST(test_turning) { check_scenes("turning", make_placed, 2, 0, 10, 0.001); }
 
-TEST(test_turning) { check_families("turning", 2, test_trials(10), 0.001); }
-
-TEST(test_full_turns) { check_families("full turns", 14, test_trials(6), 0.001); }
+TEST(test_full_turns) { check_scenes("full turns", make_placed, 14, 0, 6, 0.001); }
 
 /* So fast that floats of time are a sixteenth of a radian apart, and more: what comes near has turned too often to tell. */
-TEST(test_fast_turns) { check_families("fast turns", 0x1p23, test_trials(1), 0.5); }
+TEST(test_fast_turns) { check_scenes("fast turns", make_placed, 0x1p23, 0, 5, 0.5); }
 
-static void check_hard(const char *name, double turning, size_t trials) {
-    struct test_random random = test_random_named(name);
-    struct tally tally = {.at_start = 0};
-    for (size_t k = 0; k < trials; k++) {
-        struct scene scene = create_scene((narc_precision)(k % 2), 2, HARD_BODIES, HARD_BODIES / 2);
-        for (int side = 0; side < 2; side++) {
-            const struct shape shape = make_hard_shape(&random, (enum hard_family)random_below(&random, HARD_COUNT));
-            scene_add_shape(&scene, &shape);
-        }
-        add_hard_pairs(&random, &scene, (enum hard_placement)random_below(&random, HARD_PLACES), 0, 1);
-        struct moving m = set_in_motion(&random, scene, turning);
-        check_moving(&m, &tally);
-        destroy_moving(&m);
-    }
-    print_tally(name, &tally);
-}
+TEST(test_hard_lines) { check_scenes("hard lines", make_hard, 0, 0, 20, 0); }
 
-TEST(test_hard_lines) { check_hard("hard lines", 0, test_trials(20)); }
+TEST(test_hard_turning) { check_scenes("hard turning", make_hard, 3, 0, 8, 0.01); }
 
-TEST(test_hard_turning) { check_hard("hard turning", 3, test_trials(8)); }
+/* So deep that the arcs which touch on the way are not those that touch at the target, or that it is never reached. */
+TEST(test_deep_targets) { check_scenes("deep targets", make_deep, 0, 0.6, 60, 0); }
 
 /* The scene by a quarter turn: the same numbers in other places, to the last bit. */
 TEST(test_quarter_turn) {
     struct test_random random = test_random_named("quarter turn");
     for (size_t k = 0; k < test_trials(60); k++) {
-        struct scene scene = make_placed_scene(&random, NARC_FLOAT64, (enum family)random_below(&random, FAMILY_COUNT),
-                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
-        struct moving m = set_in_motion(&random, scene, k % 2 ? 3 : 0);
-        narc_impact *const rows = cast_all(&m, 1, NULL);
+        struct moving m = set_in_motion(&random, make_placed(&random, NARC_FLOAT64), k % 2 ? 3 : 0);
+        narc_impact *const rows = cast_all(&m, NULL);
         for (size_t b = 0; b < m.scene.body_count; b++) {
             struct body *const body = &m.scene.bodies[b];
             const struct body was = *body;
-            const struct motion motion = m.motion[b];
+            const struct test_motion motion = m.motion[b];
             body->x = -was.y;
             body->y = was.x;
             body->cosine = -was.sine;
             body->sine = was.cosine;
-            m.motion[b] = (struct motion){-motion.y, motion.x, motion.angle};
+            m.motion[b] = (struct test_motion){-motion.y, motion.x, motion.angle};
         }
-        narc_impact *const turned = cast_all(&m, 1, NULL);
+        narc_impact *const turned = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
             const narc_impact *const a = &rows[pair], *const b = &turned[pair];
             assert_true(a->count == b->count && a->feature == b->feature && a->body == b->body);
@@ -379,11 +359,11 @@ TEST(test_thin_rods_that_turn) {
         scene_add_two(&scene, (struct body){.cosine = 1, .scale = 1},
                       (struct body){.y = thick[kind] + 0.03, .cosine = 1, .scale = 1});
         struct moving m = {.scene = scene, .motion = calloc(2, sizeof *m.motion)};
-        struct tally tally = {.at_start = 0};
+        struct summary summary = {.at_start = 0};
         for (double turn = 1; turn > 1e-12; turn /= 3) {
             m.motion[1].angle = (float)turn;
-            narc_impact *const row = cast_all(&m, 1, NULL);
-            check_row(&m, 0, row, &tally);
+            narc_impact *const row = cast_all(&m, NULL);
+            check_row(&m, 0, row, &summary);
             assert_int_equal(row->count, sin(turn) * 50 > 0.03 ? NARC_CAST_HIT : NARC_CAST_MISS);
             assert_true(row->separation <= 1e-5f + (float)thick[kind] / 128);
             guard_release(row);
@@ -398,7 +378,7 @@ TEST(test_thin_rods_that_turn) {
 TEST(test_named_tolerances) {
     enum { PAIRS = 40 };
     struct test_random random = test_random_named("named tolerances");
-    struct tally tally = {.at_start = 0};
+    struct summary summary = {.at_start = 0};
     for (size_t k = 0; k < test_trials(40); k++) {
         struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
         const double half = random_log_between(&random, 1, 2000);
@@ -429,15 +409,15 @@ TEST(test_named_tolerances) {
             struct body *const placed = &m.scene.bodies[2 * pair + 1];
             for (int step = 0; step < 60; step++) { /* up to where it is so deep */
                 const struct reference_body b = scene_reference(&m.scene, (uint32_t)(2 * pair + 1));
-                placed->y += above - reference_find_gap(&a, &b).gap;
+                placed->y += above - reference_solve_gap(&a, &b).gap;
             }
             m.motion[2 * pair + 1] =
-                (struct motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
-                                (float)random_between(&random, -1.5, 1.5)};
+                (struct test_motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
+                                     (float)random_between(&random, -1.5, 1.5)};
         }
-        narc_impact *const rows = cast_all(&m, 1, NULL);
+        narc_impact *const rows = cast_all(&m, NULL);
         for (size_t pair = 0; pair < PAIRS; pair++) {
-            check_row(&m, pair, &rows[pair], &tally);
+            check_row(&m, pair, &rows[pair], &summary);
             const double most = (double)m.target + (double)m.tolerance + 1e-6;
             if (rows[pair].count == NARC_CAST_HIT && (double)rows[pair].separation > most)
                 fail_cast(&m, pair, &rows[pair], "not so near", (double)rows[pair].separation, most);
@@ -445,8 +425,8 @@ TEST(test_named_tolerances) {
         guard_release(rows);
         destroy_moving(&m);
     }
-    print_tally("named tolerances", &tally);
-    assert_true(tally.outcomes[NARC_CAST_HIT] > 0 && tally.outcomes[NARC_CAST_UNFINISHED] == 0);
+    print_summary("named tolerances", &summary);
+    assert_true(summary.outcomes[NARC_CAST_HIT] > 0 && summary.outcomes[NARC_CAST_UNFINISHED] == 0);
 }
 
 /* With next to no turn a cast is the straight one's: what becomes of it, and when, but for what turning moves. */
@@ -454,19 +434,16 @@ TEST(test_small_turns) {
     struct test_random random = test_random_named("small turns");
     size_t hits = 0, others = 0;
     for (size_t k = 0; k < test_trials(40); k++) {
-        const struct scene scene =
-            make_placed_scene(&random, (narc_precision)(k % 2), (enum family)random_below(&random, FAMILY_COUNT),
-                              (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
-        struct moving m = set_in_motion(&random, scene, 0);
-        struct tally tally = {.at_start = 0};
-        narc_impact *const straight = cast_all(&m, 1, NULL);
+        struct moving m = set_in_motion(&random, make_placed(&random, (narc_precision)(k % 2)), 0);
+        struct summary summary = {.at_start = 0};
+        narc_impact *const straight = cast_all(&m, NULL);
         for (size_t b = 0; b < m.scene.body_count; b++)
             m.motion[b].angle = (float)(random_between(&random, -1, 1) * random_log_between(&random, 1e-30, 1e-8));
-        narc_impact *const turning = cast_all(&m, 1, NULL);
+        narc_impact *const turning = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
             const narc_impact *const a = &straight[pair], *const b = &turning[pair];
             struct way w = find_way(&m, pair);
-            check_row(&m, pair, b, &tally);
+            check_row(&m, pair, b, &summary);
             go_to(&w, 0);
             const double bound = separation_bound(&w.a, &w.b) + 0x1p-23 * hypot(w.motion_x, w.motion_y);
             if (a->count == b->count && (a->count == NARC_CAST_MISS || separation_at(&w, (double)a->fraction) < 0))
@@ -492,7 +469,7 @@ TEST(test_along_tiles) {
     struct test_random random = test_random_named("along tiles");
     struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
     const struct shape tile = box_of(2, 1, 0), box = box_of(0.75, 0.5, 0);
-    struct tally tally = {.at_start = 0};
+    struct summary summary = {.at_start = 0};
     scene_add_shape(&scene, &tile);
     scene_add_shape(&scene, &box);
     struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
@@ -507,18 +484,18 @@ TEST(test_along_tiles) {
         on.x = next.x + c * x - s * y;
         on.y = next.y + s * x + c * y;
         on.shape = 1;
-        m.motion[2 * pair] = (struct motion){(float)(c * way), (float)(s * way), 0};
+        m.motion[2 * pair] = (struct test_motion){(float)(c * way), (float)(s * way), 0};
         scene_add_two(&m.scene, on, next);
     }
-    narc_impact *const rows = cast_all(&m, 1, NULL);
+    narc_impact *const rows = cast_all(&m, NULL);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         const double c = cos(angle[pair]), s = sin(angle[pair]);
         const double n_x = (double)rows[pair].normal_x, n_y = (double)rows[pair].normal_y;
-        check_row(&m, pair, &rows[pair], &tally);
+        check_row(&m, pair, &rows[pair], &summary);
         assert_true(rows[pair].count != NARC_CAST_HIT || fmin(fabs(c * n_x + s * n_y), fabs(c * n_y - s * n_x)) < 1e-6);
     }
-    print_tally("along tiles", &tally);
-    assert_true(tally.outcomes[NARC_CAST_HIT] > PAIRS / 3);
+    print_summary("along tiles", &summary);
+    assert_true(summary.outcomes[NARC_CAST_HIT] > PAIRS / 3);
     guard_release(rows);
     destroy_moving(&m);
 }
@@ -533,8 +510,7 @@ TEST(test_circles_that_turn) {
         struct scene scene = create_scene((narc_precision)(k % 2), 2, 2 * PAIRS, PAIRS);
         const double radius = random_log_between(&random, 0.3, 3);
         struct shape circle = circle_of(radius);
-        const struct shape other =
-            k % 3 ? make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT)) : circle;
+        const struct shape other = k % 3 ? make_shape(&random, random_family(&random)) : circle;
         if (k % 5 == 4)
             circle.arcs[0].center_x = 0.25 * radius;
         scene_add_shape(&scene, k % 4 < 2 ? &circle : &other);
@@ -545,13 +521,13 @@ TEST(test_circles_that_turn) {
         const int of = k % 4 < 2 ? 0 : 1;
         for (size_t pair = 0; pair < scene.pair_count; pair++)
             m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = (float)random_between(&random, -7, 7);
-        narc_impact *const turning = cast_all(&m, 1, NULL);
-        struct tally tally = {.at_start = 0};
+        narc_impact *const turning = cast_all(&m, NULL);
+        struct summary summary = {.at_start = 0};
         for (size_t pair = 0; pair < scene.pair_count; pair++)
-            check_row(&m, pair, &turning[pair], &tally);
+            check_row(&m, pair, &turning[pair], &summary);
         for (size_t pair = 0; pair < scene.pair_count; pair++)
             m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = 0;
-        narc_impact *const straight = cast_all(&m, 1, NULL);
+        narc_impact *const straight = cast_all(&m, NULL);
         for (size_t pair = 0; pair < scene.pair_count; pair++) {
             const bool same = memcmp(&turning[pair], &straight[pair], sizeof *straight) == 0;
             hits += same && straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
@@ -563,123 +539,53 @@ TEST(test_circles_that_turn) {
         destroy_moving(&m);
     }
     print_message("%zu hits of circles about their positions, %zu others of those beside\n", hits, beside);
-    assert_true(hits > 0 && beside > 0);
+    assert_true(test_trials(60) < 10 || (hits > 0 && beside > 0));
 }
 
-/* Rotations are as long as they may be, or by a float longer. */
-TEST(test_longest_rotations) {
-    const float sine = sqrtf((float)NARC_ROTATION_TOLERANCE);
-    narc_shapes *const shapes = empty_store();
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    assert_int_equal(narc_build_box(1, 1, 0, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
-    for (int longer = 0; longer < 2; longer++) {
-        const narc_body rows[] = {{.cosine = 1, .sine = longer ? 1.001f * sine : sine, .scale = 1},
-                                  {.x = 0.5, .cosine = 1, .scale = 1}};
-        const uint32_t a = 0, b = 1;
-        const narc_pairs pairs = {.count = 1, .a = {&a, 0}, .b = {&b, 0}};
-        const narc_bodies bodies = narc_view_bodies(rows, 2);
-        size_t skipped, found;
-        narc_impact impact;
-        narc_contact contact;
-        const narc_cast_options options = {.out_skipped = &skipped};
-        assert_int_equal(narc_cast_pairs(shapes, &bodies, NULL, &pairs, NULL, &options, &impact, 1, NULL), NARC_OK);
-        assert_int_equal(skipped, longer);
-        assert_int_equal(impact.count, longer ? NARC_CAST_MISS : NARC_CAST_HIT);
-        assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, NULL, &contact, 1, &found, NULL), NARC_OK);
-        assert_int_equal(found, 1 - longer);
-    }
-    narc_destroy_shapes(shapes);
-}
-
-/* A pair's row depends on that pair alone: all of a call, of which some end as soon as they begin, together, and one
- * after the other, have the rows of each alone. */
-TEST(test_divisions) {
-    struct test_random random = test_random_named("divisions");
-    size_t hits = 0;
-    for (size_t k = 0; k < test_trials(12); k++) {
-        struct scene scene =
-            make_placed_scene(&random, (narc_precision)(k % 2), (enum family)random_below(&random, FAMILY_COUNT),
-                              (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 30);
-        struct moving m = set_in_motion(&random, scene, k % 3 == 1 ? 3 : 0);
-        for (size_t b = 0; k % 3 == 2 && b < m.scene.body_count; b++)
-            m.motion[b] = (struct motion){0, 0, 0};
-        const narc_bodies bodies = scene_bodies(&m.scene);
-        const narc_motions motions = motions_of(&m);
-        narc_impact *const rows = cast_all(&m, 1, NULL), *const by_two = cast_all(&m, 2, NULL);
-        assert_memory_equal(rows, by_two, m.scene.pair_count * sizeof *rows);
-        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
-            narc_pairs one = scene_pairs(&m.scene);
-            narc_impact row;
-            narc_error error;
-            one.a.base = &m.scene.pairs[pair].a;
-            one.b.base = &m.scene.pairs[pair].b;
-            one.count = 1;
-            expect_ok(narc_cast_pairs(m.scene.store, &bodies, &motions, &one, NULL, NULL, &row, 1, &error), &error);
-            row.pair = (uint32_t)pair;
-            assert_memory_equal(&row, &rows[pair], sizeof row);
-            hits += row.count == NARC_CAST_HIT;
-        }
-        guard_release(by_two);
-        guard_release(rows);
-        destroy_moving(&m);
-    }
-    assert_true(hits > 0);
-}
-
-/* Rows do not depend on where bodies lie in memory, nor on who numbers them: in all layouts, in rows of floats and of
- * doubles, as pairs' own bodies, and as two sets. */
-TEST(test_layouts) {
-    struct test_random random = test_random_named("layouts");
-    for (size_t k = 0; k < LAYOUT_COUNT * (1 + test_trials(2)); k++) {
-        const enum layout layout = (enum layout)(k % LAYOUT_COUNT);
-        const narc_precision precision = (narc_precision)(k / LAYOUT_COUNT % 2);
-        struct scene scene = make_placed_scene(&random, precision, (enum family)random_below(&random, FAMILY_COUNT),
-                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 3);
-        suit_layout(&scene, layout);
+/* Rows do not depend on who numbers bodies: in rows of floats and of doubles, as pairs' own bodies, and as two sets, with
+ * shifts and without. */
+TEST(test_sets_of_bodies) {
+    struct test_random random = test_random_named("sets of bodies");
+    for (size_t k = 0; k < 2 * test_trials(4); k++) {
+        struct scene scene = make_placed_scene(&random, (narc_precision)(k % 2), random_family(&random),
+                                               random_family(&random), PLACE_COUNT * 3);
         struct moving m = set_in_motion(&random, scene, k % 3 ? 3 : 0);
-        suit_layout(&m.scene, layout);
         const size_t count = m.scene.pair_count, body_count = m.scene.body_count;
-        struct columns columns = create_columns(&m.scene, layout, 0, count);
-        float(*const rows)[4] = guard_allocate(body_count * sizeof *rows);
+        struct narrow {
+            float x, y, cosine, sine;
+        } *const rows = guard_allocate(body_count * sizeof *rows);
         narc_body *const wide = guard_allocate(body_count * sizeof *wide);
         float *const shift = guard_allocate(count * sizeof *shift);
+        narc_impact *const expected = guard_allocate(count * sizeof *expected);
+        narc_impact *const found = guard_allocate(count * sizeof *found);
         for (size_t b = 0; b < body_count; b++) {
             const struct body *const body = &m.scene.bodies[b];
             wide[b] = (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
-            memcpy(rows[b], (const float[4]){(float)body->x, (float)body->y, body->cosine, body->sine}, sizeof *rows);
+            rows[b] = (struct narrow){body->x_single, body->y_single, body->cosine, body->sine};
         }
-        for (size_t pair = 0; pair < count; pair++) {
-            assert_true(m.scene.pairs[pair].a == 2 * pair && m.scene.pairs[pair].b == 2 * pair + 1);
+        for (size_t pair = 0; pair < count; pair++)
             shift[pair] = (float)random_between(&random, -1, 1);
-        }
         narc_bodies narrow = scene_bodies(&m.scene);
-        if (precision == NARC_FLOAT32) {
-            narrow.x = (narc_position_column){&rows[0][0], sizeof *rows, NARC_FLOAT32};
-            narrow.y = (narc_position_column){&rows[0][1], sizeof *rows, NARC_FLOAT32};
-            narrow.cosine = (narc_float_column){&rows[0][2], sizeof *rows};
-            narrow.sine = (narc_float_column){&rows[0][3], sizeof *rows};
+        if (k % 2 == NARC_FLOAT32) {
+            narrow.x = NARC_POSITION_COLUMN(rows, x);
+            narrow.y = NARC_POSITION_COLUMN(rows, y);
+            narrow.cosine = NARC_COLUMN(rows, cosine);
+            narrow.sine = NARC_COLUMN(rows, sine);
         }
-        const narc_bodies sets[] = {scene_bodies(&m.scene), columns.bodies, narc_view_bodies(wide, body_count), narrow};
-        const narc_motions motions = motions_of(&m);
-        narc_impact *const expected = guard_allocate(count * sizeof *expected), *const found = guard_allocate(
-                                                                                    count * sizeof *found);
-        for (int way = 0; way < 4 * 3 * 2; way++) {
-            const narc_bodies *const bodies = &sets[way % 4], *const others = &sets[way % 4 ? (way + 1) % 4 : 0];
-            const bool first = way % 12 == 0;
-            narc_pairs pairs = way % 12 < 4 ? scene_pairs(&m.scene) : columns.pairs;
-            if (way % 12 >= 8) /* its own */
-                pairs = (narc_pairs){.count = count};
-            else if (way % 12 >= 4)
-                pairs.other_bodies = others;
-            if (way >= 12)
+        const narc_bodies sets[] = {scene_bodies(&m.scene), narc_view_bodies(wide, body_count), narrow};
+        const narc_motions motions = view_motions(m.motion);
+        for (int way = 0; way < 2 * 3 * 3; way++) {
+            const narc_bodies *const bodies = &sets[way % 3], *const others = &sets[(way + 1) % 3];
+            const int numbers = way / 3 % 3; /* their pairs', of two sets, their own */
+            narc_pairs pairs = numbers == 2 ? (narc_pairs){.count = count} : scene_pairs(&m.scene);
+            pairs.other_bodies = numbers == 1 ? others : NULL;
+            if (way >= 9)
                 pairs.shift_x = pairs.shift_y = (narc_float_column){shift, sizeof *shift};
             narc_error error;
-            expect_ok(narc_cast_pairs(m.scene.store, bodies, &motions, &pairs, pairs.other_bodies ? &motions : NULL,
-                                      NULL, first ? expected : found, count, &error),
+            expect_ok(narc_cast_pairs(m.scene.store, bodies, &motions, &pairs, numbers == 1 ? &motions : NULL, NULL,
+                                      way % 9 ? found : expected, count, &error),
                       &error);
-            if (!first)
+            if (way % 9)
                 assert_memory_equal(found, expected, count * sizeof *found);
         }
         guard_release(found);
@@ -687,7 +593,6 @@ TEST(test_layouts) {
         guard_release(shift);
         guard_release(wide);
         guard_release(rows);
-        destroy_columns(&columns);
         destroy_moving(&m);
     }
 }

@@ -540,6 +540,7 @@ static void check_formula(const struct ground *g, const struct contacts *right) 
     const narc_pairs pairs = scene_pairs(&g->scene);
     const narc_query query = {.margin = margin};
     const narc_batch batch = {.shapes = g->scene.store,
+                              .more_at = NARC_MORE_AT(narc_contact, count),
                               .a = &bodies,
                               .b = &bodies,
                               .pairs = &pairs,

@@ -134,17 +134,9 @@ static void expect_same_index(const narc_index *one, const narc_index *other) {
         assert_memory_equal(one->masks, other->masks, nodes * NARC_NODE_SLOTS * sizeof *one->masks);
 }
 
-/* Boxes of all kinds, many in one place, a tenth empty. */
 static void fill_boxes(struct test_random *random, narc_box *boxes, size_t count) {
-    for (size_t k = 0; k < count; k++) {
-        boxes[k] = random_box(random, 1000, 0, random_log_between(random, 1e-3, 100));
-        if (random_below(random, 4) == 0)
-            boxes[k] = (narc_box){5, 5, 6, 7};
-        if (random_below(random, 100) == 0)
-            boxes[k] = far_box(random);
-        if (random_below(random, 10) == 0)
-            (&boxes[k].min_x)[random_below(random, 4)] = random_below(random, 2) ? NAN : -INFINITY;
-    }
+    for (size_t k = 0; k < count; k++)
+        boxes[k] = make_box(random, BOXES_MIXED, k, count);
 }
 
 TEST(is_the_same_for_all_workers_and_instruction_sets) {
@@ -347,34 +339,6 @@ TEST(survives_failing_allocations) {
     assert_int_equal(ledger.live, 0);
     free(boxes);
     free(category);
-}
-
-TEST(refuses_bad_arguments) {
-    narc_index *const index = create_index(NULL);
-    const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};
-    const narc_allocator half = {.release = ledger_allocator(NULL).release};
-    narc_index_options options = {0};
-    narc_index *none = NULL;
-    narc_error error;
-    float slack = 9;
-    assert_int_equal(narc_create_index(NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_create_index(&half, &none), NARC_ERROR_ARGUMENT);
-    assert_null(none);
-    assert_int_equal(narc_build_index(index, boxes, 2, NULL, NULL), NARC_OK);
-#define REFUSED(call, words) expect_error(call, NARC_ERROR_ARGUMENT, &error, words)
-    REFUSED(narc_build_index(NULL, boxes, 2, NULL, &error), "index is NULL");
-    REFUSED(narc_build_index(index, NULL, 2, NULL, &error), "boxes is NULL");
-    REFUSED(narc_build_index(index, boxes, (size_t)1 << 31 | 1, NULL, &error), "boxes in one index");
-    REFUSED(narc_refit_index(NULL, boxes, 2, NULL, &slack, &error), "index is NULL");
-    REFUSED(narc_refit_index(index, NULL, 2, NULL, &slack, &error), "boxes is NULL");
-    REFUSED(narc_refit_index(index, boxes, 1, NULL, &slack, &error), "was built from 2");
-    options.reserved[1] = &options;
-    REFUSED(narc_build_index(index, boxes, 2, &options, &error), "options.reserved[1]");
-    REFUSED(narc_refit_index(index, boxes, 2, &options, &slack, &error), "options.reserved[1]");
-#undef REFUSED
-    assert_true(slack == 9);
-    check_index(index, boxes, 2, NULL);
-    narc_destroy_index(index);
 }
 
 TEST_MAIN("index")

@@ -1,113 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * manifolds.c - manifolds of all families of shapes in all placements against a construction in double precision,
- * and under swapping A and B; ids and points of bodies that move a little.
+ * manifolds.c - ids and points of bodies that move a little, margins, flat angles, corners and edges that are hardly one.
+ * pairs.c has all families in all placements.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "manifold_reference.h"
 #include "placements.h"
-
-enum { SHOWN = 5 };
-
-struct manifold_report {
-    struct manifold_summary checked;
-    size_t swaps_skipped, wrong;
-};
-
-/* The manifold of (b, a) against that of (a, b). */
-static const char *check_swapped(const narc_manifold *m, const narc_manifold *swapped, double x, double y, double bound,
-                                 struct manifold_report *tally) {
-    const double turn = hypot((double)(m->normal_x + swapped->normal_x), (double)(m->normal_y + swapped->normal_y));
-    /* Another local maximum of the same value, or a choice within rounding. */
-    if (turn > 1e-4 || swapped->count != m->count) {
-        tally->swaps_skipped++;
-        return NULL;
-    }
-    for (size_t i = 0; i < m->count; i++) {
-        const narc_manifold_point *point = &m->point[i], *other = &swapped->point[m->count - 1 - i];
-        if ((point->feature >> 8 | (point->feature & 0xff) << 8) != other->feature) {
-            tally->swaps_skipped++;
-            return NULL;
-        }
-        const double off = hypot((double)(point->x - other->x) - x, (double)(point->y - other->y) - y);
-        if (fabs((double)(point->separation - other->separation)) > bound)
-            return "separation, swapped";
-        if (turn < 1e-6 && off > 4 * bound)
-            return "point, swapped";
-    }
-    return NULL;
-}
-
-static void check_scene(const struct scene *scene, const char *families, struct manifold_report *tally) {
-    struct contacts all = scene_contacts(scene, INFINITY);
-    struct manifolds list = scene_manifolds(scene, INFINITY);
-    struct scene turned = *scene;
-    turned.pairs = malloc(scene->pair_count * sizeof *turned.pairs);
-    assert_non_null(turned.pairs);
-    for (size_t k = 0; k < scene->pair_count; k++)
-        turned.pairs[k] = (struct pair){scene->pairs[k].b, scene->pairs[k].a};
-    struct manifolds swapped = scene_manifolds(&turned, INFINITY);
-    assert_int_equal(list.count, scene->pair_count);
-    assert_int_equal(swapped.count, scene->pair_count);
-    for (size_t k = 0; k < scene->pair_count; k++) {
-        const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
-        const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
-        const narc_manifold *m = &list.rows[k];
-        assert_int_equal(m->pair, k);
-        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, &tally->checked);
-        if (!wrong)
-            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, manifold_bounds * separation_bound(&a, &b),
-                                  tally);
-        if (wrong && tally->wrong++ < SHOWN) {
-            print_error("%s, %s: wrong %s; radii %g and %g, reaches %u %u and %u %u\n", families,
-                        placement_name((enum placement)(k % PLACE_COUNT)), wrong, (double)m->radius_a,
-                        (double)m->radius_b, m->reach_a[0], m->reach_a[1], m->reach_b[0], m->reach_b[1]);
-            for (size_t i = 0; i < m->count; i++)
-                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x\n", i, (double)m->point[i].x,
-                            (double)m->point[i].y, (double)m->point[i].separation, m->point[i].feature);
-            print_pair(&a, &b);
-        }
-    }
-    free(turned.pairs);
-    free(all.rows);
-    free(list.rows);
-    free(swapped.rows);
-}
-
-static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
-    struct test_random random = test_random_named(name);
-    struct manifold_report tally = {0};
-    const struct manifold_summary *const checked = &tally.checked;
-    const size_t pairs = PLACE_COUNT * test_trials(rounds);
-    for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
-        for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
-            struct scene scene =
-                make_placed_scene(&random, precision, (enum family)family_a, (enum family)family_b, pairs);
-            char families[64];
-            snprintf(families, sizeof families, "%s - %s", family_name((enum family)family_a),
-                     family_name((enum family)family_b));
-            check_scene(&scene, families, &tally);
-            destroy_scene(&scene);
-        }
-    }
-    printf(
-        "  %zu pairs, %zu with two points, %zu stretches, %zu doubtful, %zu not compared swapped, largest error %.3f\n",
-        checked->pairs, checked->two, checked->stretches, checked->doubtful, tally.swaps_skipped, checked->worst);
-    assert_int_equal(tally.wrong, 0);
-    assert_true(checked->two > checked->pairs / 20);
-    assert_true(checked->stretches > checked->pairs / 500);
-    assert_true(checked->doubtful < checked->pairs / 20);
-    assert_true(tally.swaps_skipped < checked->pairs / 20);
-}
-
-TEST(test_single_positions) { check_all_families("manifolds, single positions", NARC_FLOAT32, 10); }
-
-TEST(test_double_positions) { check_all_families("manifolds, double positions", NARC_FLOAT64, 5); }
 
 /* ------------------------------------------------------------------------------------------------ small motions */
 
@@ -130,6 +31,19 @@ static void put(struct scene *scene, uint32_t index, double x, double y, double 
     body.y = y;
     round_position(&body, scene->precision);
     scene->bodies[index] = body;
+}
+
+/* The manifold of a scene's only pair. */
+static narc_manifold find_one(const struct scene *scene, float margin) {
+    struct manifolds list = scene_manifolds(scene, margin);
+    assert_int_equal(list.count, 1);
+    const narc_manifold m = list.rows[0];
+    free(list.rows);
+    return m;
+}
+
+static size_t find_deeper(const narc_manifold *m) {
+    return m->count == 2 && m->point[1].separation < m->point[0].separation;
 }
 
 /* The edge of a box whose normal points up, and the one whose normal points down. */
@@ -159,18 +73,16 @@ TEST(test_box_on_box) {
                 step == 0 ? 0 : random_between(&random, -1, 1) * pow(10, -random_between(&random, 1.5, 8));
             const double x = step == 0 ? 0 : random_between(&random, -0.02, 0.02);
             put(&scene, 1, x, 0.99, tilt);
-            struct manifolds list = scene_manifolds(&scene, 0.05f);
-            assert_int_equal(list.count, 1);
-            assert_int_equal(list.rows[0].count, 2);
-            assert_int_equal(list.rows[0].point[0].feature, first);
-            assert_int_equal(list.rows[0].point[1].feature, second);
+            const narc_manifold m = find_one(&scene, 0.05f);
+            assert_int_equal(m.count, 2);
+            assert_int_equal(m.point[0].feature, first);
+            assert_int_equal(m.point[1].feature, second);
             /* The tangent of a normal that points up points left. The rounded box touches with its arcs' ends. */
             const double half = width / 2, reach = 0.05;
-            assert_true(list.rows[0].normal_y > 0.999f);
-            assert_true(fabs((double)list.rows[0].point[0].x - half) < reach + rounding);
-            assert_true(fabs((double)list.rows[0].point[1].x + half) < reach + rounding);
-            assert_true(fabs((double)list.rows[0].point[0].y - 0.495) < 0.06);
-            free(list.rows);
+            assert_true(m.normal_y > 0.999f);
+            assert_true(fabs((double)m.point[0].x - half) < reach + rounding);
+            assert_true(fabs((double)m.point[1].x + half) < reach + rounding);
+            assert_true(fabs((double)m.point[0].y - 0.495) < 0.06);
         }
         destroy_scene(&scene);
     }
@@ -226,172 +138,75 @@ TEST(test_rocking) {
     size_t frames = 0;
     for (double tilt = -largest; tilt <= largest; tilt += step, frames++) {
         put(&scene, 1, 0, 1, tilt);
-        struct manifolds list = scene_manifolds(&scene, 0.5f);
-        assert_int_equal(list.count, 1);
-        assert_int_equal(list.rows[0].count, 2);
+        const narc_manifold m = find_one(&scene, 0.5f);
+        assert_int_equal(m.count, 2);
         for (size_t i = 0; i < 2; i++) {
-            const float now[3] = {list.rows[0].point[i].x, list.rows[0].point[i].y, list.rows[0].point[i].separation};
+            const float now[3] = {m.point[i].x, m.point[i].y, m.point[i].separation};
             for (size_t c = 0; c < 3 && frames > 0; c++)
                 assert_true(fabs((double)(now[c] - last[i][c])) < 3 * step);
             if (frames > 0)
-                assert_int_equal(list.rows[0].point[i].feature, id[i]);
+                assert_int_equal(m.point[i].feature, id[i]);
             memcpy(last[i], now, sizeof now);
-            id[i] = list.rows[0].point[i].feature;
+            id[i] = m.point[i].feature;
         }
-        free(list.rows);
     }
     assert_true(frames > 1000);
     destroy_scene(&scene);
 }
 
-/* A circle that rolls along a box's flat top and around its corner: on the edge, then on the arc after the corner, and
- * on the next edge; the kind and the radii say which. */
-TEST(test_rolling) {
-    const struct shape box = box_of(2, 2, 0);
-    const struct shape circle = circle_of(0.5);
-    struct scene scene = make_duo(&circle, &box);
-    const unsigned top = find_edge_with(&box, PI / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
-    size_t seen[3] = {0};
-    for (double way = -1; way < 3; way += 0.01) {
-        /* Along the top for x < 1, around the corner (1, 1) for half a turn's quarter, and down. */
-        const double turn = fmin(fmax(way - 1, 0) / 0.5, PI / 2), down = fmax(way - 1 - PI / 4, 0);
-        put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
-        struct manifolds list = scene_manifolds(&scene, 0.01f);
-        assert_int_equal(list.count, 1);
-        assert_int_equal(list.rows[0].count, 1);
-        const unsigned on_box = list.rows[0].point[0].feature >> 8;
-        const float curved = list.rows[0].radius_b;
-        assert_int_equal(list.rows[0].point[0].feature & 0xff, 0);
-        assert_true(list.rows[0].radius_a == 0.5f);
-        assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
-        if (fabs(way - 1) < 0.02 || fabs(way - 1 - PI / 4) < 0.02) { /* on either side of the corner's end */
-            assert_true(on_box == top || on_box == corner || on_box == right);
-        } else if (way < 1) {
-            assert_int_equal(on_box, top);
-            assert_true(curved == INFINITY);
-            seen[0]++;
-        } else if (turn < PI / 2) {
-            assert_int_equal(on_box, corner);
-            assert_true(curved == 0);
-            seen[1]++;
-        } else {
-            assert_int_equal(on_box, right);
-            assert_true(curved == INFINITY);
-            seen[2]++;
-        }
-        free(list.rows);
+/* How many points a query tells of, 0 without a row; they are those of a query without a margin, and one is the deeper. */
+static void expect_points(const struct scene *scene, const narc_query *query, size_t points) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    const narc_manifold all = find_one(scene, INFINITY);
+    struct manifolds found = find_manifolds(scene->store, &bodies, &pairs, query);
+    assert_int_equal(found.count, points > 0);
+    if (points > 0)
+        assert_int_equal(found.rows[0].count, points);
+    if (points == 1 && query->flat_angle == 0) {
+        const narc_manifold_point *const point = found.rows[0].point, none = {0};
+        assert_memory_equal(&point[0], &all.point[find_deeper(&all)], sizeof *point);
+        assert_memory_equal(&point[1], &none, sizeof none);
     }
-    assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
-    destroy_scene(&scene);
+    if (points == 2)
+        assert_memory_equal(found.rows, &all, sizeof all);
+    free(found.rows);
 }
 
-/* A rounded box's corner that leans on a circle: how far the normal may turn, to the edges on either side, and that of a
- * circle without end; on the box's edge, not at all. */
-TEST(test_reach) {
-    const struct shape box = box_of(2, 2, 0.25);
-    const struct shape circle = circle_of(0.5);
-    struct scene scene = make_duo(&box, &circle);
-    for (double angle = 0; angle <= PI / 2; angle += PI / 64) {
-        put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
-        struct manifolds list = scene_manifolds(&scene, 0);
-        const narc_manifold *m = list.rows;
-        assert_int_equal(list.count, 1);
-        const bool edge = m->radius_a == INFINITY;
-        assert_true(!edge || angle < 1e-6 || angle > PI / 2 - 1e-6);
-        assert_true(fabs(m->reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
-        assert_true(fabs(m->reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
-        assert_true(m->reach_b[0] == NARC_REACH_ONE && m->reach_b[1] == NARC_REACH_ONE);
-        free(list.rows);
-    }
-    destroy_scene(&scene);
-}
-
-/* The second point is listed exactly if its separation is below the margin; the first then keeps its id. */
-TEST(test_margin) {
+/* Points are listed exactly if their separations are below their margins, of which a second one may be larger; and the flat angle decides which edges face each other. */
+TEST(test_second_margin_and_flat_angle) {
     const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     for (int side = -1; side <= 1; side += 2) {
         put(&scene, 1, 0, 1.02, side * 0.05);
-        struct manifolds all = scene_manifolds(&scene, INFINITY);
-        assert_int_equal(all.rows[0].count, 2);
-        const size_t deep = all.rows[0].point[1].separation < all.rows[0].point[0].separation, other = 1 - deep;
+        const narc_manifold all = find_one(&scene, INFINITY);
+        const size_t deep = find_deeper(&all);
+        assert_int_equal(all.count, 2);
         assert_int_equal(deep, side < 0 ? 0 : 1);
-        const float limit = all.rows[0].point[other].separation;
-        const float margins[] = {nextafterf(limit, INFINITY), limit,
-                                 nextafterf(all.rows[0].point[deep].separation, INFINITY),
-                                 all.rows[0].point[deep].separation};
-        const size_t points[] = {2, 1, 1, 0};
-        for (size_t m = 0; m < 4; m++) {
-            struct manifolds list = scene_manifolds(&scene, margins[m]);
-            assert_int_equal(list.count, points[m] > 0);
-            if (points[m] == 2) {
-                assert_memory_equal(list.rows, all.rows, sizeof *list.rows);
-            } else if (points[m] == 1) {
-                assert_int_equal(list.rows[0].count, 1);
-                assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
-                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation,
-                                    sizeof(float));
-                assert_memory_equal(&list.rows[0].point[0].x, &all.rows[0].point[deep].x, sizeof(float));
-                assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
-            }
-            free(list.rows);
-        }
-        free(all.rows);
+        const float first = all.point[deep].separation, second = all.point[1 - deep].separation;
+        const struct {
+            float margin, second_margin;
+            size_t points;
+        } margins[] = {{nextafterf(second, 1), 0, 2},
+                       {second, 0, 1},
+                       {nextafterf(first, 1), 0, 1},
+                       {first, 0, 0},
+                       {first + 0.01f, second, 1},
+                       {first + 0.01f, nextafterf(second, 1), 2},
+                       {first, 2 * second, 0},
+                       {INFINITY, first, 2},
+                       {first + 0.01f, INFINITY, 2},
+                       {first + 0.01f, -0.01f, 1},
+                       {-1, 0, 0}};
+        for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
+            expect_points(&scene, &(narc_query){.margin = margins[k].margin, .second_margin = margins[k].second_margin},
+                          margins[k].points);
     }
-    destroy_scene(&scene);
-}
-
-/* A second point may be farther than the first one. */
-TEST(test_second_margin) {
-    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&ground, &box);
-    put(&scene, 1, 0, 1.02, 0.05);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds all = scene_manifolds(&scene, INFINITY);
-    narc_manifold found;
-    size_t count;
-    assert_int_equal(all.rows[0].count, 2);
-    const float first = fminf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
-    const float second = fmaxf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
-    const float margins[][2] = {{first + 0.01f, 0},
-                                {first + 0.01f, second},
-                                {first + 0.01f, nextafterf(second, 1)},
-                                {first, 2 * second},
-                                {INFINITY, first},
-                                {first + 0.01f, INFINITY},
-                                {first + 0.01f, -0.01f},
-                                {-1, 0}};
-    const uint8_t points[] = {1, 1, 2, 0, 2, 2, 1, 0};
-    for (size_t k = 0; k < sizeof points; k++) {
-        const narc_query query = {.margin = margins[k][0], .second_margin = margins[k][1]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
-        assert_int_equal(count, points[k] > 0);
-        if (points[k] > 0)
-            assert_int_equal(found.count, points[k]);
-        if (points[k] == 2)
-            assert_memory_equal(&found, all.rows, sizeof found);
-    }
-    free(all.rows);
-    destroy_scene(&scene);
-}
-
-/* The flat angle decides which edges face each other. */
-TEST(test_flat_angle) {
-    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.2, 0.2);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    narc_manifold found;
-    size_t count;
-    const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
-    const uint8_t points[] = {2, 2, 1, 1, 2, 1};
-    for (size_t k = 0; k < 6; k++) {
-        const narc_query query = {.margin = INFINITY, .flat_angle = angles[k]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
-        assert_int_equal(found.count, points[k]);
-    }
+    static const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
+    static const size_t points[] = {2, 2, 1, 1, 2, 1};
+    for (size_t k = 0; k < 6; k++)
+        expect_points(&scene, &(narc_query){.margin = INFINITY, .flat_angle = angles[k]}, points[k]);
     destroy_scene(&scene);
 }
 
@@ -482,10 +297,8 @@ TEST(test_least_edge) {
             struct scene scene = make_duo(&ground, &wedge);
             put(&scene, 0, 0, -h, 0);
             put(&scene, 1, 0, 0.25 * h, 0);
-            struct manifolds list = scene_manifolds(&scene, INFINITY);
-            assert_int_equal(list.count, 1);
-            assert_int_equal(list.rows[0].count, 1 + longer);
-            free(list.rows);
+            const narc_manifold m = find_one(&scene, INFINITY);
+            assert_int_equal(m.count, 1 + longer);
             destroy_scene(&scene);
         }
     }
@@ -571,14 +384,11 @@ TEST(test_leaning) {
         for (double tilt = -89; tilt < -1; tilt += 0.01) {
             const double c = cos(tilt * PI / 180), s = sin(tilt * PI / 180), right = 1 - radius, low = radius - 0.5;
             put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * PI / 180);
-            struct manifolds list = scene_manifolds(&scene, 0.5f);
-            assert_int_equal(list.count, 1);
-            const size_t count = list.rows[0].count;
-            const size_t deep = count == 2 && list.rows[0].point[1].separation < list.rows[0].point[0].separation;
-            assert_int_equal(list.rows[0].point[deep].feature, top | corner % (unsigned)box.count << 8);
+            const narc_manifold m = find_one(&scene, 0.5f);
+            const size_t count = m.count, deep = find_deeper(&m);
+            assert_int_equal(m.point[deep].feature, top | corner % (unsigned)box.count << 8);
             one += count == 1;
             two += count == 2;
-            free(list.rows);
         }
         assert_true(one > 1000 && two > 1000);
         destroy_scene(&scene);

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 #include "guard.h"
-#include "layouts.h"
 #include "scene.h"
 
 enum { BODIES = 150, PAIRS = 2000 };
@@ -68,58 +67,41 @@ static struct scene place_differences(const struct scene *scene, const float *sh
     return placed;
 }
 
-/* Shifts and margins with all their digits, between guard pages, whatever the layout of the bodies. */
-TEST(test_layouts) {
-    struct test_random random = test_random_named("shifts and layouts");
+/* Shifts with all their digits, where doubles are as coarse as floats near 1, too. */
+TEST(test_shifts) {
+    struct test_random random = test_random_named("shifts");
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_random_scene(&random, (narc_precision)precision, BODIES, PAIRS);
-        static float shift_x[PAIRS], shift_y[PAIRS], margin[PAIRS];
-        for (size_t k = 0; k < BODIES && precision; k++) { /* where doubles are as coarse as floats near 1 */
+        float *const shift_x = guard_allocate(PAIRS * sizeof *shift_x), *const shift_y =
+                                                                            guard_allocate(PAIRS * sizeof *shift_y);
+        for (size_t k = 0; k < BODIES && precision; k++) {
             scene.bodies[k].x += 1e9;
             scene.bodies[k].y -= 1e9;
         }
         for (size_t k = 0; k < PAIRS; k++) {
             shift_x[k] = (float)random_between(&random, -1, 1);
             shift_y[k] = (float)random_between(&random, -1, 1);
-            margin[k] = (float)random_between(&random, -0.1, 0.3);
         }
         struct scene placed = place_differences(&scene, shift_x, shift_y);
-        const narc_bodies right_bodies = scene_bodies(&placed);
-        const narc_pairs right_pairs = scene_pairs(&placed);
-        for (size_t layout = LAYOUT_ARRAYS; layout <= LAYOUT_REVERSED; layout++) {
-            for (size_t count = PAIRS - 3; count > PAIRS - 40; count -= 9) {
-                const size_t first = random_below(&random, 40);
-                struct columns columns = create_columns(&scene, (enum layout)layout, 0, count);
-                float *const x = guard_copy(shift_x, count * sizeof *x),
-                             *const y = guard_copy(shift_y, count * sizeof *y),
-                             *const margins_of = guard_copy(margin, count * sizeof *margins_of);
-                columns.pairs.shift_x = NARC_ARRAY(x);
-                columns.pairs.shift_y = NARC_ARRAY(y);
-                narc_query query = {.margins = NARC_ARRAY(margins_of), .first = first, .count = count - first};
-                struct contacts found = find_contacts(scene.store, &columns.bodies, &columns.pairs, &query);
-                query.margins = (narc_float_column){margin, sizeof *margin};
-                struct contacts right = find_contacts(scene.store, &right_bodies, &right_pairs, &query);
-                assert_int_equal(found.count, right.count);
-                check_same_rows(found.rows, right.rows, right.count);
-                free(found.rows);
-                free(right.rows);
-                guard_release(x);
-                guard_release(y);
-                guard_release(margins_of);
-                destroy_columns(&columns);
-            }
-        }
+        struct contacts right = scene_contacts(&placed, 0.3f);
+        uint64_t *const right_bits = scene_overlaps(&placed);
         const narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
-        pairs.shift_x = NARC_ARRAY(shift_x);
-        pairs.shift_y = NARC_ARRAY(shift_y);
-        uint64_t *bits = find_overlaps(scene.store, &bodies, &pairs, NULL);
-        uint64_t *right_bits = find_overlaps(scene.store, &right_bodies, &right_pairs, NULL);
+        pairs.shift_x = (narc_float_column){shift_x, sizeof *shift_x};
+        pairs.shift_y = (narc_float_column){shift_y, sizeof *shift_y};
+        struct contacts found = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.3f});
+        uint64_t *const bits = find_overlaps(scene.store, &bodies, &pairs, NULL);
+        assert_int_equal(found.count, right.count);
+        check_same_rows(found.rows, right.rows, right.count);
         assert_memory_equal(bits, right_bits, NARC_BIT_WORDS(PAIRS) * sizeof *bits);
+        free(found.rows);
+        free(right.rows);
         free(bits);
         free(right_bits);
         free(placed.bodies);
         free(placed.pairs);
+        guard_release(shift_x);
+        guard_release(shift_y);
         destroy_scene(&scene);
     }
 }

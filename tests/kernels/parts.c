@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * parts.c - compounds: their parts are where they should be, with the same bits as scalar in every layout; those of one
- * body form no pair, and keep their pairs as others come and go.
+ * parts.c - compounds: their parts are where they should be; those of one body form no pair.
  */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "expect.h"
 #include "guard.h"
-#include "layouts.h"
+#include "ledger.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
-#include "support.h"
+#include "scene.h"
 
 /* Random owners and parts, and whose they are. Some of each are broken. */
 struct compounds {
@@ -54,38 +54,6 @@ static narc_body *place(const narc_bodies *owners, const narc_bodies *parts, con
 static narc_body *place_all(const struct compounds *c) {
     const narc_bodies owners = scene_bodies(&c->owners), parts = scene_bodies(&c->parts);
     return place(&owners, &parts, c->owner, NULL);
-}
-
-/* ------------------------------------------------------------------------------------------------ bits */
-
-TEST(same_bits_whatever_the_layout) {
-    struct test_random random = test_random_named("layouts of parts");
-    enum { OWNERS = 50, MOST = 9000 };
-    struct compounds c = make_compounds(&random, OWNERS, MOST, true);
-    test_use_isa("scalar");
-    narc_body *const right = place_all(&c);
-    test_use_isa(test_isa());
-    for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
-        if (layout == LAYOUT_SHARED || layout == LAYOUT_UNSCALED) /* other values */
-            continue;
-        for (size_t count = 0; count <= MOST; count += count < 70 ? 1 : 1489) {
-            c.parts.body_count = count;
-            struct columns owners = create_columns(&c.owners, layout, 0, 0);
-            struct columns parts = create_columns(&c.parts, (enum layout)((layout + 1) % LAYOUT_SHARED), 0, 0);
-            uint32_t *const owner = guard_copy(c.owner, count * sizeof *owner);
-            const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
-            owners.bodies.shape.base = NULL;
-            narc_body *const rows = place(&owners.bodies, &parts.bodies, owner, &workers);
-            assert_memory_equal(rows, right, count * sizeof *rows);
-            guard_release(rows);
-            guard_release(owner);
-            destroy_columns(&owners);
-            destroy_columns(&parts);
-        }
-        c.parts.body_count = MOST;
-    }
-    guard_release(right);
-    destroy_compounds(&c);
 }
 
 /* Without cosines, sines and scales it is as with those of a part that is not turned. */
@@ -164,55 +132,14 @@ TEST(unturned_parts_keep_their_rotation) {
     }
 }
 
-/* Any bits give bodies that are whole, or zeros. */
-TEST(broken_bodies_have_broken_parts) {
-    struct test_random random = test_random_named("broken parts");
-    enum { COUNT = 300 };
-    for (size_t trial = 0; trial < test_trials(60); trial++) {
-        struct compounds c = make_compounds(&random, COUNT, COUNT, true);
-        for (size_t k = 0; k < COUNT; k++) {
-            struct body *const body = &(trial % 2 ? c.owners : c.parts).bodies[k];
-            const uint32_t shape = body->shape;
-            uint64_t words[sizeof *body / 8];
-            for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-                words[i] = random_bits(&random);
-            if (k % 3 == 0)
-                memcpy(body, words, sizeof words);
-            body->shape = shape;
-        }
-        narc_body *const rows = place_all(&c);
-        for (size_t k = 0; k < COUNT; k++) {
-            const narc_body zeros = {.shape = c.parts.bodies[k].shape};
-            const double c_s =
-                (double)rows[k].cosine * (double)rows[k].cosine + (double)rows[k].sine * (double)rows[k].sine;
-            const bool whole = fabs(rows[k].x) <= DBL_MAX && fabs(rows[k].y) <= DBL_MAX && fabs(c_s - 1) < 1e-6 &&
-                               rows[k].scale > 0 && rows[k].scale <= FLT_MAX;
-            const struct body *const at = &c.owners.bodies[c.owner[k]], *const part = &c.parts.bodies[k];
-            assert_true(whole || memcmp(&rows[k], &zeros, sizeof zeros) == 0);
-            if (!(at->scale > 0) || isnan(part->sine) || isinf(at->cosine) || !(part->scale > 0))
-                assert_false(whole);
-        }
-        guard_release(rows);
-        destroy_compounds(&c);
-    }
-    /* Each number of either alone; two scales below 0, whose product is not. */
-    static const float bad[] = {NAN, INFINITY, -INFINITY, -1};
-    for (int number = 0; number < 10; number++)
-        for (int value = 0; value < 4; value++) {
-            narc_body row, poses[2] = {{1, 2, 0.6f, 0.8f, 1, 0}, {3, 4, 1, 0, 2, 0}};
-            narc_body *const one = &poses[number / 5];
-            const narc_bodies owners = narc_view_bodies(&poses[0], 1), parts = narc_view_bodies(&poses[1], 1);
-            const uint32_t zero = 0;
-            if (number % 5 < 2)
-                *(number % 5 ? &one->y : &one->x) = (double)bad[value];
-            else
-                *(float *[]){&one->cosine, &one->sine, &one->scale}[number % 5 - 2] = bad[value];
-            if (bad[value] == -1)
-                poses[0].scale = poses[1].scale = -1;
-            assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL),
-                             NARC_OK);
-            assert_memory_equal(&row, &(narc_body){0}, sizeof row);
-        }
+/* Scales below 0, whose product is not. */
+TEST(two_broken_scales_are_none) {
+    const narc_body owner = {1, 2, 0.6f, 0.8f, -1, 0}, part = {3, 4, 1, 0, -2, 0}, zeros = {0};
+    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(&part, 1);
+    const uint32_t zero = 0;
+    narc_body row;
+    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL), NARC_OK);
+    assert_memory_equal(&row, &zeros, sizeof row);
 }
 
 /* A part in its place is the shape that narc_move_arcs() makes, in the place of its owner. */
@@ -308,153 +235,42 @@ TEST(moved_shapes_meet_when_parts_do) {
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-enum { BODIES = 60, PARTS = 4 * BODIES };
-
-static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *shapes, const narc_body *rows,
-                                    size_t count, const uint32_t *group, const uint64_t *id) {
-    const narc_bodies bodies = narc_view_bodies(rows, count);
-    const narc_pair_filter filter = {.group = {group, sizeof *group}};
-    const narc_pair_options options = {.filter = &filter, .id = {id, sizeof *id}, .skin = 0.01f};
-    const narc_pair_list *list = NULL;
-    narc_error error;
-    expect_ok(narc_update_pairs(broad, shapes, &bodies, &options, &list, &error), &error);
-    return list;
-}
-
-static bool do_overlap(const narc_box *a, const narc_box *b) {
-    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
-}
-
 /* Every pair of parts of two bodies whose boxes meet, and none of one body. */
-static void check_pairs(const narc_shapes *shapes, const narc_body *rows, size_t count, const uint32_t *owner,
-                        const narc_pair_list *list) {
-    const narc_bodies bodies = narc_view_bodies(rows, count);
-    static narc_box boxes[PARTS];
-    size_t expected = 0, apart = 0, own = 0;
-    assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
-    for (size_t a = 0; a < count; a++)
-        for (size_t b = a + 1; b < count; b++) {
-            own += owner[a] == owner[b] && do_overlap(&boxes[a], &boxes[b]);
-            expected += owner[a] != owner[b] && do_overlap(&boxes[a], &boxes[b]);
-        }
-    for (size_t k = 0; k < list->pairs.count; k++) {
-        const uint32_t a = list->pairs.a.base[k], b = list->pairs.b.base[k];
-        assert_true(owner[a] != owner[b]);
-        apart += !do_overlap(&boxes[a], &boxes[b]); /* but for the skin */
-    }
-    assert_int_equal(list->pairs.count - apart, expected);
-    assert_true(own > 0 && expected > 0); /* or nothing was tested */
-}
-
-/* Takes part k away: the last one fills its place. */
-static void remove_part(struct compounds *c, uint32_t *group, uint64_t *id, size_t k) {
-    const size_t last = --c->parts.body_count;
-    c->parts.bodies[k] = c->parts.bodies[last];
-    c->owner[k] = c->owner[last];
-    group[k] = group[last];
-    id[k] = id[last];
-}
-
 TEST(parts_of_one_body_form_no_pair) {
+    enum { BODIES = 60, PARTS = 4 * BODIES };
     struct test_random random = test_random_named("pairs of parts");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct compounds c = make_compounds(&random, BODIES, PARTS, false);
-        uint32_t group[PARTS];
-        uint64_t id[PARTS], last_a[9000], last_b[9000];
-        narc_broad_phase *broad = NULL;
-        size_t last_count = 0, known = 0;
-        assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+        narc_broad_phase *const broad = create_broad_phase(NULL);
+        uint32_t group[PARTS], a[9000], b[9000];
         for (size_t k = 0; k < PARTS; k++) {
             struct body *const part = &c.parts.bodies[k];
             part->x_single *= 0.125f, part->y_single *= 0.125f, part->x *= 0.125, part->y *= 0.125;
             group[k] = c.owner[k] + 1;
-            id[k] = 1000 + k;
         }
         for (size_t k = 0; k < BODIES; k++) {
             struct body *const at = &c.owners.bodies[k];
             at->x = at->x_single = (float)random_between(&random, -9, 9);
             at->y = at->y_single = (float)random_between(&random, -9, 9);
         }
-        for (int step = 0; step < 12; step++) {
-            narc_body *const rows = place_all(&c);
-            const size_t count = c.parts.body_count;
-            const narc_pair_list *const list = update(broad, c.parts.store, rows, count, group, id);
-            check_pairs(c.parts.store, rows, count, c.owner, list);
-            for (size_t k = 0; k < list->pairs.count; k++) {
-                const uint64_t a = id[list->pairs.a.base[k]], b = id[list->pairs.b.base[k]];
-                const uint32_t then = list->previous[k];
-                assert_true(then == NARC_NO_MATCH || then < last_count);
-                if (then != NARC_NO_MATCH)
-                    assert_true((last_a[then] == a && last_b[then] == b) || (last_a[then] == b && last_b[then] == a));
-                known += then != NARC_NO_MATCH;
-            }
-            last_count = list->pairs.count;
-            assert_true(last_count < 9000);
-            for (size_t k = 0; k < last_count; k++) {
-                last_a[k] = id[list->pairs.a.base[k]];
-                last_b[k] = id[list->pairs.b.base[k]];
-            }
-            guard_release(rows);
-            /* Some parts go, one is another now, and all bodies move a little. */
-            for (int k = 0; k < 3; k++)
-                remove_part(&c, group, id, random_below(&random, c.parts.body_count));
-            c.parts.bodies[0].shape = c.parts.bodies[1].shape;
-            scene_move_bodies(&c.owners, &random, 0.02);
-        }
-        assert_true(known > 0);
+        narc_body *const rows = place_all(&c);
+        const narc_bodies bodies = narc_view_bodies(rows, PARTS);
+        const narc_pair_filter filter = {.group = NARC_ARRAY(group)};
+        narc_box boxes[PARTS];
+        size_t count, expected = 0, own = 0;
+        assert_int_equal(narc_compute_boxes(c.parts.store, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, boxes, PARTS, &filter, NULL, a, b, 9000, &count, NULL), NARC_OK);
+        for (size_t i = 0; i < PARTS; i++)
+            for (size_t j = i + 1; j < PARTS; j++)
+                *(group[i] == group[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
+        for (size_t k = 0; k < count; k++)
+            assert_true(group[a[k]] != group[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
+        assert_int_equal(count, expected);
+        assert_true(own > 0 && expected > 0); /* or nothing was tested */
         narc_destroy_broad_phase(broad);
+        guard_release(rows);
         destroy_compounds(&c);
     }
-}
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-TEST(parts_refuse_bad_arguments) {
-    struct test_random random = test_random_named("errors of parts");
-    struct compounds c = make_compounds(&random, 10, 90000, false);
-    const narc_bodies owners = scene_bodies(&c.owners), parts = scene_bodies(&c.parts);
-    const narc_index_column owner = {c.owner, sizeof *c.owner};
-    narc_body *const rows = make_junk(90000 * sizeof *rows);
-    narc_bodies wrong;
-    narc_error error;
-#define PLACE(owners, parts, owner, workers, rows, status, words)                                                      \
-    expect_error(narc_place_parts(owners, parts, owner, workers, rows, &error), status, &error, words)
-    PLACE(NULL, &parts, owner, NULL, rows, NARC_ERROR_ARGUMENT, "owners is NULL");
-    PLACE(&owners, NULL, owner, NULL, rows, NARC_ERROR_ARGUMENT, "parts is NULL");
-    PLACE(&owners, &parts, owner, NULL, NULL, NARC_ERROR_ARGUMENT, "out_bodies is NULL");
-    PLACE(&owners, &parts, (narc_index_column){0}, NULL, rows, NARC_ERROR_ARGUMENT, "owner is NULL");
-#define WRONG(set, change, words)                                                                                      \
-    wrong = set;                                                                                                       \
-    wrong.change;                                                                                                      \
-    PLACE(&set == &owners ? &wrong : &owners, &set == &parts ? &wrong : &parts, owner, NULL, rows,                     \
-          NARC_ERROR_ARGUMENT, words)
-    WRONG(owners, x.base = NULL, "owners.x");
-    WRONG(owners, cosine.base = NULL, "owners.cosine");
-    WRONG(owners, sine.base = NULL, "owners.sine");
-    WRONG(owners, y.precision = (narc_precision)7, "precision");
-    WRONG(owners, reserved[1] = rows, "owners.reserved[1]");
-    WRONG(parts, y.base = NULL, "parts.y");
-    WRONG(parts, cosine.base = NULL, "parts.cosine");
-    WRONG(parts, sine.base = NULL, "parts.sine");
-    WRONG(parts, shape.base = NULL, "parts.shape");
-    WRONG(parts, reserved[0] = rows, "parts.reserved[0]");
-#if SIZE_MAX > UINT32_MAX
-    WRONG(owners, count = (size_t)UINT32_MAX + 1, "at most");
-    WRONG(parts, count = (size_t)UINT32_MAX + 1, "at most");
-#endif
-    c.owner[80000] = UINT32_MAX;
-    c.owner[70000] = 10;
-    for (unsigned threads = 1; threads < 4; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
-        PLACE(&owners, &parts, owner, &workers, rows, NARC_ERROR_INDEX,
-              "part 70000: the owner is 10, but there are 10");
-        assert_int_equal(error.index, 70000);
-    }
-    assert_true(is_junk(rows, 90000 * sizeof *rows));
-    expect_ok(narc_place_parts(&(narc_bodies){0}, &(narc_bodies){0}, (narc_index_column){0}, NULL, NULL, &error),
-              &error);
-    free(rows);
-    destroy_compounds(&c);
 }
 
 TEST_MAIN("parts")

@@ -158,53 +158,6 @@ TEST(rays_may_end_where_they_start) {
     assert_true(!hits[2].count && hits[3].count && hits[3].fraction == 0.5f && !hits[4].count);
 }
 
-/* What a ray hits depends on the ray and the body, not on the box that the body is found by: larger on every side by
- * nothing or much, beside another that makes the room for rounding large. */
-TEST(rows_do_not_depend_on_boxes) {
-    struct test_random random = test_random_named("fat boxes");
-    narc_index *index;
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-    for (size_t trial = 0; trial < test_trials(600); trial++) {
-        struct scene scene = create_scene((narc_precision)(trial % 2), 1, 2, 1);
-        const size_t family = trial % (FAMILY_COUNT + HARD_COUNT);
-        const struct shape shape = family < FAMILY_COUNT
-                                       ? make_shape(&random, (enum family)family)
-                                       : make_hard_shape(&random, (enum hard_family)(family - FAMILY_COUNT));
-        scene_add_shape(&scene, &shape);
-        scene_add_body(&scene, place_body(&random, scene.precision));
-        scene_add_body(&scene, scene.bodies[0]);
-        scene.bodies[1].scale = 0; /* nothing meets it, but it has a box */
-        const narc_bodies bodies = scene_bodies(&scene);
-        struct test_ray rays[RAYS];
-        narc_ray_hit right[RAYS], found[RAYS];
-        narc_box boxes[2];
-        narc_error error;
-        for (size_t k = 0; k < RAYS; k++)
-            rays[k] = make_ray(&random, &shape, scene.bodies, scene.precision, (enum ray_kind)(k % RAY_KINDS));
-        const narc_rays view = view_rays(rays, RAYS);
-        const narc_ray_options options = {.inside = (narc_inside)random_below(&random, 3)};
-        expect_ok(narc_compute_boxes(scene.store, &bodies, NULL, boxes, &error), &error);
-        const narc_box tight = boxes[0];
-        const float size = tight.max_x - tight.min_x + tight.max_y - tight.min_y;
-        for (size_t way = 0; way < 8; way++) {
-            float *const sides[] = {&boxes[0].min_x, &boxes[0].min_y, &boxes[0].max_x, &boxes[0].max_y};
-            boxes[0] = tight;
-            for (size_t k = 0; k < 4 && way > 0; k++)
-                if (random_below(&random, 2))
-                    *sides[k] += (k < 2 ? -size : size) * (float)random_log_between(&random, 1e-8, 1e3);
-            boxes[1] =
-                way % 2 ? boxes[0] : (narc_box){tight.min_x, tight.min_y, tight.max_x + 1e6f * size, tight.max_y};
-            expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
-            expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, found, RAYS, &error), &error);
-            if (way == 0)
-                memcpy(right, found, sizeof right);
-            assert_memory_equal(found, right, sizeof right);
-        }
-        destroy_scene(&scene);
-    }
-    narc_destroy_index(index);
-}
-
 /* ------------------------------------------------------------------------------------------------ touching */
 
 /* Two bodies that hold the origin, turned about it: with a corner each, or a place of a disc, or an end of a segment. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * refine.c - rows in double precision: every family of shapes against every other, in every placement, compared with the
- * reference; rotations and shifts in double; the ground; what is refused and what has no answer.
+ * refine.c - rows in double precision, with rotations and shifts in double, compared with the reference; the ground; what is
+ * refused and what has no answer. pairs.c has all families in all placements.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -51,56 +51,6 @@ static void check_counts(const struct refined *counts) {
     assert_true((double)counts->exact > 0.995 * (double)counts->all);
     assert_true((double)counts->on_surface > 0.98 * (double)counts->all);
 }
-
-static narc_refined_contact *refine(const struct scene *scene, const struct contacts *rows,
-                                    const narc_refinement *with) {
-    narc_refined_contact *fine = make_junk((rows->count + 1) * sizeof *fine);
-    const narc_bodies bodies = scene_bodies(scene);
-    const narc_pairs pairs = scene_pairs(scene);
-    assert_int_equal(narc_refine_contacts(scene->store, &bodies, &pairs, with, rows->rows, rows->count, fine, NULL),
-                     NARC_OK);
-    assert_true(is_junk(&fine[rows->count], sizeof *fine));
-    return fine;
-}
-
-/* Shapes as they were made, or as the store has them: there arcs meet but for the digits of a float. */
-static void check_families(bool stored) {
-    struct test_random random = test_random_named(stored ? "refine, stored" : "refine");
-    struct refined counts = {0};
-    for (int i = 0; i < FAMILY_COUNT * FAMILY_COUNT; i++) {
-        struct scene scene = make_placed_scene(&random, NARC_FLOAT64, (enum family)(i % FAMILY_COUNT),
-                                               (enum family)(i / FAMILY_COUNT), PLACE_COUNT * test_trials(2));
-        struct contacts rows = scene_contacts(&scene, INFINITY);
-        const narc_arc **arcs = malloc(scene.shape_count * sizeof *arcs);
-        for (size_t k = 0; k < scene.shape_count; k++)
-            arcs[k] = scene.shapes[k].arcs;
-        const narc_refinement with = {.arcs = arcs};
-        narc_refined_contact *fine = refine(&scene, &rows, stored ? NULL : &with);
-        for (size_t k = 0; k < rows.count; k++) {
-            struct reference_body two[2];
-            narc_arc read[2][NARC_MAX_ARCS];
-            for (int side = 0; side < 2; side++) {
-                const struct pair *pair = &scene.pairs[rows.rows[k].pair];
-                two[side] = scene_reference(&scene, side ? pair->b : pair->a);
-                if (stored && narc_get_arcs(scene.store, scene.bodies[side ? pair->b : pair->a].shape, read[side]) > 0)
-                    two[side].arcs = read[side];
-            }
-            if (rows.rows[k].count > 0)
-                count_row(&two[0], &two[1], &rows.rows[k], &fine[k], &counts);
-        }
-        free(fine);
-        free(arcs);
-        free(rows.rows);
-        destroy_scene(&scene);
-    }
-    if (!stored)
-        check_counts(&counts);
-    print_message("worst %.3g of the bound\n", counts.worst);
-    assert_true(counts.worst < 1);
-}
-
-TEST(test_families) { check_families(false); }
-TEST(test_shapes_of_the_store) { check_families(true); }
 
 /* ------------------------------------------------------------------------------------------------ all in double */
 
@@ -217,40 +167,6 @@ TEST(test_concave_arcs) {
         }
         assert_int_equal(found, 1);
     }
-    narc_destroy_shapes(store);
-}
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-TEST(test_errors) {
-    narc_shapes *store = empty_store();
-    const uint32_t box = store_shape(store, box_of(2, 1, 0));
-    const narc_body two[2] = {{0, 0, 1, 0, 1, box}, {1.5, 0, 1, 0, 1, box}};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
-    const narc_pairs pairs = {.count = 1};
-    const double number = 1;
-    int something;
-    const narc_contact row = {.count = 1, .feature = 3, .normal_x = 1}, far = {.pair = 1},
-                       odd = {.count = 1, .feature = 4 << 8};
-    narc_refinement half = {.shift_x = {&number, 0, NARC_FLOAT64}}, taken = {.reserved = {&something}};
-    narc_refined_contact out, before;
-    narc_error error;
-    memset(&out, 7, sizeof out);
-    before = out;
-    assert_int_equal(narc_refine_contacts(NULL, &bodies, &pairs, NULL, &row, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, NULL, &pairs, NULL, &row, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, &bodies, NULL, NULL, &row, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, NULL, NULL, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, NULL, &row, 1, NULL, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, &half, &row, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_string_equal(error.message, "refinement.shift.y is NULL");
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, &taken, &row, 1, &out, &error), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, NULL, &far, 1, &out, &error), NARC_ERROR_INDEX);
-    assert_string_equal(error.message, "row 0: pair is 1, but there are 1 pairs");
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, NULL, &odd, 1, &out, &error), NARC_ERROR_INDEX);
-    assert_string_equal(error.message, "row 0: body b touches with arc or edge 4, but its shape 0 has fewer");
-    assert_memory_equal(&out, &before, sizeof out);
-    assert_int_equal(narc_refine_contacts(store, &bodies, &pairs, NULL, NULL, 0, NULL, &error), NARC_OK);
     narc_destroy_shapes(store);
 }
 

@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * separations.c - one float a pair: to the last bit what contacts tell, and the reference; broken bodies, pieces of
- * ground, parts; strides, ranges, selections, hints and workers.
+ * separations.c - one float a pair: to the last bit what contacts tell, also of pieces of ground; strides, ranges, selections,
+ * hints and workers.
  */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "chains.h"
-#include "check.h"
-#include "corpus.h"
 #include "expect.h"
 #include "guard.h"
-#include "layouts.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "scene.h"
@@ -74,49 +70,23 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
 }
 
 TEST(test_contacts) {
-    struct test_random random = test_random_named("separations of contacts");
     static const float margins[] = {0, 0.25f, INFINITY, -0.25f};
-    for (size_t trial = 0; trial < test_trials(2 * LAYOUT_COUNT); trial++) {
-        const enum layout layout = (enum layout)(trial % LAYOUT_COUNT);
-        struct scene scene =
-            make_random_scene(&random, trial % 2 ? NARC_FLOAT32 : NARC_FLOAT64, 300, trial % 5 ? 500 : 3000);
+    struct test_random random = test_random_named("separations of contacts");
+    for (size_t trial = 0; trial < test_trials(8); trial++) {
+        struct scene scene = make_random_scene(&random, (narc_precision)(trial % 2), 300, trial % 5 ? 500 : 3000);
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_pairs pairs = scene_pairs(&scene);
+        float *const own = malloc(pairs.count * sizeof *own);
         for (size_t k = 0; k < scene.body_count; k += 17) /* broken ones */
             *(k % 2 ? &scene.bodies[k].sine : &scene.bodies[k].scale) = NAN;
-        suit_layout(&scene, layout);
-        struct columns columns = create_columns(&scene, layout, 0, scene.pair_count);
-        for (size_t m = 0; m < sizeof margins / sizeof margins[0]; m++)
-            check_separations(scene.store, &columns.bodies, &columns.pairs, (narc_query){.margin = margins[m]});
-        float *const own = malloc(scene.pair_count * sizeof *own);
-        for (size_t k = 0; k < scene.pair_count; k++)
+        for (size_t k = 0; k < pairs.count; k++)
             own[k] = k % 11 ? (float)random_between(&random, -1, 1) : k % 2 ? NAN : INFINITY;
-        check_separations(scene.store, &columns.bodies, &columns.pairs, (narc_query){.margins = {own, sizeof *own}});
+        for (size_t m = 0; m < sizeof margins / sizeof margins[0]; m++)
+            check_separations(scene.store, &bodies, &pairs, (narc_query){.margin = margins[m]});
+        check_separations(scene.store, &bodies, &pairs, (narc_query){.margins = {own, sizeof *own}});
         free(own);
-        destroy_columns(&columns);
         destroy_scene(&scene);
     }
-}
-
-TEST(test_reference) {
-    struct test_random random = test_random_named("separations and the reference");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT64, 100, test_trials(2000));
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    const narc_query query = {.margin = INFINITY};
-    float *const found = malloc(pairs.count * sizeof *found);
-    double worst = 0;
-    assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &query, found, NULL), NARC_OK);
-    for (size_t k = 0; k < pairs.count; k++) {
-        const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
-                                    b = scene_reference(&scene, scene.pairs[k].b);
-        const double error = fabs((double)found[k] - reference_find_gap(&a, &b).gap) / separation_bound(&a, &b);
-        worst = fmax(worst, error);
-        if (!(error <= 1))
-            print_pair(&a, &b);
-        assert_true(error <= 1);
-    }
-    printf("  the largest error is %.3f of the bound\n", worst);
-    free(found);
-    destroy_scene(&scene);
 }
 
 /* Pairs with a concave arc have several contacts: the deepest one's separation is told. */
@@ -162,28 +132,6 @@ TEST(test_ground) {
     }
 }
 
-TEST(test_parts) {
-    enum { OWNERS = 50, PARTS = 3 * OWNERS, PAIRS = 400 };
-    struct test_random random = test_random_named("separations of parts");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT64, OWNERS + PARTS, 1);
-    narc_bodies owners = scene_bodies(&scene), parts = owners;
-    narc_body placed[PARTS];
-    uint32_t owner[PARTS], a[PAIRS], b[PAIRS];
-    owners.count = OWNERS;
-    parts.count = PARTS;
-    for (uint32_t k = 0; k < PARTS; k++)
-        owner[k] = k % OWNERS;
-    for (size_t k = 0; k < PAIRS; k++) {
-        a[k] = (uint32_t)random_below(&random, PARTS);
-        b[k] = (uint32_t)random_below(&random, PARTS);
-    }
-    assert_int_equal(narc_place_parts(&owners, &parts, NARC_ARRAY(owner), NULL, placed, NULL), NARC_OK);
-    const narc_bodies bodies = narc_view_bodies(placed, PARTS);
-    const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-    assert_int_equal(check_separations(scene.store, &bodies, &pairs, (narc_query){.margin = INFINITY}), PAIRS);
-    destroy_scene(&scene);
-}
-
 TEST(test_some_of_a_batch) {
     enum { CHOSEN = 300 };
     struct test_random random = test_random_named("separations of some");
@@ -217,37 +165,6 @@ TEST(test_some_of_a_batch) {
     free(found);
     free(junk);
     free(all);
-    destroy_scene(&scene);
-}
-
-TEST(test_errors) {
-    struct test_random random = test_random_named("errors of separations");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 10, 20);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene), none = {.count = 0};
-    narc_error error;
-    float found[20];
-    memset(found, 0xa5, sizeof found);
-    expect_error(narc_find_separations(scene.store, &bodies, &pairs, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
-                 "out_separations");
-    expect_error(narc_find_separations(scene.store, &bodies, &pairs, &(narc_query){.row_stride = 6}, found, &error),
-                 NARC_ERROR_ARGUMENT, &error, "row_stride");
-    expect_error(narc_find_separations(NULL, &bodies, &pairs, NULL, found, &error), NARC_ERROR_ARGUMENT, &error,
-                 "shapes");
-    const narc_query wrong[] = {
-        {.margin = NAN},
-        {.first = 21},
-        {.first = 10, .count = 11},
-        {.selection = NARC_ARRAY(((const uint32_t[]){0, 20})), .selection_count = 2},
-        {.selection = NARC_ARRAY(((const uint32_t[]){0})), .selection_count = SIZE_MAX},
-        {.reserved = {&error}},
-    };
-    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
-        assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, &wrong[k], found, NULL), NARC_OK);
-    scene.pairs[19].b = 40;
-    assert_int_not_equal(narc_find_separations(scene.store, &bodies, &pairs, NULL, found, NULL), NARC_OK);
-    assert_true(is_junk(found, sizeof found));
-    assert_int_equal(narc_find_separations(scene.store, &bodies, &none, NULL, NULL, NULL), NARC_OK);
     destroy_scene(&scene);
 }
 

@@ -8,9 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "hard.h"
-#include "layouts.h"
-#include "placements.h"
+#include "corpus.h"
 #include "plain.h"
 
 /* All answers of a scene in one layout: with the usual margins, and with margins beside the separation of one pair,
@@ -27,40 +25,17 @@ static void check_scene(struct test_random *random, const struct scene *scene, e
     destroy_columns(&columns);
 }
 
-static enum layout any_layout(struct test_random *random) {
-    const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
-    return layouts[random_below(random, sizeof layouts / sizeof *layouts)];
-}
-
-/* Every family against every other, in one kind of place. */
-static void check_hard_places(enum hard_placement placement, size_t trials) {
-    struct test_random random = test_random_named(hard_placement_name(placement));
-    for (size_t a = 0; a < ALL_FAMILIES; a++) {
-        for (size_t b = 0; b < ALL_FAMILIES; b++) {
-            const narc_precision precision = random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
-            const size_t rounds = test_trials(trials);
-            struct scene scene = create_scene(precision, 2 * rounds, HARD_BODIES * rounds, HARD_BODIES / 2 * rounds);
-            for (size_t round = 0; round < rounds; round++) {
-                const struct shape shape_a = make_any_shape(&random, a), shape_b = make_any_shape(&random, b);
-                const uint32_t index = scene_add_shape(&scene, &shape_a);
-                add_hard_pairs(&random, &scene, placement, index, scene_add_shape(&scene, &shape_b));
-            }
-            char name[128];
-            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_family_name(a),
-                     any_family_name(b));
-            check_scene(&random, &scene, any_layout(&random), name);
-            destroy_scene(&scene);
-        }
+/* Every family against every other, in all kinds of places. */
+TEST(test_all_places) {
+    struct test_random random = test_random_named("all places");
+    for (int round = 0; round < 20; round++) {
+        char name[32];
+        snprintf(name, sizeof name, "all places, round %d", round);
+        struct corpus corpus = make_corpus(name, (narc_precision)(round % 2), 2, false);
+        check_scene(&random, &corpus.scene, any_layout(&random), name);
+        destroy_corpus(&corpus);
     }
 }
-
-TEST(test_touch) { check_hard_places(HARD_TOUCH, 2); }
-
-TEST(test_junction) { check_hard_places(HARD_JUNCTION, 3); }
-
-TEST(test_aligned) { check_hard_places(HARD_ALIGNED, 3); }
-
-TEST(test_concentric) { check_hard_places(HARD_CONCENTRIC, 3); }
 
 /* A shape with a face whose normal is its own +x, at x = 0. */
 static struct shape make_faced(struct test_random *random) {
@@ -112,61 +87,17 @@ TEST(test_faces_at_x) {
     destroy_scene(&scene);
 }
 
-/* The places of the other tests: every kind, random families. */
-TEST(test_all_places) {
-    struct test_random random = test_random_named("all places");
-    for (size_t place = 0; place < PLACE_COUNT; place++) {
-        const narc_precision precision = place % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
-        const size_t count = test_trials(80);
-        struct scene scene = create_scene(precision, 2 * count, 2 * count, count);
-        for (size_t k = 0; k < count; k++) {
-            const struct shape shape_a = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
-            const struct shape shape_b = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
-            struct body a, b;
-            place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
-            a.shape = scene_add_shape(&scene, &shape_a);
-            b.shape = scene_add_shape(&scene, &shape_b);
-            scene_add_two(&scene, a, b);
-        }
-        check_scene(&random, &scene, any_layout(&random), placement_name((enum placement)place));
-        destroy_scene(&scene);
-    }
-}
-
 /* Many random pairs of few shapes, packed, so that every answer of a batch is spread over all stages and vectors. */
 TEST(test_crowds) {
     struct test_random random = test_random_named("crowds");
-    enum { SHAPES = 60, BODIES = 2000, PAIRS = 40000 };
+    enum { BODIES = 2000, PAIRS = 40000 };
     const enum layout layouts[] = {LAYOUT_STRUCTURES, LAYOUT_ARRAYS, LAYOUT_SHARED, LAYOUT_UNSCALED};
     for (size_t round = 0; round < test_trials(4); round++) {
-        const enum layout layout = layouts[round % 4];
-        struct scene scene = create_scene(round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, SHAPES, BODIES, PAIRS);
-        const double world = random_log_between(&random, 0.3, 4);
-        for (size_t k = 0; k < SHAPES; k++) {
-            const struct shape shape =
-                make_any_shape(&random, random_below(&random, ALL_FAMILIES - 1)); /* none far away */
-            scene_add_shape(&scene, &shape);
-        }
-        for (size_t k = 0; k < BODIES; k++) {
-            struct body body = turned_body(random_between(&random, -4, 4), random_log_between(&random, 0.25, 2));
-            body.x = random_between(&random, 0, world);
-            body.y = random_between(&random, 0, world);
-            body.shape = (uint32_t)random_below(&random, SHAPES);
-            /* Some with no answer. */
-            body.sine = random_below(&random, 100) ? body.sine : NAN;
-            body.scale = random_below(&random, 100) ? body.scale : 1e12f;
-            scene_add_body(&scene, body);
-        }
-        for (size_t k = 0; k < PAIRS; k++) {
-            const uint32_t first = (uint32_t)random_below(&random, BODIES);
-            scene_add_pair(&scene, first, (uint32_t)random_below(&random, BODIES));
-        }
-        if (layout == LAYOUT_SHARED) {
-            scene.bodies[0].scale = scene.bodies[0].cosine = 1;
-            scene.bodies[0].sine = 0;
-        }
-        suit_layout(&scene, layout);
-        check_scene(&random, &scene, layout, "crowd");
+        struct scene scene = make_random_scene(&random, round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, BODIES, PAIRS);
+        for (size_t k = 1; k < BODIES; k += 1 + random_below(&random, 100)) /* some with no answer */
+            *(k % 2 ? &scene.bodies[k].sine : &scene.bodies[k].scale) = k % 2 ? NAN : 1e12f;
+        suit_layout(&scene, layouts[round % 4]);
+        check_scene(&random, &scene, layouts[round % 4], "crowd");
         destroy_scene(&scene);
     }
 }

@@ -10,7 +10,7 @@
 #include "support.h"
 #include "tests.h"
 
-/* What a builder was given to write to, full of a pattern, so that a stray write shows. */
+/* What a builder was given to write to, full of a pattern, so that a wrong write shows. */
 struct output {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -29,6 +29,11 @@ static void expect_refused(const struct output *out, narc_status status, narc_st
     assert_memory_equal(out->arcs, untouched.arcs, sizeof out->arcs);
     assert_memory_equal(&out->count, &untouched.count, sizeof out->count);
 }
+
+#define BUILD(out, function, ...)                                                                                      \
+    expect_ok(function(__VA_ARGS__, (out)->arcs, &(out)->count, &(out)->error), &(out)->error)
+#define REFUSED(out, STATUS, words, function, ...)                                                                     \
+    expect_refused(out, function(__VA_ARGS__, (out)->arcs, &(out)->count, &(out)->error), NARC_ERROR_##STATUS, words)
 
 /* Arcs are written up to a count, and not behind it. */
 static void expect_nothing_behind(const struct output *out, size_t count) {
@@ -50,7 +55,7 @@ static void expect_measures(const struct output *out, double area, double second
 
 TEST(builds_circles) {
     struct output out = make_output();
-    expect_ok(narc_build_circle(3, out.arcs, &out.count, &out.error), &out.error);
+    BUILD(&out, narc_build_circle, 3);
     assert_int_equal(out.count, 1);
     assert_true(out.arcs[0].end - out.arcs[0].start == 2 * PI);
     expect_measures(&out, 9 * PI, 81 * PI / 2, 6 * PI);
@@ -60,7 +65,7 @@ TEST(builds_capsules) {
     for (double length = 0; length < 9; length += 2) {
         struct output out = make_output();
         double r = 1.5, l = length;
-        expect_ok(narc_build_capsule(l, r, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_capsule, l, r);
         assert_int_equal(out.count, 2);
         /* A rectangle l by 2r, and two half discs, whose centroids are 4r / (3 pi) from their middles. */
         double half = PI * r * r / 2, c = 4 * r / (3 * PI);
@@ -75,7 +80,7 @@ TEST(builds_boxes) {
     for (size_t k = 0; k < 4; k++) {
         struct output out = make_output();
         double r = radii[k];
-        expect_ok(narc_build_box(w, h, r, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_box, w, h, r);
         assert_int_equal(out.count, 4);
         /* Of a corner's square, r by r with its inner corner at (x, y), the quarter disc stays. */
         double x = w / 2 - r, y = h / 2 - r, c = 4 * r / (3 * PI), quarter = PI * r * r / 4;
@@ -97,7 +102,7 @@ TEST(builds_polygons) {
         for (size_t i = 0; i < n; i++)
             points[i] = (narc_point){2 * cos(0.3 + turn * (double)i), 2 * sin(0.3 + turn * (double)i)};
         struct output out = make_output();
-        expect_ok(narc_build_polygon(points, n, 0, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_polygon, points, n, 0);
         assert_int_equal(out.count, n);
         expect_measures(&out, count * side * apothem / 2,
                         count * side * apothem / 2 * (apothem * apothem / 2 + side * side / 24), count * side);
@@ -107,7 +112,7 @@ TEST(builds_polygons) {
         }
         /* Rounded: each corner loses two triangles and keeps a sector. */
         double r = apothem * 0.6, cut = tan(turn / 2);
-        expect_ok(narc_build_polygon(points, n, r, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_polygon, points, n, r);
         narc_mass mass;
         double length;
         assert_true(narc_compute_mass(out.arcs, out.count, &mass));
@@ -116,7 +121,7 @@ TEST(builds_polygons) {
                     "area");
         expect_near(length, count * (side - 2 * r * cut) + 2 * PI * r, 1e-13 * length, "perimeter");
         /* As round as it gets: the inscribed circle. */
-        expect_ok(narc_build_polygon(points, n, apothem, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_polygon, points, n, apothem);
         expect_measures(&out, PI * apothem * apothem, PI * pow(apothem, 4) / 2, 2 * PI * apothem);
     }
 }
@@ -161,7 +166,7 @@ TEST(builds_four_arcs) {
         f.radius_left = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
         f.radius_right = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
         struct output out = make_output();
-        expect_ok(narc_build_four_arc(f, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_four_arc, f);
         assert_int_equal(out.count, 4);
         assert_true(out.arcs[1].radius == f.radius_high && out.arcs[1].center_y == -f.distance / 2);
         assert_true(out.arcs[3].radius == f.radius_low && out.arcs[3].center_y == f.distance / 2);
@@ -180,7 +185,7 @@ TEST(builds_four_arcs) {
     }
     /* A sharp lens of equal circles: two segments of half angle a. */
     struct output out = make_output();
-    expect_ok(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, out.arcs, &out.count, &out.error), &out.error);
+    BUILD(&out, narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, 0});
     narc_mass mass;
     assert_true(narc_compute_mass(out.arcs, 4, &mass));
     double a = acos(0.8);
@@ -224,39 +229,30 @@ TEST(refuses_what_does_not_fit) {
     narc_arc *arcs = o.arcs;
     size_t *count = &o.count;
     narc_error *error = &o.error;
-    expect_refused(&o, narc_build_box(2, 1, 0.6, arcs, count, error), NARC_ERROR_RADIUS, "half the shorter side, 0.5");
-    expect_refused(&o, narc_build_box(2, 1, -0.1, arcs, count, error), NARC_ERROR_RADIUS, "radius is -0.1");
-    expect_refused(&o, narc_build_polygon(NULL, 4, 0, arcs, count, error), NARC_ERROR_ARGUMENT, "points");
-    expect_refused(&o, narc_build_polygon(square, 2, 0, arcs, count, error), NARC_ERROR_COUNT, "2 points");
-    expect_refused(&o, narc_build_polygon(square, 65, 0, arcs, count, error), NARC_ERROR_COUNT, "65 points");
-    expect_refused(&o, narc_build_polygon(nan, 3, 0, arcs, count, error), NARC_ERROR_NOT_FINITE, "point 1");
-    expect_refused(&o, narc_build_polygon(square, 4, NAN, arcs, count, error), NARC_ERROR_NOT_FINITE, "radius");
-    expect_refused(&o, narc_build_polygon(clockwise, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 0");
-    expect_refused(&o, narc_build_polygon(dent, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 2");
+    REFUSED(&o, RADIUS, "half the shorter side, 0.5", narc_build_box, 2, 1, 0.6);
+    REFUSED(&o, RADIUS, "radius is -0.1", narc_build_box, 2, 1, -0.1);
+    REFUSED(&o, ARGUMENT, "points", narc_build_polygon, NULL, 4, 0);
+    REFUSED(&o, COUNT, "2 points", narc_build_polygon, square, 2, 0);
+    REFUSED(&o, COUNT, "65 points", narc_build_polygon, square, 65, 0);
+    REFUSED(&o, NOT_FINITE, "point 1", narc_build_polygon, nan, 3, 0);
+    REFUSED(&o, NOT_FINITE, "radius", narc_build_polygon, square, 4, NAN);
+    REFUSED(&o, NOT_CONVEX, "point 0", narc_build_polygon, clockwise, 4, 0);
+    REFUSED(&o, NOT_CONVEX, "point 2", narc_build_polygon, dent, 5, 0);
     assert_null(strstr(error->message, "reverse")); /* it is no more convex the other way round */
-    expect_refused(&o, narc_build_polygon(flat, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 1");
-    expect_refused(&o, narc_build_polygon(star, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "not once");
-    expect_refused(&o, narc_build_polygon(twice, 5, 0, arcs, count, error), NARC_ERROR_SIZE, "side 2");
-    expect_refused(&o, narc_build_polygon(square, 4, 0.6, arcs, count, error), NARC_ERROR_RADIUS,
-                   "side 1: radius is 0.6, the largest that fits it is 0.5");
+    REFUSED(&o, NOT_CONVEX, "point 1", narc_build_polygon, flat, 4, 0);
+    REFUSED(&o, NOT_CONVEX, "not once", narc_build_polygon, star, 5, 0);
+    REFUSED(&o, SIZE, "side 2", narc_build_polygon, twice, 5, 0);
+    REFUSED(&o, RADIUS, "side 1: radius is 0.6, the largest that fits it is 0.5", narc_build_polygon, square, 4, 0.6);
     assert_int_equal(error->index, 1);
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){1, 1, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
-                   "overlap only below 2");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){3, 1, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
-                   "contains the other");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){3, 0, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
-                   "radius_high is 0");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 1, 0}, arcs, count, error), NARC_ERROR_RADIUS,
-                   "radius_left is 1");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 1.5}, arcs, count, error), NARC_ERROR_RADIUS,
-                   "radius_right is 1.5");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 0, -1}, arcs, count, error), NARC_ERROR_RADIUS,
-                   "radius_right is -1");
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){NAN, 5, 8, 0, 0}, arcs, count, error), NARC_ERROR_NOT_FINITE,
-                   "radius_low");
+    REFUSED(&o, SIZE, "overlap only below 2", narc_build_four_arc, (narc_four_arc){1, 1, 2, 0, 0});
+    REFUSED(&o, SIZE, "contains the other", narc_build_four_arc, (narc_four_arc){3, 1, 2, 0, 0});
+    REFUSED(&o, SIZE, "radius_high is 0", narc_build_four_arc, (narc_four_arc){3, 0, 2, 0, 0});
+    REFUSED(&o, RADIUS, "radius_left is 1", narc_build_four_arc, (narc_four_arc){5, 5, 8, 1, 0});
+    REFUSED(&o, RADIUS, "radius_right is 1.5", narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, 1.5});
+    REFUSED(&o, RADIUS, "radius_right is -1", narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, -1});
+    REFUSED(&o, NOT_FINITE, "radius_low", narc_build_four_arc, (narc_four_arc){NAN, 5, 8, 0, 0});
     /* Most of the small circle, with more than half a turn. */
-    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 1, 4.5, 0, 0}, arcs, count, error), NARC_ERROR_SWEEP,
-                   "arc 1");
+    REFUSED(&o, SWEEP, "arc 1", narc_build_four_arc, (narc_four_arc){5, 1, 4.5, 0, 0});
     assert_int_equal(narc_build_circle(1, NULL, count, error), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_circle(1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_capsule(1, 1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
@@ -265,34 +261,35 @@ TEST(refuses_what_does_not_fit) {
     assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, NULL, count, NULL), NARC_ERROR_ARGUMENT);
 }
 
-/* The same outline as the polygon with corners at equal angles, whose measures are checked above. */
+/* The polygon with corners at equal angles, whose measures are checked above. */
 TEST(builds_regular_polygons) {
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
-        const double turn = 2 * PI / (double)n, apothem = 3 * cos(turn / 2), r = 0.4 * apothem, count = (double)n;
-        struct output out = make_output();
-        narc_mass mass;
-        expect_ok(narc_build_regular_polygon(n, 3, 0, out.arcs, &out.count, &out.error), &out.error);
-        assert_int_equal(out.count, n);
-        assert_true(out.arcs[0].center_x == 3 && out.arcs[0].center_y == 0 && out.arcs[0].radius == 0);
-        for (size_t i = 0; i < n; i++)
-            expect_near(hypot(out.arcs[i].center_x, out.arcs[i].center_y), 3, 1e-15 * 4, "distance of a corner");
-        expect_ok(narc_build_regular_polygon(n, 3, r, out.arcs, &out.count, &out.error), &out.error);
-        assert_true(narc_compute_mass(out.arcs, n, &mass));
-        const double cut = tan(turn / 2), area = count * apothem * apothem * cut;
-        expect_near(mass.area, area - count * r * r * (cut - turn / 2), 1e-13 * area, "area");
-        expect_near(out.arcs[0].center_x, 3 - r / cos(turn / 2), 1e-14, "centre of a round corner");
+        const double turn = 2 * PI / (double)n, radius = 1.2 * cos(turn / 2);
+        for (int rounded = 0; rounded < 2; rounded++) {
+            struct output out = make_output(), polygon = make_output();
+            narc_point points[NARC_MAX_ARCS];
+            for (size_t i = 0; i < n; i++)
+                points[i] = (narc_point){3 * cos(turn * (double)i), 3 * sin(turn * (double)i)};
+            BUILD(&out, narc_build_regular_polygon, n, 3, rounded ? radius : 0);
+            BUILD(&polygon, narc_build_polygon, points, n, rounded ? radius : 0);
+            assert_int_equal(out.count, n);
+            assert_true(rounded || (out.arcs[0].center_x == 3 && out.arcs[0].center_y == 0));
+            for (size_t i = 0; i < n; i++) {
+                expect_near(out.arcs[i].center_x, polygon.arcs[i].center_x, 1e-13, "centre x");
+                expect_near(out.arcs[i].center_y, polygon.arcs[i].center_y, 1e-13, "centre y");
+                assert_true(out.arcs[i].radius == polygon.arcs[i].radius);
+            }
+        }
     }
     struct output o = make_output();
-    narc_arc *arcs = o.arcs;
     size_t *count = &o.count;
     narc_error *error = &o.error;
-    expect_refused(&o, narc_build_regular_polygon(2, 1, 0, arcs, count, error), NARC_ERROR_COUNT, "2 corners");
-    expect_refused(&o, narc_build_regular_polygon(65, 1, 0, arcs, count, error), NARC_ERROR_COUNT, "65 corners");
-    expect_refused(&o, narc_build_regular_polygon(5, 0, 0, arcs, count, error), NARC_ERROR_SIZE, "circumradius is 0");
-    expect_refused(&o, narc_build_regular_polygon(5, NAN, 0, arcs, count, error), NARC_ERROR_NOT_FINITE,
-                   "circumradius");
-    expect_refused(&o, narc_build_regular_polygon(4, 1, 1, arcs, count, error), NARC_ERROR_RADIUS, "radius is 1");
-    expect_refused(&o, narc_build_regular_polygon(4, 1, -1, arcs, count, error), NARC_ERROR_RADIUS, "radius is -1");
+    REFUSED(&o, COUNT, "2 corners", narc_build_regular_polygon, 2, 1, 0);
+    REFUSED(&o, COUNT, "65 corners", narc_build_regular_polygon, 65, 1, 0);
+    REFUSED(&o, SIZE, "circumradius is 0", narc_build_regular_polygon, 5, 0, 0);
+    REFUSED(&o, NOT_FINITE, "circumradius", narc_build_regular_polygon, 5, NAN, 0);
+    REFUSED(&o, RADIUS, "radius is 1", narc_build_regular_polygon, 4, 1, 1);
+    REFUSED(&o, RADIUS, "radius is -1", narc_build_regular_polygon, 4, 1, -1);
     assert_int_equal(narc_build_regular_polygon(4, 1, 0, NULL, count, error), NARC_ERROR_ARGUMENT);
 }
 
@@ -419,7 +416,7 @@ TEST(builds_rings) {
             points[backwards ? n - 1 - i : i] = (narc_point){4 + 3 * r * cos(angle), r * sin(angle) - 2};
         }
         struct output out = make_output();
-        expect_ok(narc_build_ring(points, n, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_ring, points, n);
         assert_int_equal(out.count, n);
         expect_ok(narc_validate_arcs(out.arcs, n, &out.error), &out.error);
         /* It is smooth. */
@@ -432,10 +429,10 @@ TEST(builds_rings) {
     }
     const narc_point bow[4] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}}, line[3] = {{0, 0}, {1, 0}, {2, 0}};
     struct output o = make_output();
-    expect_refused(&o, narc_build_ring(bow, 4, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_SIMPLE, "cross or touch");
-    expect_refused(&o, narc_build_ring(line, 3, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_SIMPLE, "");
-    expect_refused(&o, narc_build_ring(bow, 2, o.arcs, &o.count, &o.error), NARC_ERROR_COUNT, "2 points");
-    expect_refused(&o, narc_build_ring(NULL, 4, o.arcs, &o.count, &o.error), NARC_ERROR_ARGUMENT, "polygon is NULL");
+    REFUSED(&o, NOT_SIMPLE, "cross or touch", narc_build_ring, bow, 4);
+    REFUSED(&o, NOT_SIMPLE, "", narc_build_ring, line, 3);
+    REFUSED(&o, COUNT, "2 points", narc_build_ring, bow, 2);
+    REFUSED(&o, ARGUMENT, "polygon is NULL", narc_build_ring, NULL, 4);
     assert_int_equal(narc_build_ring(bow, 4, NULL, &o.count, &o.error), NARC_ERROR_ARGUMENT);
 }
 
@@ -492,7 +489,7 @@ TEST(builds_segments) {
         struct output out = make_output();
         narc_mass mass;
         double length = 0, distance;
-        expect_ok(narc_build_segment(from, to, r, out.arcs, &out.count, &out.error), &out.error);
+        BUILD(&out, narc_build_segment, from, to, r);
         assert_int_equal(out.count, 2);
         assert_true(out.arcs[0].center_x == to.x && out.arcs[1].center_y == from.y && out.arcs[0].radius == r);
         assert_true(narc_compute_mass(out.arcs, 2, &mass) && narc_compute_perimeter(out.arcs, 2, &length));
@@ -509,11 +506,10 @@ TEST(builds_segments) {
     }
     struct output o = make_output();
     const narc_point p = {1, 2}, q = {NAN, 0};
-    expect_refused(&o, narc_build_segment(p, p, 0, o.arcs, &o.count, &o.error), NARC_ERROR_SIZE, "radius is 0");
-    expect_refused(&o, narc_build_segment(p, q, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_FINITE, "point 1");
-    expect_refused(&o, narc_build_segment(p, (narc_point){0, 0}, -1, o.arcs, &o.count, &o.error), NARC_ERROR_RADIUS,
-                   "radius is -1");
-    expect_ok(narc_build_segment(p, p, 2, o.arcs, &o.count, &o.error), &o.error); /* a disc */
+    REFUSED(&o, SIZE, "radius is 0", narc_build_segment, p, p, 0);
+    REFUSED(&o, NOT_FINITE, "point 1", narc_build_segment, p, q, 0);
+    REFUSED(&o, RADIUS, "radius is -1", narc_build_segment, p, (narc_point){0, 0}, -1);
+    BUILD(&o, narc_build_segment, p, p, 2); /* a disc */
     narc_mass disc;
     assert_true(narc_compute_mass(o.arcs, o.count, &disc));
     expect_near(disc.area, 4 * PI, 1e-12, "area");
@@ -529,8 +525,8 @@ TEST(builds_skin_polygons) {
             struct output sharp = make_output(), skin = make_output();
             double area, length = 0;
             narc_mass mass;
-            expect_ok(narc_build_polygon(polygons[k], n, 0, sharp.arcs, &sharp.count, &sharp.error), &sharp.error);
-            expect_ok(narc_build_skin_polygon(polygons[k], n, r, skin.arcs, &skin.count, &skin.error), &skin.error);
+            BUILD(&sharp, narc_build_polygon, polygons[k], n, 0);
+            BUILD(&skin, narc_build_skin_polygon, polygons[k], n, r);
             assert_int_equal(skin.count, n);
             assert_true(narc_compute_mass(sharp.arcs, n, &mass) && narc_compute_perimeter(sharp.arcs, n, &length));
             area = mass.area;
@@ -551,13 +547,11 @@ TEST(builds_skin_polygons) {
     }
     struct output o = make_output();
     const narc_point clockwise[3] = {{0, 0}, {0, 1}, {1, 0}};
-    expect_refused(&o, narc_build_polygon(clockwise, 3, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX,
-                   "clockwise: reverse the points");
-    expect_refused(&o, narc_build_skin_polygon(clockwise, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX,
-                   "clockwise: reverse the points");
-    expect_refused(&o, narc_build_skin_polygon(box, 4, -1, o.arcs, &o.count, &o.error), NARC_ERROR_RADIUS, "-1");
-    expect_refused(&o, narc_build_skin_polygon(box, 2, 1, o.arcs, &o.count, &o.error), NARC_ERROR_COUNT, "2 points");
-    expect_refused(&o, narc_build_skin_polygon(NULL, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_ARGUMENT, "NULL");
+    REFUSED(&o, NOT_CONVEX, "clockwise: reverse the points", narc_build_polygon, clockwise, 3, 0);
+    REFUSED(&o, NOT_CONVEX, "clockwise: reverse the points", narc_build_skin_polygon, clockwise, 3, 1);
+    REFUSED(&o, RADIUS, "-1", narc_build_skin_polygon, box, 4, -1);
+    REFUSED(&o, COUNT, "2 points", narc_build_skin_polygon, box, 2, 1);
+    REFUSED(&o, ARGUMENT, "NULL", narc_build_skin_polygon, NULL, 3, 1);
 }
 
 static double distance_to_side(narc_point p, narc_point a, narc_point b) {
@@ -573,11 +567,11 @@ TEST(welds_polygons) {
     size_t count;
     narc_error error;
     struct output o = make_output();
-    expect_refused(&o, narc_build_polygon(box, 7, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX, "point 1");
+    REFUSED(&o, NOT_CONVEX, "point 1", narc_build_polygon, box, 7, 0);
     expect_ok(narc_weld_polygon(box, 7, 1e-5, left, &count, &error), &error);
     assert_int_equal(count, 4);
     assert_true(left[0].x == 0 && left[1].x == 2 && left[2].y == 1 && left[3].x == 0 && left[3].y == 1);
-    expect_ok(narc_build_polygon(left, count, 0, o.arcs, &o.count, &o.error), &o.error);
+    BUILD(&o, narc_build_polygon, left, count, 0);
     expect_ok(narc_weld_polygon(box, 7, 0, left, &count, &error), &error);
     assert_int_equal(count, 5); /* without those that lie on a line */
     struct test_random random = test_random_named("welding");

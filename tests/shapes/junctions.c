@@ -15,6 +15,8 @@ static narc_point point_on(const narc_arc *arc, double angle) {
     return (narc_point){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
 }
 
+#define REFUSED(STATUS, words, ...) expect_error(__VA_ARGS__, NARC_ERROR_##STATUS, &error, words)
+
 /* The arcs run from point to point and are tangent to each other. */
 static void expect_n_arc(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
                          double tolerance) {
@@ -82,8 +84,7 @@ TEST(random_pentagons_have_one_solution) {
         expect_near(arcs[0].radius, chosen, 1e-13, "radius");
         expect_ok(narc_build_points(points, 5, chosen * (1 + 1e-7), arcs, &count, &error), &error);
         expect_near(arcs[0].radius, chosen, 1e-13, "radius");
-        expect_error(narc_build_points(points, 5, chosen * 1.001, arcs, &count, &error), NARC_ERROR_RADIUS, &error,
-                     "odd number");
+        REFUSED(RADIUS, "odd number", narc_build_points(points, 5, chosen * 1.001, arcs, &count, &error));
     }
 }
 
@@ -133,12 +134,9 @@ TEST(even_counts_have_a_range) {
                 expect_error(error.status, NARC_ERROR_RADIUS, &error, "bounding radius");
             }
         }
-        expect_error(narc_build_points(points, shape.count, least * 0.999, arcs, &count, &error), NARC_ERROR_RADIUS,
-                     &error, "not between");
-        if (isfinite(most)) {
-            expect_error(narc_build_points(points, shape.count, most * 1.001, arcs, &count, &error), NARC_ERROR_RADIUS,
-                         &error, "not between");
-        }
+        REFUSED(RADIUS, "not between", narc_build_points(points, shape.count, least * 0.999, arcs, &count, &error));
+        if (isfinite(most))
+            REFUSED(RADIUS, "not between", narc_build_points(points, shape.count, most * 1.001, arcs, &count, &error));
     }
     assert_true(built > 0);
 }
@@ -154,14 +152,12 @@ TEST(tells_when_there_is_no_solution) {
     memset(arcs, 0x5a, sizeof arcs);
     memset(pattern, 0x5a, sizeof pattern);
     walk(turns, sides, 6, points);
-    expect_error(narc_build_points(points, 6, 0, arcs, &count, &error), NARC_ERROR_NO_SOLUTION, &error, "arcs 4 and 1");
-    expect_error(narc_find_radius_range(points, 6, &least, &most, &chosen, &error), NARC_ERROR_NO_SOLUTION, &error,
-                 "arcs 4 and 1");
-    expect_error(narc_build_points(trapezoid, 4, 0, arcs, &count, &error), NARC_ERROR_NO_SOLUTION, &error,
-                 "even points add up to");
+    REFUSED(NO_SOLUTION, "arcs 4 and 1", narc_build_points(points, 6, 0, arcs, &count, &error));
+    REFUSED(NO_SOLUTION, "arcs 4 and 1", narc_find_radius_range(points, 6, &least, &most, &chosen, &error));
+    REFUSED(NO_SOLUTION, "even points add up to", narc_build_points(trapezoid, 4, 0, arcs, &count, &error));
     /* A triangle with an angle above a right angle: one alpha is that angle. */
     const narc_point blunt[3] = {{-3, 0}, {3, 0}, {0, 1}};
-    expect_error(narc_build_points(blunt, 3, 0, arcs, &count, &error), NARC_ERROR_NO_SOLUTION, &error, "arc 0");
+    REFUSED(NO_SOLUTION, "arc 0", narc_build_points(blunt, 3, 0, arcs, &count, &error));
     assert_true(least == 1 && most == 2 && chosen == 3 && count == 77);
     assert_memory_equal(arcs, pattern, sizeof arcs);
 }
@@ -173,23 +169,22 @@ TEST(refuses_bad_points) {
     size_t count;
     double least, most, chosen;
     narc_error error;
-    expect_error(narc_build_points(NULL, 4, 0, arcs, &count, &error), NARC_ERROR_ARGUMENT, &error, "points");
-    expect_error(narc_build_points(square, 4, 0, NULL, &count, &error), NARC_ERROR_ARGUMENT, &error, "output");
-    expect_error(narc_build_points(square, 2, 0, arcs, &count, &error), NARC_ERROR_COUNT, &error, "2 points");
-    expect_error(narc_build_points(square, 65, 0, arcs, &count, &error), NARC_ERROR_COUNT, &error, "65 points");
-    expect_error(narc_build_points(bad, 3, 0, arcs, &count, &error), NARC_ERROR_NOT_FINITE, &error, "point 2");
-    expect_error(narc_build_points(square, 4, NAN, arcs, &count, &error), NARC_ERROR_NOT_FINITE, &error, "radius");
-    expect_error(narc_build_points(square, 4, -1, arcs, &count, &error), NARC_ERROR_RADIUS, &error, "radius is -1");
-    expect_error(narc_build_points(square, 4, 0.4, arcs, &count, &error), NARC_ERROR_RADIUS, &error, "not between 0.5");
-    expect_error(narc_build_points(clockwise, 4, 0, arcs, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "point 0");
+    REFUSED(ARGUMENT, "points", narc_build_points(NULL, 4, 0, arcs, &count, &error));
+    REFUSED(ARGUMENT, "output", narc_build_points(square, 4, 0, NULL, &count, &error));
+    REFUSED(COUNT, "2 points", narc_build_points(square, 2, 0, arcs, &count, &error));
+    REFUSED(COUNT, "65 points", narc_build_points(square, 65, 0, arcs, &count, &error));
+    REFUSED(NOT_FINITE, "point 2", narc_build_points(bad, 3, 0, arcs, &count, &error));
+    REFUSED(NOT_FINITE, "radius", narc_build_points(square, 4, NAN, arcs, &count, &error));
+    REFUSED(RADIUS, "radius is -1", narc_build_points(square, 4, -1, arcs, &count, &error));
+    REFUSED(RADIUS, "not between 0.5", narc_build_points(square, 4, 0.4, arcs, &count, &error));
+    REFUSED(NOT_CONVEX, "point 0", narc_build_points(clockwise, 4, 0, arcs, &count, &error));
     assert_non_null(strstr(error.message, "clockwise: reverse the points"));
-    expect_error(narc_build_points(same, 4, 0, arcs, &count, &error), NARC_ERROR_SIZE, &error, "point 1");
+    REFUSED(SIZE, "point 1", narc_build_points(same, 4, 0, arcs, &count, &error));
     narc_point star[5];
     for (size_t i = 0; i < 5; i++)
         star[i] = (narc_point){cos(0.8 * PI * (double)i), sin(0.8 * PI * (double)i)};
-    expect_error(narc_build_points(star, 5, 0, arcs, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "not once");
-    expect_error(narc_find_radius_range(square, 4, NULL, &most, &chosen, &error), NARC_ERROR_ARGUMENT, &error,
-                 "output");
+    REFUSED(NOT_CONVEX, "not once", narc_build_points(star, 5, 0, arcs, &count, &error));
+    REFUSED(ARGUMENT, "output", narc_find_radius_range(square, 4, NULL, &most, &chosen, &error));
     expect_ok(narc_find_radius_range(square, 4, &least, &most, &chosen, &error), &error);
     expect_near(least, 0.5, 1e-14, "least radius");
     assert_true(most == INFINITY);
@@ -363,22 +358,22 @@ TEST(refuses_bad_polygons) {
     const narc_point one[3] = {{1, 1}, {1, 1}, {1, 1}};
     narc_point out[NARC_MAX_ARCS] = {{7, 7}};
     narc_error error;
-    expect_error(narc_adjust_polygon(NULL, 4, out, &error), NARC_ERROR_ARGUMENT, &error, "polygon");
-    expect_error(narc_adjust_polygon(square, 4, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_points");
-    expect_error(narc_adjust_polygon(square, 2, out, &error), NARC_ERROR_COUNT, &error, "2 points");
-    expect_error(narc_adjust_polygon(square, 65, out, &error), NARC_ERROR_COUNT, &error, "65 points");
-    expect_error(narc_adjust_polygon(bad, 3, out, &error), NARC_ERROR_NOT_FINITE, &error, "point 1");
-    expect_error(narc_adjust_polygon(bow, 4, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
-    expect_error(narc_adjust_polygon(same, 4, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "point 1");
-    expect_error(narc_adjust_polygon(flat, 3, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides");
-    expect_error(narc_adjust_polygon(spike, 4, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 1");
-    expect_error(narc_adjust_polygon(touch, 5, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
-    expect_error(narc_adjust_polygon(twice, 6, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
-    expect_error(narc_adjust_polygon(one, 3, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "all points");
+    REFUSED(ARGUMENT, "polygon", narc_adjust_polygon(NULL, 4, out, &error));
+    REFUSED(ARGUMENT, "out_points", narc_adjust_polygon(square, 4, NULL, &error));
+    REFUSED(COUNT, "2 points", narc_adjust_polygon(square, 2, out, &error));
+    REFUSED(COUNT, "65 points", narc_adjust_polygon(square, 65, out, &error));
+    REFUSED(NOT_FINITE, "point 1", narc_adjust_polygon(bad, 3, out, &error));
+    REFUSED(NOT_SIMPLE, "sides 0 and 2", narc_adjust_polygon(bow, 4, out, &error));
+    REFUSED(NOT_SIMPLE, "point 1", narc_adjust_polygon(same, 4, out, &error));
+    REFUSED(NOT_SIMPLE, "sides", narc_adjust_polygon(flat, 3, out, &error));
+    REFUSED(NOT_SIMPLE, "sides 0 and 1", narc_adjust_polygon(spike, 4, out, &error));
+    REFUSED(NOT_SIMPLE, "sides 0 and 2", narc_adjust_polygon(touch, 5, out, &error));
+    REFUSED(NOT_SIMPLE, "sides 0 and 2", narc_adjust_polygon(twice, 6, out, &error));
+    REFUSED(NOT_SIMPLE, "all points", narc_adjust_polygon(one, 3, out, &error));
     for (int k = 0; k < 2; k++) {
         const double size = k ? 4 * NARC_MAX_SIZE : NARC_MIN_SIZE / 4;
         const narc_point sized[3] = {{0, 0}, {size, 0}, {0, size}};
-        expect_error(narc_adjust_polygon(sized, 3, out, &error), NARC_ERROR_SIZE, &error, "the polygon's size is");
+        REFUSED(SIZE, "the polygon's size is", narc_adjust_polygon(sized, 3, out, &error));
     }
     assert_true(out[0].x == 7 && out[0].y == 7);
 }

@@ -6,7 +6,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "ray_reference.h"
 #include "support.h"
 
 static double sweep_of(const narc_arc *arc) {
@@ -94,46 +96,11 @@ static bool has_angle(const narc_arc *arc, double angle) {
     return (after < 0 ? after + 2 * PI : after) <= sweep_of(arc);
 }
 
-static double segment_distance(narc_point p, narc_point a, narc_point b) {
-    double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
-    double t = square > 0 ? ((p.x - a.x) * x + (p.y - a.y) * y) / square : 0;
-    t = fmin(1, fmax(0, t));
-    return hypot(p.x - a.x - t * x, p.y - a.y - t * y);
-}
-
-/* Inside the polygon of arc ends, or between an arc and its chord. */
-static bool is_inside(const narc_arc *arcs, size_t count, narc_point point) {
-    bool in_polygon = true;
-    if (count == 1)
-        return hypot(point.x - arcs[0].center_x, point.y - arcs[0].center_y) <= arcs[0].radius;
-    for (size_t i = 0; i < count; i++) {
-        const narc_arc *arc = &arcs[i];
-        narc_point start = start_of(arc), end = end_of(arc);
-        bool in_disc = hypot(point.x - arc->center_x, point.y - arc->center_y) <= arc->radius;
-        if (cross(start, end, point) < 0) {
-            if (in_disc)
-                return true;
-            in_polygon = false;
-        }
-        narc_point next = start_of(&arcs[(i + 1) % count]);
-        if (distance_of(end, next) > shortest_edge)
-            in_polygon = in_polygon && cross(end, next, point) >= 0;
-    }
-    return in_polygon;
-}
-
 double oracle_distance(const narc_arc *arcs, size_t count, narc_point point) {
-    double best = INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        const narc_arc *arc = &arcs[i];
-        narc_point start = start_of(arc), end = end_of(arc);
-        double x = point.x - arc->center_x, y = point.y - arc->center_y;
-        if (has_angle(arc, atan2(y, x)))
-            best = fmin(best, fabs(hypot(x, y) - arc->radius));
-        best = fmin(best, fmin(distance_of(point, start), distance_of(point, end)));
-        best = fmin(best, segment_distance(point, end, start_of(&arcs[(i + 1) % count])));
-    }
-    return is_inside(arcs, count, point) ? -best : best;
+    struct shape shape = {.count = count};
+    memcpy(shape.arcs, arcs, count * sizeof *arcs);
+    const struct outline_reference outline = make_outline_reference(&shape);
+    return (double)find_signed_distance(&outline, (long double)point.x, (long double)point.y);
 }
 
 double oracle_reach(const narc_arc *arcs, size_t count, narc_point point) {

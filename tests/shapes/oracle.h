@@ -26,7 +26,7 @@ double oracle_perimeter(const struct samples *samples);
 /* The largest x * point.x + y * point.y of the samples. */
 double oracle_height(const struct samples *samples, double x, double y);
 
-/* The signed distance from a point to the arcs and edges, each on its own, negative inside. */
+/* The signed distance from a point, the largest over all normals: see ray_reference.h. */
 double oracle_distance(const narc_arc *arcs, size_t count, narc_point point);
 
 /* The distance from a point to the furthest point of the arcs. */

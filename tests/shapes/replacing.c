@@ -150,7 +150,7 @@ static void expect_little_memory(const struct ledger *ledger, size_t most_needed
 
 /* Replacing for ever, with any number of arcs, takes no more memory than is promised. */
 TEST(memory_does_not_grow) {
-    enum { SHAPES = 50, STEPS = 20000 };
+    enum { SHAPES = 50, STEPS = 8000 };
     struct test_random random = test_random_named("no growth");
     for (int way = 0; way < 2; way++) { /* replace; remove and add */
         struct ledger ledger = {0};
@@ -186,7 +186,7 @@ TEST(memory_does_not_grow) {
 /* A triangle after the other becomes a polygon of 64 corners, which is removed. Then triangles come back, in their
  * places. */
 TEST(removed_shapes_need_no_memory) {
-    enum { SHAPES = 10000 };
+    enum { SHAPES = 3000 };
     struct ledger ledger = {0};
     narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "families.h"
 #include "ledger.h"
 #include "narc.h"
+#include "scene.h"
 #include "store.h"
 #include "support.h"
 #include "tests.h"
@@ -43,6 +43,13 @@ static unsigned char *save(const narc_shapes *shapes, size_t *out_size) {
     return bytes;
 }
 
+static narc_shapes *load(const unsigned char *bytes, size_t size) {
+    narc_shapes *loaded = NULL;
+    narc_error error;
+    expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+    return loaded;
+}
+
 static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     assert_int_equal(a->count, b->count);
     assert_int_equal(a->removed_count, b->removed_count);
@@ -66,19 +73,27 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     }
 }
 
+/* The same store, from bytes that may lie anywhere, with the same bytes. */
+static narc_shapes *save_and_load(const narc_shapes *shapes) {
+    size_t size, again;
+    unsigned char *const bytes = save(shapes, &size), *const moved = malloc(size + 1);
+    assert_non_null(moved);
+    narc_shapes *const loaded = load(memcpy(moved + 1, bytes, size), size);
+    expect_same_store(shapes, loaded);
+    unsigned char *const same = save(loaded, &again);
+    assert_int_equal(again, size);
+    assert_memory_equal(same, bytes, size);
+    free(same);
+    free(moved);
+    free(bytes);
+    return loaded;
+}
+
 TEST(loads_what_was_saved) {
     struct test_random random = test_random_named("saving");
     for (size_t round = 0; round < test_trials(20); round++) {
-        narc_shapes *shapes = make_store(&random, 1 + round % 5), *loaded = NULL;
-        size_t size;
-        unsigned char *bytes = save(shapes, &size), *copy = malloc(size + 1);
-        narc_error error;
-        assert_non_null(copy);
-        memcpy(copy + 1, bytes, size); /* anywhere */
-        expect_ok(narc_load_shapes(NULL, copy + 1, size, &loaded, &error), &error);
-        expect_same_store(shapes, loaded);
-        expect_ok(narc_save_shapes(loaded, copy, size, &error), &error);
-        assert_memory_equal(copy, bytes, size);
+        narc_shapes *const shapes = make_store(&random, 1 + round % 5);
+        narc_shapes *const loaded = save_and_load(shapes);
         /* It goes on as the saved one does: equal shapes are found, indices come in the same order. */
         for (int k = 0; k < 20; k++) {
             const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
@@ -88,8 +103,6 @@ TEST(loads_what_was_saved) {
         }
         narc_destroy_shapes(shapes);
         narc_destroy_shapes(loaded);
-        free(bytes);
-        free(copy);
     }
 }
 
@@ -97,10 +110,8 @@ TEST(loads_what_was_saved) {
 TEST(loads_shapes_far_from_their_origin) {
     struct test_random random = test_random_named("far saving");
     for (double away = 1; away < 1e9; away *= 10) {
-        narc_shapes *shapes = NULL, *loaded = NULL;
+        narc_shapes *const shapes = empty_store();
         size_t size;
-        narc_error error;
-        assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
         for (size_t k = 0; k < 5 * FAMILY_COUNT; k++) {
             struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
             for (size_t i = 0; i < shape.count; i++)
@@ -110,7 +121,7 @@ TEST(loads_shapes_far_from_their_origin) {
         }
         assert_true(narc_count_shapes(shapes) > 0);
         unsigned char *bytes = save(shapes, &size);
-        expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+        narc_shapes *const loaded = load(bytes, size);
         assert_int_equal(narc_count_shapes(loaded), narc_count_shapes(shapes));
         narc_destroy_shapes(shapes);
         narc_destroy_shapes(loaded);
@@ -195,10 +206,7 @@ TEST(loading_survives_failing_allocations) {
 }
 
 static void write_checksum(unsigned char *bytes, size_t size) {
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (size_t k = 0; k < size; k++)
-        if (k < AT_CHECKSUM || k >= START)
-            hash = (hash ^ bytes[k]) * 0x100000001b3u;
+    const uint64_t hash = test_hash(test_hash(TEST_HASH_START, bytes, AT_CHECKSUM), bytes + START, size - START);
     for (int k = 0; k < 8; k++)
         bytes[AT_CHECKSUM + k] = (unsigned char)(hash >> 8 * k);
 }
@@ -230,45 +238,31 @@ TEST(damaged_bytes_are_refused) {
 /* All pairs of a store's shapes in one place and near it: answers are numbers, and agree with each other. */
 static void expect_usable(const narc_shapes *shapes) {
     enum { MOST = 40 };
-    struct {
-        float x, y, c, s;
-        uint32_t shape;
-    } body[MOST];
+    narc_body body[MOST];
     uint32_t a[MOST * MOST], b[MOST * MOST];
-    narc_contact rows[MOST * MOST];
-    uint64_t bits[MOST * MOST / 64 + 1] = {0};
-    size_t count = 0, pairs_count = 0, found;
-    narc_error error;
+    size_t count = 0;
     for (uint32_t k = 0; k < narc_count_shapes(shapes) && count < MOST; k++)
         if (narc_has_shape(shapes, k)) {
             const narc_shape_header *header = &shapes->headers[k];
-            body[count].x = -header->bound_x + 0.1f * (float)(count % 7);
-            body[count].y = -header->bound_y + 0.1f * (float)(count % 5);
-            body[count].c = 1;
-            body[count].s = 0;
-            body[count++].shape = k;
+            const float x = 0.1f * (float)(count % 7) - header->bound_x,
+                        y = 0.1f * (float)(count % 5) - header->bound_y;
+            body[count++] = (narc_body){(double)x, (double)y, 1, 0, 1, k};
         }
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t j = 0; j < count; j++) {
-            a[pairs_count] = i;
-            b[pairs_count++] = j;
-        }
-    const narc_bodies bodies = {.count = count,
-                                .x = NARC_POSITION_COLUMN(body, x),
-                                .y = NARC_POSITION_COLUMN(body, y),
-                                .cosine = NARC_COLUMN(body, c),
-                                .sine = NARC_COLUMN(body, s),
-                                .shape = NARC_COLUMN(body, shape)};
-    const narc_pairs pairs = {.count = pairs_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-    expect_ok(narc_find_overlaps(shapes, &bodies, &pairs, NULL, bits, &error), &error);
-    expect_ok(narc_find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY}, rows, pairs_count, &found,
-                                 &error),
-              &error);
-    assert_int_equal(found, pairs_count);
-    for (size_t k = 0; k < found; k++) {
-        assert_false(isnan(rows[k].separation) || isnan(rows[k].normal_x));
-        assert_int_equal(bits[k / 64] >> k % 64 & 1, rows[k].separation < 0);
+    for (uint32_t k = 0; k < count * count; k++) {
+        a[k] = k / (uint32_t)count;
+        b[k] = k % (uint32_t)count;
     }
+    const narc_bodies bodies = narc_view_bodies(body, count);
+    const narc_pairs pairs = {.count = count * count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    uint64_t *const bits = find_overlaps(shapes, &bodies, &pairs, NULL);
+    struct contacts contacts = find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+    assert_int_equal(contacts.count, pairs.count);
+    for (size_t k = 0; k < pairs.count; k++) {
+        assert_false(isnan(contacts.rows[k].separation) || isnan(contacts.rows[k].normal_x));
+        assert_int_equal(bit_is_set(bits, k), contacts.rows[k].separation < 0);
+    }
+    free(contacts.rows);
+    free(bits);
 }
 
 static void write_word(unsigned char *bytes, uint32_t word) {
@@ -283,11 +277,10 @@ static void write_float(unsigned char *bytes, float value) {
 }
 
 static void check_forged(struct shape box) {
-    narc_shapes *shapes = empty_store(), *loaded = NULL;
+    narc_shapes *shapes = empty_store();
     unsigned char is[4], *at = NULL;
     size_t size;
-    narc_error error;
-    assert_int_equal(narc_add_shape(shapes, box.arcs, box.count, NULL, NULL), NARC_OK);
+    store_shape(shapes, box);
     assert_int_equal(shapes->box_count, 1);
     unsigned char *bytes = save(shapes, &size);
     write_float(is, shapes->headers[0].bound_radius);
@@ -297,7 +290,7 @@ static void check_forged(struct shape box) {
     const float forged = 2 * shapes->headers[0].bound_radius;
     write_float(at, forged);
     write_checksum(bytes, size);
-    expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+    narc_shapes *const loaded = load(bytes, size);
     assert_true(loaded->headers[0].bound_radius == forged);
     assert_int_equal(loaded->box_count, 0);
     narc_destroy_shapes(loaded);
@@ -345,16 +338,13 @@ TEST(forged_bytes_do_no_harm) {
             expect_usable(loaded);
         /* It can be saved, loaded, and added to. */
         size_t again;
-        narc_shapes *third = NULL;
         unsigned char *copy = save(loaded, &again);
-        expect_ok(narc_load_shapes(NULL, copy, again, &third, &error), &error);
+        narc_shapes *const third = load(copy, again);
         for (size_t i = narc_count_shapes(third); i-- > 0;)
             while (narc_count_uses(third, (uint32_t)i) > 0 && narc_count_uses(third, (uint32_t)i) < 10)
                 assert_int_equal(narc_remove_shape(third, (uint32_t)i, NULL), NARC_OK);
-        for (int i = 0; i < 3; i++) {
-            const struct shape shape = make_shape(&random, FAMILY_BOX);
-            store_shape(third, shape);
-        }
+        for (int i = 0; i < 3; i++)
+            store_shape(third, make_shape(&random, FAMILY_BOX));
         narc_destroy_shapes(third);
         narc_destroy_shapes(loaded);
         free(copy);
@@ -385,44 +375,13 @@ static narc_shapes *make_ground_store(struct test_random *random) {
 
 TEST(saves_pieces_of_chains) {
     struct test_random random = test_random_named("pieces"), again = random;
-    narc_shapes *shapes = make_ground_store(&random), *loaded = NULL;
-    size_t size;
-    unsigned char *bytes = save(shapes, &size), *copy = malloc(size);
-    narc_error error;
-    assert_non_null(copy);
-    expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
-    expect_same_store(shapes, loaded);
+    narc_shapes *const shapes = make_ground_store(&random), *const loaded = save_and_load(shapes);
+    narc_shapes *const same = make_ground_store(&again); /* chains are divided into the same bits */
     assert_int_equal(loaded->piece_count, narc_count_shapes(shapes) - 4);
-    expect_ok(narc_save_shapes(loaded, copy, size, &error), &error);
-    assert_memory_equal(copy, bytes, size);
-    narc_shapes *same = make_ground_store(&again); /* chains are divided into the same bits */
     expect_same_store(shapes, same);
     narc_destroy_shapes(same);
     narc_destroy_shapes(shapes);
     narc_destroy_shapes(loaded);
-    free(bytes);
-    free(copy);
-}
-
-/* A store of one shape from forged bytes: is it refused? */
-static void check_piece_forgery(const unsigned char *bytes, size_t size, size_t at, const void *forged, size_t length) {
-    narc_shapes *loaded = NULL;
-    unsigned char *copy = malloc(size);
-    narc_error error;
-    assert_non_null(copy);
-    memcpy(copy, bytes, size);
-    memcpy(copy + at, forged, length);
-    write_checksum(copy, size);
-    const narc_status status = narc_load_shapes(NULL, copy, size, &loaded, &error);
-    if (status != NARC_ERROR_FORMAT)
-        fail_msg("a forgery at byte %zu: %s", at, narc_status_name(status));
-    free(copy);
-}
-
-static void check_float_forgery(const unsigned char *bytes, size_t size, size_t at, float forged) {
-    unsigned char word[4];
-    write_float(word, forged);
-    check_piece_forgery(bytes, size, at, word, sizeof word);
 }
 
 /* Where the numbers of a store's first shape are. */
@@ -435,6 +394,22 @@ static void expect_refused(unsigned char *bytes, size_t size, const char *words)
     write_checksum(bytes, size);
     expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, words);
     assert_null(loaded);
+}
+
+/* With a number, or a byte, that is another one. */
+static void refuse_number(const unsigned char *bytes, size_t size, size_t at, float number, const char *words) {
+    unsigned char *const forged = malloc(size);
+    assert_non_null(forged);
+    write_float((unsigned char *)memcpy(forged, bytes, size) + at, number);
+    expect_refused(forged, size, words);
+    free(forged);
+}
+
+static void refuse_byte(unsigned char *bytes, size_t size, size_t at, unsigned byte, const char *words) {
+    const unsigned char was = bytes[at];
+    bytes[at] = (unsigned char)byte;
+    expect_refused(bytes, size, words);
+    bytes[at] = was;
 }
 
 /* Arc k becomes that of another place, and ends with the normal that the next one begins with. */
@@ -492,22 +467,15 @@ TEST(refuses_forged_shapes) {
     store_shape(shapes, pentagon);
     unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
     assert_non_null(forged);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-        memcpy(forged, bytes, size);
-        write_float(forged + numbers[k].at, numbers[k].value);
-        expect_refused(forged, size, numbers[k].words);
-    }
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        refuse_number(bytes, size, numbers[k].at, numbers[k].value, numbers[k].words);
     for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
         memcpy(forged, bytes, size);
         put_arcs_in_order(bytes, forged, CORNERS, orders[k].order);
         expect_refused(forged, size, orders[k].words);
     }
-    memcpy(forged, bytes, size);
-    forged[RATIO]--;
-    expect_refused(forged, size, "an extent that is too small");
-    memcpy(forged, bytes, size);
-    forged[FLAGS] ^= NARC_SHAPE_SMOOTH;
-    expect_refused(forged, size, "flags that are not the shape's");
+    refuse_byte(bytes, size, RATIO, bytes[RATIO] - 1u, "an extent that is too small");
+    refuse_byte(bytes, size, FLAGS, bytes[FLAGS] ^ NARC_SHAPE_SMOOTH, "flags that are not the shape's");
     free(bytes);
     free(forged);
     narc_destroy_shapes(shapes);
@@ -580,16 +548,14 @@ TEST(refuses_forged_pieces) {
         unsigned char *bytes = save(shapes, &size);
         const unsigned char mark = bytes[MARK];
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers && concave; k++)
-            check_float_forgery(bytes, size, numbers[k].at, numbers[k].value);
+            refuse_number(bytes, size, numbers[k].at, numbers[k].value, "");
         for (size_t k = 0; k < sizeof marks && concave; k++)
-            check_piece_forgery(bytes, size, MARK, &marks[k], 1);
+            refuse_byte(bytes, size, MARK, marks[k], "");
         for (size_t k = 0; k < 7 && !concave; k++) /* a corner of the closure that is none */
             if ((k + (mark & NARC_FIRST_ARC)) % 7 != 1)
-                check_float_forgery(bytes, size, ARCS + k * ARC + 8, 0x1p-21f);
-        if (!concave) {
-            const unsigned char forged = mark | NARC_PIECE_CONCAVE;
-            check_piece_forgery(bytes, size, MARK, &forged, 1);
-        }
+                refuse_number(bytes, size, ARCS + k * ARC + 8, 0x1p-21f, "");
+        if (!concave)
+            refuse_byte(bytes, size, MARK, mark | NARC_PIECE_CONCAVE, "");
         free(bytes);
         narc_destroy_shapes(shapes);
         free(t.arcs);
@@ -598,8 +564,7 @@ TEST(refuses_forged_pieces) {
     size_t size;
     store_shape(shapes, box_of(1, 2, 0));
     unsigned char *bytes = save(shapes, &size);
-    const unsigned char forged = bytes[MARK] | NARC_PIECE_RUN;
-    check_piece_forgery(bytes, size, MARK, &forged, 1);
+    refuse_byte(bytes, size, MARK, bytes[MARK] | NARC_PIECE_RUN, "");
     narc_destroy_shapes(shapes);
     free(bytes);
 }

@@ -64,24 +64,6 @@ TEST(other_bits_are_another_shape) {
     narc_destroy_shapes(shapes);
 }
 
-TEST(last_use_removes) {
-    struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
-    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
-    narc_error error;
-    for (int k = 0; k < 3; k++)
-        assert_int_equal(store_shape(shapes, box), 0);
-    for (uint32_t uses = 3; uses-- > 0;) {
-        expect_ok(narc_remove_shape(shapes, 0, &error), &error);
-        assert_int_equal(narc_count_uses(shapes, 0), uses);
-        assert_int_equal(narc_get_arcs(shapes, 0, NULL), uses ? 4 : 0);
-    }
-    expect_error(narc_remove_shape(shapes, 0, &error), NARC_ERROR_INDEX, &error, "shape 0 was removed");
-    assert_int_equal(store_shape(shapes, other), 0); /* the removed one is not found */
-    assert_int_equal(store_shape(shapes, box), 1);
-    narc_destroy_shapes(shapes);
-}
-
 TEST(shared_shapes_are_not_replaced) {
     struct ledger ledger = {0};
     narc_shapes *shapes = ledger_store(&ledger);

@@ -30,35 +30,6 @@ static void expect_same_arcs(const struct shape *shape, const narc_arc *stored, 
     }
 }
 
-/* Hundreds of thousands of shapes, each found again afterwards. */
-TEST(keeps_many_shapes) {
-    enum { KINDS = 20 * FAMILY_COUNT, SHAPES = 70000 };
-    struct test_random random = test_random_named("many shapes");
-    struct shape *kinds = malloc(KINDS * sizeof *kinds);
-    narc_error error;
-    for (size_t k = 0; k < KINDS; k++)
-        kinds[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-    narc_shapes *shapes = empty_store();
-    assert_int_equal(narc_count_shapes(shapes), 0);
-    for (size_t k = 0; k < SHAPES; k++) {
-        const struct shape *kind = &kinds[k % KINDS];
-        expect_ok(narc_add_shape_at(shapes, (uint32_t)k, kind->arcs, kind->count, &error), &error);
-    }
-    assert_int_equal(narc_count_shapes(shapes), SHAPES);
-    for (size_t k = 0; k < SHAPES; k++) {
-        narc_arc arcs[NARC_MAX_ARCS];
-        size_t count = narc_get_arcs(shapes, (uint32_t)k, arcs);
-        expect_same_arcs(&kinds[k % KINDS], arcs, count);
-        assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), count);
-        if (k < KINDS)
-            expect_ok(narc_validate_arcs(arcs, count, &error), &error);
-    }
-    assert_int_equal(narc_get_arcs(shapes, SHAPES, NULL), 0);
-    assert_int_equal(narc_shape_flags(shapes, SHAPES), 0);
-    narc_destroy_shapes(shapes);
-    free(kinds);
-}
-
 static double extent_of(const struct shape *shape) {
     double extent = 0;
     for (size_t i = 0; i < shape->count; i++)
@@ -73,6 +44,10 @@ TEST(lays_out_blocks) {
     for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
+        narc_arc stored[NARC_MAX_ARCS];
+        expect_same_arcs(&shape, stored, narc_get_arcs(shapes, (uint32_t)k, stored));
+        assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), shape.count);
+        assert_int_equal(narc_validate_arcs(stored, shape.count, NULL), NARC_OK);
         narc_shape_header header = shapes->headers[k];
         size_t count = shape.count == 1 ? 2 : shape.count, turn_records = narc_angle_records(count);
         const narc_record *block = &shapes->records[header.first_record], *arcs = narc_arcs_of(shapes, &header);
@@ -101,6 +76,8 @@ TEST(lays_out_blocks) {
         assert_true(header.extent_ratio == 255 || header.extent_ratio * (double)header.bound_radius >= extent);
         assert_true((header.extent_ratio - 1) * (double)header.bound_radius <= extent * 1.001);
     }
+    assert_int_equal(narc_get_arcs(shapes, 40 * FAMILY_COUNT, NULL), 0);
+    assert_int_equal(narc_shape_flags(shapes, 40 * FAMILY_COUNT), 0);
     narc_destroy_shapes(shapes);
 }
 

@@ -10,7 +10,7 @@
 
 #include "manifold_reference.h"
 
-/* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a stored one: a dozen
+/* How far from 1 a normal's length may be, and how far, in radians, a normal may be off a stored one: a dozen
  * roundings of a float for square root, division and two rotations. */
 static const double unit_tolerance = 1e-6;
 

@@ -21,7 +21,7 @@ enum layout {
 struct columns {
     narc_bodies bodies;
     narc_pairs pairs;
-    void *memory[10];
+    void *memory[24]; /* a caller's, too */
     size_t memory_count;
 };
 

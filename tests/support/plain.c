@@ -54,8 +54,9 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
     return plain;
 }
 
-struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                      const narc_query *query) {
+/* Manifolds, with the margins and angles of a query. */
+static struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies,
+                                             const narc_pairs *pairs, const narc_query *query) {
     const narc_batch batch = begin_plain(shapes, bodies, pairs, query);
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
     plain.count = find_rows(narc_kernels_plain.manifold, &batch, sizeof *plain.rows, plain.rows);
@@ -158,23 +159,21 @@ static void check_rows(const struct scene *scene, const struct manifolds *right,
     assert_int_equal(right->count, found->count);
 }
 
-void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name) {
+enum layout any_layout(struct test_random *random) {
     const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
-    struct columns columns = create_columns(scene, layouts[random_below(random, 4)], 0, scene->pair_count);
+    return layouts[random_below(random, sizeof layouts / sizeof *layouts)];
+}
+
+void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name) {
+    struct columns columns = create_columns(scene, any_layout(random), 0, scene->pair_count);
     const narc_pairs *pairs = &columns.pairs;
-    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, pairs);
-    const struct plain_batch batch = {.shapes = scene->store,
-                                      .bodies = &columns.bodies,
-                                      .pairs = pairs,
-                                      .right = plain.rows,
-                                      .scene = scene,
-                                      .name = name};
+    const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, pairs, name);
     const float flats[] = {0, 0.05f, 0.7f, 0.7853982f, NARC_MAX_FLAT_ANGLE, -1};
-    const float some = plain.rows[random_below(random, plain.count)].separation;
+    const float some = batch.right[random_below(random, scene->pair_count)].separation;
     const float margins[] = {0.02f, 0, INFINITY, some, nextafterf(some, INFINITY), -0.01f};
     float *each = malloc(scene->pair_count * sizeof *each);
     for (size_t k = 0; k < scene->pair_count; k++) { /* the separation itself is not below it */
-        const float separation = plain.rows[k].separation;
+        const float separation = batch.right[k].separation;
         each[k] = random_below(random, 2) ? separation : nextafterf(separation, INFINITY);
         each[k] = random_below(random, 20) ? each[k] : NAN;
     }
@@ -183,7 +182,9 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
         hints[k] = (uint32_t)random_below(random, 12) << 8 | (uint32_t)random_below(random, 12);
     for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
         narc_query query = {.margin = margins[m], .flat_angle = flats[random_below(random, 6)]};
+        const narc_workers workers = narc_openmp_workers((unsigned)random_below(random, 3));
         query.second_margin = random_below(random, 2) ? 0 : 0.1f;
+        query.workers = &workers;
         if (m == 1)
             query.margins = (narc_float_column){each, sizeof *each};
         struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
@@ -194,11 +195,12 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
         free(right.rows);
         free(found.rows);
         if (m != 1)
-            check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .hints = query.hints});
+            check_plain_contacts(&batch,
+                                 &(narc_query){.margin = margins[m], .hints = query.hints, .workers = &workers});
     }
     check_plain_overlaps(&batch, NULL);
     free(hints);
     free(each);
-    free(plain.rows);
+    free(batch.right);
     destroy_columns(&columns);
 }

@@ -5,15 +5,11 @@
 #ifndef NARC_TEST_PLAIN_H
 #define NARC_TEST_PLAIN_H
 
-#include "scene.h"
+#include "layouts.h"
 
 /* What the deciding formula says of every pair of a batch: contact k is that of pair k. Checks on the way that its
  * overlaps are the contacts with a separation below 0. */
 struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs);
-
-/* Its manifolds, with the margins and angles of a query. */
-struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                      const narc_query *query);
 
 /* A batch with the answers that are right for it. The scene is that of the same pairs, to print one that is wrong. */
 struct plain_batch {
@@ -32,6 +28,9 @@ struct plain_batch make_plain_batch(const struct scene *scene, const narc_bodies
 /* Fail, with the pair, unless the instruction set under test says the same. */
 void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);
 void check_plain_contacts(const struct plain_batch *batch, const narc_query *query);
+
+/* Arrays or structures. */
+enum layout any_layout(struct test_random *random);
 
 /* The same of manifolds with any flat angle and margins, contacts, with hints and without, and overlaps of a scene. */
 void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name);

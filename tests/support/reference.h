@@ -29,8 +29,8 @@ struct reference_gap {
 struct reference_gap reference_find_gap(const struct reference_body *a, const struct reference_body *b);
 
 /* The same in a tenth of the time, for millions of pairs: between neighbouring junctions, those of B turned around, g is
- * |u| cos(angle to u) minus two radii, u from one centre to the other. The test `reference` and the soak compare it with
- * the search. */
+ * |u| cos(angle to u) minus two radii, u from one centre to the other. The test `reference` compares it with the
+ * search. */
 struct reference_gap reference_solve_gap(const struct reference_body *a, const struct reference_body *b);
 
 /* g in the direction of a vector of any length. */

@@ -77,6 +77,11 @@ narc_pairs scene_pairs(const struct scene *scene) {
         .count = scene->pair_count, .a = NARC_COLUMN(scene->pairs, a), .b = NARC_COLUMN(scene->pairs, b)};
 }
 
+narc_motions view_motions(const struct test_motion *motion) {
+    return (narc_motions){
+        .x = NARC_COLUMN(motion, x), .y = NARC_COLUMN(motion, y), .angle = NARC_COLUMN(motion, angle)};
+}
+
 struct reference_body pose_shape(const struct shape *shape, const struct body *body) {
     return (struct reference_body){shape->arcs,        shape->count,       body->x, body->y, (double)body->cosine,
                                    (double)body->sine, (double)body->scale};

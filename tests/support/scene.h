@@ -50,6 +50,12 @@ void scene_add_two(struct scene *scene, struct body a, struct body b);
 narc_bodies scene_bodies(const struct scene *scene);
 narc_pairs scene_pairs(const struct scene *scene);
 
+/* How a body moves, and those of all bodies as columns. */
+struct test_motion {
+    float x, y, angle;
+};
+narc_motions view_motions(const struct test_motion *motion);
+
 /* A body for the reference, its rotation made of length 1, as the library does. */
 struct reference_body scene_reference(const struct scene *scene, uint32_t body);
 struct reference_body pose_shape(const struct shape *shape, const struct body *body);

@@ -2,22 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # memory.sh DEM PRELOAD - whichever allocation of the discrete element program fails.
-set -u
 dem=$1 preload=$2
 . "$(dirname "$0")/../../../tests/support/scarcity.sh"
-folder=$(mktemp -d) || exit 1
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-miss() {
-    echo "WRONG $1"
-    sed 's/^/      /' err.txt
-    failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.sh"
 
-cat >shapes.json <<'END'
-{"shapes": [{"name": "disc", "circle": 1}, {"name": "brick", "box": {"width": 2, "height": 1, "radius": 0.2}}]}
-END
 cat >first.json <<'END'
 {
   "materials": [{"name": "sand", "density": 1000}],

@@ -2,21 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # usage: sh program.sh DEM: the discrete element program from outside: runs, restarts, signals, and inputs that are wrong.
-set -u
 dem=$1
-folder=$(mktemp -d) || exit 1
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-miss() {
-    echo "WRONG $1"
-    sed 's/^/      /' err.txt
-    failures=$((failures + 1))
-}
+. "$(dirname "$0")/common.sh"
 
-cat >shapes.json <<'END'
-{"shapes": [{"name": "disc", "circle": 1}, {"name": "brick", "box": {"width": 2, "height": 1, "radius": 0.2}}]}
-END
 cat >good.json <<'END'
 {
   "materials": [{"name": "sand", "density": 1000}, {"name": "steel", "density": 7800}],

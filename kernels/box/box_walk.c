@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * box_walk.inl - the deciding formula (normal_fan.inl) for two boxes of which more than two edges may answer: around
+ * box_walk.c - the deciding formula (normal_fan.inl) for two boxes of which more than two edges may answer: around
  * all of the fan, without a look at the arcs.
  *
  * The junctions of each box are a right angle apart. So the walk, which begins at +x, meets them in four couples:
@@ -8,15 +8,13 @@
  * next to +x may lie just before it: then its interval is the last of the walk. Half sizes are more than rounding, so
  * there is always a candidate.
  */
-#ifndef NARC_BOX_BOX_WALK_INL
-#define NARC_BOX_BOX_WALK_INL
-
 #include <math.h>
 
 #include "base/call.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "box/box_contact.inl"
+#include "kernels.h"
 #include "sat/faces.inl"
 #include "sat/normal_fan.inl"
 #include "simd/simd.h"
@@ -94,9 +92,8 @@ INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
         best->normal = choose_face(&arcs, pose.position, loose, faces, none, none, best->normal);
 }
 
-/* The largest gap, with the numbers of the corners in place of records. */
-NOINLINE void walk_boxes(const struct box_pair *given, struct gap *out_best) {
-    const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes;
+void NARC_NAMED(walk_boxes)(const struct box_pair *given, struct gap *out_best) {
+    const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes; /* a constant */
     const vec2 q = get_box_vec2(pair, BOX_ROTATION);
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);
@@ -123,24 +120,23 @@ NOINLINE void walk_boxes(const struct box_pair *given, struct gap *out_best) {
     *out_best = best;
 }
 
-/* How the boxes of a pair touch, in the lanes `open`. */
-INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {
-    vm left, corners;
-    struct box_contact c = find_facing(pair, &left, &corners);
-    left = vm_and(open, left);
-    if (vm_any(vm_or(left, vm_and(open, corners)))) {
-        vi corner_a = find_box_touching(&c.a), corner_b = find_box_touching(&c.b);
-        if (vm_any(left)) {
-            struct gap gap;
-            walk_boxes(pair, &gap);
-            c.separation = v_select(left, gap.separation, c.separation);
-            c.normal = v2_select(left, gap.normal, c.normal);
-            corner_a = vi_select(left, gap.record_a, corner_a);
-            corner_b = vi_select(left, gap.record_b, corner_b);
-        }
-        find_closest_sides(pair, vm_or(left, corners), corner_a, corner_b, &c);
-    }
-    return c;
+/* Of the couples 1 and 3 are left, 1 with that edge of B which lies within
+ * half a turn from +x. */
+void NARC_NAMED(walk_capsules)(const struct box_pair *given, struct gap *out_best) {
+    const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
+    const vm all = vm_front(V_WIDTH);
+    const vi zero = vi_set(0);
+    const vf angle_1 = find_diamond_angle(find_side_normal(pair, vi_set(1), true));
+    const vf angle_3 = find_diamond_angle(find_side_normal(pair, vi_set(3), true));
+    const vi turn = vi_select(v_lt(angle_3, angle_1), vi_set(2), zero);
+    vm never;
+    const struct couple first = find_couple(pair, 1, turn, &never), last = find_couple(pair, 3, turn, &never);
+    struct gap best = {v_set(-INFINITY), first.low, v_set(1), zero, zero};
+    vm rises = v_lt(v2_cross(v2_sub(last.corner_b, last.corner_a), first.low), v_set(0));
+    rises = try_interval(pair, &last, &first, first.high, false, all, rises, &best);
+    rises = try_interval(pair, &last, &first, last.low, true, all, rises, &best);
+    rises = try_interval(pair, &first, &last, last.high, false, all, rises, &best);
+    try_interval(pair, &first, &last, first.low, true, all, rises, &best);
+    tell_box_normal(pair, &best);
+    *out_best = best;
 }
-
-#endif

@@ -1,0 +1,379 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * update.c - narc_update_contacts(): the pairs of this step, what is to be done with them, rows, and what began and ended.
+ *
+ * Whatever may fail comes before anything is changed that the last result shows.
+ */
+#include "broad_phase/steps.h"
+#include "column.h"
+#include "contacts.h"
+#include "dispatch.h"
+#include "error.h"
+#include "memory.h"
+#include "narc.h"
+
+#include <string.h>
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
+                           bool slots, void *rows, size_t capacity, size_t *out_count) {
+    const narc_contacts *const c = s->contacts;
+    const narc_step *const step = s->step;
+    const float *const margins = slots ? c->margins : c->ground_margins;
+    const narc_query query = {.margin = step->margin,
+                              .second_margin = step->second_margin,
+                              .flat_angle = step->flat_angle,
+                              .front_only = step->front_only,
+                              .dense = slots,
+                              .margins = {step->ahead.base ? margins : NULL, sizeof *margins},
+                              .hints = {slots ? c->hints : NULL, sizeof *c->hints},
+                              .selection = {selection, sizeof *selection},
+                              .selection_count = count,
+                              .workers = step->workers};
+    return c->contact_rows
+               ? narc_find_contacts(s->shapes, step->bodies, pairs, &query, rows, capacity, out_count, s->error)
+               : narc_find_manifolds(s->shapes, step->bodies, pairs, &query, rows, capacity, out_count, s->error);
+}
+
+/* No row is left. */
+static void clear_row(narc_contacts *c, uint32_t slot) {
+    char *const row = narc_row_at(c, c->rows, slot);
+    c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
+    if (narc_count_points(c->contact_rows, row) > 0 || c->more_of[slot].count > 0) {
+        narc_mark_slot(c, slot, NARC_ASKED);
+        memset(row, 0, c->row_size);
+        memcpy(row, &slot, sizeof slot);
+        c->more_of[slot].count = 0;
+    }
+    narc_set_touching(c, slot, false);
+}
+
+static void follow(const narc_contact_step *s, uint32_t slot) {
+    narc_contacts *const c = s->contacts;
+    const narc_slot_pair pair = c->pair[slot];
+    const narc_more_rows more = c->more_of[slot];
+    if (!(c->state[slot] & NARC_TOUCHING))
+        return;
+    narc_follow_row(s, pair.a, pair.b, &c->kept[slot], narc_row_at(c, c->rows, slot));
+    for (uint32_t i = more.first; i < more.first + more.count; i++)
+        narc_follow_row(s, pair.a, pair.b, &c->more.kept[i], narc_row_at(c, c->more.rows, i));
+    narc_mark_slot(c, slot, NARC_FOLLOWED);
+}
+
+/* Does what is planned, but for pairs of ground that are asked. Here and below what loops use lies in variables of their own,
+ * as whatever is written in bytes might be any of it. */
+static void do_work(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const narc_pair_work *const work = c->work;
+    const uint32_t *const order = c->order;
+    const uint8_t *const marks = s->list->marks, *const state = c->state;
+    uint8_t *const flags = c->flags;
+    uint32_t *const asked = c->asked;
+    const bool margins = s->step->ahead.base;
+    const size_t count = c->work_count;
+    size_t asked_count = 0;
+    c->sensor_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t k = work[i].pair, what = work[i].what, slot = order[k];
+        const unsigned own = marks[k] & NARC_SENSOR ? NARC_SLOT_SENSOR : 0,
+                       rest = what == NARC_REST ? NARC_SLOT_STALE : 0;
+        flags[slot] = (uint8_t)((flags[slot] & (NARC_SLOT_CROSSED | NARC_SLOT_KEPT)) | own | rest);
+        asked[asked_count] = slot; /* as chance has it: without a branch */
+        asked_count += what == NARC_ASK;
+        if (margins && what == NARC_ASK)
+            c->margins[slot] = narc_find_margin(s, c->pair[slot].a, c->pair[slot].b);
+        if (what == NARC_APART && state[slot] & NARC_TOUCHING)
+            clear_row(c, slot);
+        else if (what == NARC_FOLLOW)
+            follow(s, slot);
+        else if (what == NARC_ASK_SENSOR)
+            c->sensors_asked[c->sensor_count++] = slot;
+    }
+    c->asked_count = asked_count;
+}
+
+/* Rows that were asked for are kept to follow their bodies. */
+static void keep_rows(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    for (size_t i = 0; i < c->asked_count; i++) {
+        const uint32_t slot = c->asked[i];
+        const narc_slot_pair pair = c->pair[slot];
+        c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
+        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, pair.a, pair.b))
+            continue;
+        narc_keep_row(s, pair.a, pair.b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
+        c->flags[slot] |= NARC_SLOT_KEPT;
+    }
+}
+
+static narc_status ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
+    narc_contacts *const c = s->contacts;
+    const size_t count = c->asked_count, row_size = c->row_size;
+    const bool contact_rows = c->contact_rows;
+    const uint32_t *const asked = c->asked;
+    const char *const rows = c->rows;
+    uint8_t *const state = c->state, *const flags = c->flags;
+    uint32_t *const marked = c->marked;
+    size_t found = 0, crossed = 0, marked_count = c->marked_count;
+    if (count == 0)
+        return NARC_OK;
+    const narc_status status = narc_ask_pairs(s, pairs, asked, count, true, c->rows, c->slot_capacity, &found);
+    for (size_t i = 0; i < count && status == NARC_OK; i++) {
+        const uint32_t slot = asked[i];
+        const unsigned was = state[slot];
+        const unsigned now = narc_count_points(contact_rows, rows + slot * row_size) > 0 ? NARC_TOUCHING : 0,
+                       crosses = (was ^ now) & NARC_TOUCHING;
+        marked[marked_count] = slot;
+        marked_count += !(was & ~(unsigned)NARC_TOUCHING);
+        state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
+        flags[slot] = (uint8_t)(flags[slot] ^ crosses * NARC_SLOT_CROSSED);
+        crossed += crosses;
+    }
+    c->marked_count = marked_count;
+    c->crossed_count += crossed;
+    if (status == NARC_OK && s->step->recycling > 0)
+        keep_rows(s);
+    return status;
+}
+
+static narc_status ask_sensors(const narc_contact_step *s, const narc_pairs *pairs) {
+    narc_contacts *const c = s->contacts;
+    if (c->sensor_count == 0)
+        return NARC_OK;
+    const narc_query query = {.selection = {c->sensors_asked, sizeof *c->sensors_asked},
+                              .selection_count = c->sensor_count,
+                              .front_only = s->step->front_only,
+                              .workers = s->step->workers};
+    const narc_status status = narc_find_overlaps(s->shapes, s->step->bodies, pairs, &query, c->bits, s->error);
+    for (size_t i = 0; i < c->sensor_count && status == NARC_OK; i++) {
+        const uint32_t slot = c->sensors_asked[i];
+        const bool touches = c->bits[i / 64] >> i % 64 & 1;
+        clear_row(c, slot);
+        narc_mark_slot(c, slot, NARC_ASKED);
+        narc_set_touching(c, slot, touches);
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------ lists */
+
+static uint64_t id_of(const narc_contact_step *s, uint32_t body) {
+    return s->step->id.base ? narc_word_at(s->step->id, body) : body;
+}
+
+static void list_parted(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    for (size_t k = 0; k < s->list->lost_count; k++) {
+        const narc_lost_pair *const lost = &s->list->lost[k];
+        const uint32_t slot = c->parted[k];
+        if (c->state[slot] & NARC_TOUCHING)
+            c->ended[c->result.ended_count++] =
+                (narc_touch_event){slot, (uint8_t)lost->marks, 1, 0, lost->id_a, lost->id_b};
+    }
+}
+
+/* What touches, began and ended, in the order of pairs. */
+static void make_lists(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    narc_step_result *const r = &c->result;
+    const uint32_t *const order = c->order;
+    const uint8_t *const state = c->state, *const all_marks = s->list->marks;
+    uint8_t *const flags = c->flags;
+    uint32_t *const touching = c->touching, *const sensors = c->sensors;
+    const bool filtered = s->step->filter;
+    const size_t count = s->list->pairs.count;
+    size_t touching_count = 0, sensor_count = 0;
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t slot = order[k];
+        const unsigned marks = all_marks[k];
+        const bool touches = state[slot] & NARC_TOUCHING, sensor = marks & NARC_SENSOR;
+        const bool tested = !filtered || narc_is_tested(s, c->pair[slot].a, c->pair[slot].b);
+        touching[touching_count] = sensors[sensor_count] = slot; /* as chance has it: without a branch */
+        touching_count += touches & !sensor & tested;
+        sensor_count += touches & sensor;
+        if (!(flags[slot] & NARC_SLOT_CROSSED))
+            continue;
+        flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
+        const narc_slot_pair pair = c->pair[slot];
+        const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0, 0, id_of(s, pair.a), id_of(s, pair.b)};
+        if (touches)
+            c->began[r->began_count++] = event;
+        else
+            c->ended[r->ended_count++] = event;
+    }
+    r->touching_count = touching_count;
+    r->sensor_count = sensor_count;
+    c->crossed_count = 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ the step */
+
+/* Are rows of pairs that have not moved another answer now? */
+static bool is_asked_differently(const narc_contacts *c, const narc_step *step) {
+    const narc_step *const last = &c->last_step;
+    return step->margin != last->margin || step->second_margin != last->second_margin ||
+           step->flat_angle != last->flat_angle || step->front_only != last->front_only ||
+           step->recycling != last->recycling || !step->ahead.base != !last->ahead.base ||
+           !step->run.base != !last->run.base;
+}
+
+static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes, const narc_step *step,
+                              const narc_step_result **out_result, narc_error *error) {
+    if (!c || !shapes || !step || !out_result || !step->bodies)
+        return narc_fail_missing(error, !c            ? "contacts"
+                                        : !shapes     ? "shapes"
+                                        : !step       ? "step"
+                                        : !out_result ? "out_result"
+                                                      : "step.bodies");
+    const struct {
+        float value;
+        const char *name;
+    } lengths[] = {{step->margin, "margin"}, {step->skin, "skin"}, {step->recycling, "recycling"}};
+    for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; k++) {
+        const narc_status status = narc_check_length(lengths[k].value, "step", lengths[k].name, error);
+        if (status != NARC_OK)
+            return status;
+    }
+    const narc_query query = {
+        .margin = step->margin, .second_margin = step->second_margin, .flat_angle = step->flat_angle};
+    const narc_status status = narc_check_numbers(&query, "step", error);
+    return status == NARC_OK ? narc_check_reserved(step->reserved, 4, "step", error) : status;
+}
+
+/* Pairs, room, rows of ground: what may fail. */
+static narc_status prepare(narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const narc_step *const step = s->step;
+    const narc_pair_options options = {.margin = step->margin,
+                                       .skin = step->skin,
+                                       .motion_x = step->motion_x,
+                                       .motion_y = step->motion_y,
+                                       .reach = step->reach,
+                                       .id = step->id,
+                                       .filter = step->filter,
+                                       .workers = step->workers};
+    const narc_moved_bodies listed = {step->moved, step->moved_count, step->moved.base || step->moved.stride,
+                                      step->ahead};
+    narc_status status =
+        narc_update_moved_pairs(c->broad, s->shapes, step->bodies, &options, &listed, &s->list, s->error);
+    if (status != NARC_OK)
+        return status;
+    if (narc_reserve_slots(c, s->list, step->bodies->count) != NARC_OK)
+        status = narc_fail(s->error, NARC_ERROR_MEMORY, 0, (double)s->list->pairs.count,
+                           "not enough memory for %zu contacts", s->list->pairs.count);
+    if (status != NARC_OK)
+        return status;
+    narc_plan_step(s);
+    status = narc_ask_ground(s);
+    return status == NARC_ERROR_MEMORY ? narc_fail(s->error, status, 0, (double)c->ground_count,
+                                                   "not enough memory for %zu contacts with ground", c->ground_count)
+                                       : status;
+}
+
+/* What follows from the plan: nothing here fails. */
+static narc_status carry_out(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    narc_step_result *const r = &c->result;
+    for (size_t k = 0; k < c->marked_count; k++)
+        c->state[c->marked[k]] &= NARC_TOUCHING;
+    c->marked_count = 0;
+    narc_take_slots(c, s->list);
+    const narc_pairs pairs = {
+        .count = c->slot_count, .a = {&c->pair->a, sizeof *c->pair}, .b = {&c->pair->b, sizeof *c->pair}};
+    do_work(s);
+    narc_status status = ask_contacts(s, &pairs);
+    if (status == NARC_OK)
+        status = ask_sensors(s, &pairs);
+    if (status != NARC_OK)
+        return status;
+    narc_take_ground(s);
+    r->pairs = pairs;
+    r->order = c->order;
+    r->count = s->list->pairs.count;
+    r->more = c->more.rows;
+    r->more_count = c->more.count;
+    r->began_count = r->ended_count = 0;
+    if (!s->list->kept)
+        list_parted(s);
+    if (c->crossed_count > 0 || c->broad->marked)
+        make_lists(s);
+    r->skipped = s->list->skipped;
+    r->asked_count = c->asked_count + c->sensor_count + c->ground_count;
+    return NARC_OK;
+}
+
+narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *shapes, const narc_step *step,
+                                 const narc_step_result **out_result, narc_error *error) {
+    narc_status status = check_step(contacts, shapes, step, out_result, error);
+    if (status != NARC_OK)
+        return status;
+    narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0};
+    contacts->again = is_asked_differently(contacts, step);
+    status = prepare(&s);
+    if (status != NARC_OK) {
+        if (s.list && !s.list->kept)
+            narc_take_back_pairs(contacts->broad);
+        return status;
+    }
+    status = carry_out(&s);
+    if (status != NARC_OK)
+        return status;
+    if (step->bodies->count > 0)
+        memset(contacts->broad->known.changed, 0, step->bodies->count);
+    contacts->last_step = *step;
+    *out_result = &contacts->result;
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ the object */
+
+narc_status narc_create_contacts(const narc_contacts_settings *settings, narc_contacts **out_contacts,
+                                 narc_error *error) {
+    static const narc_contacts_settings defaults = {0};
+    const narc_contacts_settings *const o = settings ? settings : &defaults;
+    const narc_allocator chosen = narc_choose_allocator(o->allocator);
+    if (!out_contacts)
+        return narc_fail_missing(error, "out_contacts");
+    if (o->rows > NARC_CONTACT_ROWS)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, o->rows, "settings.rows is %lu, not one of both kinds",
+                         (unsigned long)o->rows);
+    narc_status status = narc_check_reserved(o->reserved, 4, "settings", error);
+    if (status != NARC_OK)
+        return status;
+    if (!chosen.allocate || !chosen.release)
+        return narc_fail_missing(error, "settings.allocator's function");
+    narc_contacts *c = chosen.allocate(sizeof *c, chosen.context);
+    if (!c)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)sizeof *c, "not enough memory for contacts");
+    *c = (narc_contacts){.allocator = chosen,
+                         .contact_rows = o->rows == NARC_CONTACT_ROWS,
+                         .row_size = o->rows == NARC_CONTACT_ROWS ? sizeof(narc_contact) : sizeof(narc_manifold),
+                         .user_size = o->user_size};
+    status = narc_create_broad_phase(o->allocator, &c->broad);
+    if (status != NARC_OK) {
+        chosen.release(c, chosen.context);
+        return narc_fail(error, status, 0, 0, "not enough memory for contacts");
+    }
+    *out_contacts = c;
+    return NARC_OK;
+}
+
+void narc_destroy_contacts(narc_contacts *contacts) {
+    if (!contacts)
+        return;
+    narc_destroy_broad_phase(contacts->broad);
+    narc_free_slots(contacts);
+    contacts->allocator.release(contacts, contacts->allocator.context);
+}
+
+void narc_forget_contacts(narc_contacts *c) {
+    if (!c)
+        return;
+    narc_forget_pairs(c->broad);
+    narc_forget_poses(c->broad);
+    c->slot_count = c->free_count = c->parted_count = c->marked_count = c->crossed_count = c->more.count = 0;
+    c->result.count = c->result.touching_count = c->result.sensor_count = c->result.began_count =
+        c->result.ended_count = 0;
+    c->result.more_count = 0;
+}

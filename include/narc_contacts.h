@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc_contacts.h - contacts that stay: from bodies to all that touches, one call a step, with work only for what changed.
+ *
+ * The mental model
+ *
+ *   Each pair of bodies that are near each other has a SLOT, from the step in which they come near until they part: a
+ *   row, as narc_find_manifolds() or narc_find_contacts() answers it, and bytes of the caller's own (impulses, friction
+ *   history). A slot stays where it is. A step finds out which bodies have moved, which pairs came and went, and asks
+ *   those pairs again whose bodies are not where they were; all else is left as it is, rows and bytes.
+ *
+ *   Lists tell what a solver goes through and what a game wants to know: what touches, what began and ended. They come
+ *   in the order of the pairs: by the number of one body, and then of the other.
+ *
+ * Example
+ *
+ *     narc_create_contacts(&(narc_contacts_settings){.user_size = sizeof(impulses)}, &contacts, &error);
+ *
+ *     narc_step step = {.bodies = &bodies, .margin = 0.02f, .skin = 0.05f, .recycling = 0.005f,
+ *                       .filter = &filter, .id = NARC_COLUMN(body, id), .workers = &workers};
+ *     const narc_step_result *r;
+ *     narc_update_contacts(contacts, shapes, &step, &r, &error);
+ *     impulses *kept = r->user;
+ *     for (size_t k = 0; k < r->touching_count; k++)
+ *         solve(&r->manifolds[r->touching[k]], &kept[r->touching[k]]);
+ *
+ * Bodies come and go, and change their numbers, as long as each has its id; shapes and filters may be others in each step.
+ */
+#ifndef NARC_CONTACTS_H
+#define NARC_CONTACTS_H
+
+#include "narc_pairs.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Pairs and what is known of them. One object serves one call at a time. */
+typedef struct narc_contacts narc_contacts;
+
+/* What slots hold: the rows of narc_find_manifolds(), or those of narc_find_contacts(). */
+enum { NARC_MANIFOLD_ROWS = 0, NARC_CONTACT_ROWS = 1 };
+
+/* What is 0 or NULL is left out.
+ *   rows        NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS
+ *   user_size   bytes that each slot has for the caller: all 0 in a new slot, aligned as malloc() aligns the first
+ *   allocator   NULL: malloc and free */
+typedef struct narc_contacts_settings {
+    uint32_t rows;
+    size_t user_size;
+    const narc_allocator *allocator;
+    void *reserved[4]; /* NULL */
+} narc_contacts_settings;
+
+/* An object without contacts. `settings` NULL: {0}. NARC_ERROR_MEMORY, NARC_ERROR_ARGUMENT. */
+NARC_API narc_status narc_create_contacts(const narc_contacts_settings *settings, narc_contacts **out_contacts,
+                                          narc_error *error);
+
+/* Frees it; NULL is fine. */
+NARC_API void narc_destroy_contacts(narc_contacts *contacts);
+
+/* A step; what is 0 or NULL is left out.
+ *   bodies              at most 2^32 - 2. Those of ground (entries of chains) behind all that may meet them
+ *   margin, second_margin, flat_angle, front_only   as in narc_query, the margin at least 0 and finite
+ *   skin                at least 0: bodies may move by this until pairs are looked for again. A larger one makes that
+ *                       rarer, and more pairs
+ *   recycling           at least 0, a length. 0: rows are, to the last bit, what narc_find_manifolds() (or contacts)
+ *                       says of these bodies. Above 0: a row with an edge, or of ground, is kept while its points have
+ *                       moved less than that against each other since it was asked for, turns counted by the smaller
+ *                       body's largest radius: features and the normal in A stay, points and separations follow the
+ *                       bodies. So a separation is off by less than `recycling`, and a contact that should have come
+ *                       at another place of the two may come late by as much
+ *   motion_x, motion_y  world axes: what each body moves in this step; pairs that come close on the way are there, too
+ *   reach               at least 0: how far beyond that a body may reach, such as by rotation
+ *   ahead               at least 0: how much further than the margin contacts of a body are told, a fast one's; of two
+ *                       bodies the sum. Motion and reach must hold it
+ *   id                  what a body is known by, whatever its number; no two have the same. Left out: its number
+ *   run                 of bodies that are entries of chains, their entry's run, and NARC_NO_RUN for all others: what
+ *                       several entries tell of one body is merged, as narc_merge_manifolds() does
+ *   filter              which bodies may form a pair; which are static, asleep, sensors
+ *   moved               the numbers of all bodies that may have another pose, shape, filter, id, motion, reach or ahead
+ *                       than in the last step, each once, `moved_count` of them; others are not looked at. Left out
+ *                       ({0}, base and stride): all may. An empty list is one, as NARC_ARRAY() makes it
+ *   workers             threads to use; NULL: the calling one
+ * Columns have one item for each body. */
+typedef struct narc_step {
+    const narc_bodies *bodies;
+    float margin, second_margin, flat_angle;
+    uint32_t front_only;
+    float skin, recycling;
+    narc_float_column motion_x, motion_y, reach, ahead;
+    narc_word_column id;
+    narc_index_column run;
+    const narc_pair_filter *filter;
+    narc_index_column moved;
+    size_t moved_count;
+    const narc_workers *workers;
+    void *reserved[4]; /* NULL */
+} narc_step;
+
+/* Something that began or ended to touch: a pair with a row, or with a sensor an overlap.
+ *   slot        that of the pair, whose row and bytes are there until the next step even if the pair is not
+ *   id_a, id_b  of its bodies; their numbers if there are no ids
+ *   marks       kinds of both: NARC_SENSOR tells of sensors
+ *   parted      1: the bodies are no longer near each other, or one of them is gone; the slot goes to another pair */
+typedef struct narc_touch_event {
+    uint32_t slot;
+    uint8_t marks, parted;
+    uint16_t unused;
+    uint64_t id_a, id_b;
+} narc_touch_event;
+
+/* What slots are, bits of narc_step_result.state.
+ *   NARC_TOUCHING  there is a row; of a sensor's pair: both overlap
+ *   NARC_NEW       the pair came in this step
+ *   NARC_ASKED     the row is new in this step: it was asked for
+ *   NARC_FOLLOWED  the row was kept, and follows its bodies (narc_step.recycling)
+ *   NARC_TURNED    new bytes are wanted: the bodies stand in the other order (a is b) since the last step, and what the
+ *                  caller keeps is that of the pair (b, a)
+ * A row with neither ASKED nor FOLLOWED has the bytes of the last step. */
+enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_TURNED = 16 };
+
+/* After a step; all arrays belong to the contacts, and are valid until their next step.
+ *   pairs         by slot: its bodies a < b. Only slots that are listed in `order` are pairs
+ *   order         the slots of all pairs, in the order of a and then b
+ *   state         by slot, see above
+ *   manifolds     by slot, or `contacts`: rows, with count 0 where nothing touches; their `pair` is the slot
+ *   more          further rows of pairs with concave arcs, `more_count` of them in the order of pairs, of the same type
+ *   user          by slot: user_size bytes each, the caller's to write
+ *   touching      slots with a row of which one body moves (narc_pair_filter): what a solver goes through
+ *   sensors       slots of sensors' pairs whose bodies overlap
+ *   began, ended  since the last step, sensors among them. What falls asleep ends nothing
+ *   skipped       how many bodies are in no pair because they are broken (narc_validate_bodies() says which)
+ *   asked_count   how many pairs were asked */
+typedef struct narc_step_result {
+    narc_pairs pairs;
+    const uint32_t *order;
+    size_t count;
+    const uint8_t *state;
+    const narc_manifold *manifolds;
+    const narc_contact *contacts;
+    const void *more;
+    size_t more_count;
+    void *user;
+    const uint32_t *touching, *sensors;
+    size_t touching_count, sensor_count;
+    const narc_touch_event *began, *ended;
+    size_t began_count, ended_count;
+    size_t skipped, asked_count;
+} narc_step_result;
+
+/* A step: boxes, pairs, rows, events. For the same calls the same bits, for any workers and on every instruction set.
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE, NARC_ERROR_INDEX, NARC_ERROR_COUNT (2^32 pairs), NARC_ERROR_MEMORY,
+ * those for NARC_ISA. On an error the last step's result is as it was, and the next call goes on from there. */
+NARC_API narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *shapes, const narc_step *step,
+                                          const narc_step_result **out_result, narc_error *error);
+
+/* Forgets all pairs, and keeps the memory: for another level. All pairs of the next step are new, and none has ended. NULL:
+ * nothing happens. Not in narc_small.wasm, as all of this. */
+NARC_API void narc_forget_contacts(narc_contacts *contacts);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

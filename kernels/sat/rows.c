@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * rows.c - the way of all pairs that get rows, whatever the question: pairs of circles are answered as they are set up, of
+ * boxes, capsules and concave arcs by their detours, all others by the search (search.c), whose last stages are here.
+ */
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/pair_setup.inl"
+#include "base/pipeline.inl"
+#include "base/question.inl"
+#include "base/queue.inl"
+#include "base/rows.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "box/box_detour.inl"
+#include "box/box_pairs.inl"
+#include "box/box_rows.inl"
+#include "kernels.h"
+#include "piece/concave_detour.inl"
+#include "piece/pieces.inl"
+#include "sat/answers.inl"
+#include "sat/search.inl"
+#include "simd/simd.h"
+
+/* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and
+ * those in the other lanes, done? */
+INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf item[FIELDS], bool in_order) {
+    const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
+    const vm answered = vm_and(open, vm_or(p.far, p.only)), left = vm_and_not(open, answered);
+    const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
+    const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
+    const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
+    const vi pairs = get_item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
+    const struct answer answer = {.separation = p.separation,
+                                  .normal = v2_rotate(to_world, n),
+                                  .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b))),
+                                  .feature = vi_set(0),
+                                  .radius_a = p.arcs.a.radius,
+                                  .radius_b = p.arcs.b.radius,
+                                  .reach_a = all_round,
+                                  .reach_b = all_round};
+    const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
+    if (in_order && !vm_any(left)) {
+        append_answers(call, pairs, found, &answer);
+    } else {
+        char *place[V_WIDTH];
+        find_places(call, pairs, found, place);
+        write_rows(call, place, find_numbers(call, pairs), &answer);
+    }
+    if (call->batch->query->hints.base)
+        put_hints(call, pairs, answered, vi_set(FIRST_ARCS));
+    return left;
+}
+
+INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+    struct rows *rows = call->rows;
+    const vm valid = take_valid(call, pair, circles, item);
+    const vm near = NARC_SHORTCUTS ? vm_and_not(valid, circles->apart) : valid;
+    vm open = near;
+    if (NARC_PIECES && !LIKELY(!call->concave))
+        open = take_concave(call, valid, near, circles, item);
+    if (!NARC_SHORTCUTS)
+        return open;
+    const bool waits = NARC_PIECES && !LIKELY(!call->concave) && vm_any(vm_and(valid, has_concave(item)));
+    const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid) && !waits;
+    const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
+    const bool in_order = due && room;
+    const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
+    if (due && !vm_any(left) && (in_order || !vm_any(open)))
+        rows->done += V_WIDTH;
+    return left;
+}
+
+/* The last stages of rows of one point. */
+static void answer_rows(const struct call *call, struct queue *queues, int begin) {
+    answer_settled(call, queues, begin, false);
+}
+
+static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
+    answer_polygons(call, queues, begin, false);
+}
+
+static void answer_rows_of_boxes(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, false, false);
+}
+
+static void answer_rows_of_capsules(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, true, false);
+}
+
+/* Takes the pairs through `end` stages, each with a queue. `concave`: one for pairs with concave arcs, or NULL if there are
+ * no pieces. */
+NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, struct queue *concave) {
+    const struct row_search *const search = &NARC_NAMED(search);
+    const struct question *const question = given->question;
+    const bool hinted = given->batch->query->hints.base != NULL, second = question->edges != NULL;
+    stage *const stages[STAGES] = {hinted ? search->hinted : search->stages[PROBE],
+                                   search->stages[PROBE_AGAIN],
+                                   search->stages[CLIMB],
+                                   second           ? question->polygons
+                                   : NARC_SHORTCUTS ? answer_rows_of_polygons
+                                                    : NULL,
+                                   search->stages[DECIDE],
+                                   answer_rows,
+                                   question->edges};
+    const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
+                                  .settle = triage_rows,
+                                  .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
+                                  .stages = stages,
+                                  .first = NARC_SHORTCUTS ? PROBE : DECIDE,
+                                  .edged = NARC_SHORTCUTS && !hinted ? CLIMB : 0,
+                                  .end = end};
+    struct box_queue boxes[BOX_QUEUES];
+    struct call call = *given;
+    call.concave = concave;
+    if (NARC_SHORTCUTS && call.batch->shapes->box_count > 0)
+        start_boxes(&call, boxes, second ? question->boxes : answer_rows_of_boxes,
+                    second ? question->capsules : answer_rows_of_capsules);
+    run_pairs(&call, &course, queues);
+    if (NARC_SHORTCUTS && call.boxes)
+        end_boxes(&call);
+    while (NARC_PIECES && concave && concave->count > 0)
+        search->concave(&call);
+}
+
+/* What nobody asks for is not on the stack: second points, */
+NOINLINE void find_points(const struct call *call, struct queue *concave) {
+    struct queue queues[ANSWER_EDGES];
+    run_rows(call, queues, ANSWER_EDGES, concave);
+}
+
+NOINLINE void find_second_points(const struct call *call, struct queue *concave) {
+    struct queue queues[STAGES];
+    run_rows(call, queues, STAGES, concave);
+}
+
+INLINE void find_all(const struct call *call, struct queue *concave) {
+    if (call->question->edges)
+        find_second_points(call, concave);
+    else
+        find_points(call, concave);
+}
+
+/* and pairs with concave arcs. */
+NOINLINE void find_all_of_pieces(const struct call *call) {
+    struct queue concave;
+    concave.count = 0;
+    find_all(call, &concave);
+}
+
+void NARC_NAMED(find_rows)(const struct call *call) {
+    if (NARC_PIECES && call->pieces)
+        find_all_of_pieces(call);
+    else
+        find_all(call, NULL);
+}
