@@ -30,7 +30,7 @@ struct side {
     float cosine, sine; /* of the body */
 };
 
-/* B's pose in A's frame. */
+/* B's pose in A's frame, but for the lengths of the bodies' rotations, which may be any. */
 struct relative {
     narc_point position, rotation;
 };
@@ -41,6 +41,11 @@ static narc_point rotate(narc_point q, narc_point p) {
 
 static narc_point unrotate(narc_point q, narc_point p) {
     return (narc_point){q.x * p.x + q.y * p.y, q.x * p.y - q.y * p.x};
+}
+
+static narc_point normalise(narc_point p) {
+    const double length = sqrt(narc_dot(p, p));
+    return (narc_point){p.x / length, p.y / length};
 }
 
 static struct side find_side(const narc_batch *batch, const narc_bodies *bodies, narc_index_column column, size_t pair,
@@ -211,7 +216,7 @@ static void keep_apart(const struct side *a, const struct side *b, const struct 
                         (double)a->header->bound_radius,
                         (double)b->header->bound_radius};
     narc_point u = find_difference(a, b, pose, c.center_a, c.center_b);
-    double length = sqrt(u.x * u.x + u.y * u.y);
+    double length = sqrt(narc_dot(u, u));
     if (length - size_a - size_b > margin + 2 * (away + slack) + WELL_APART * (size_a + size_b)) {
         keep_circles(a, b, &c, slack, out);
         return;
@@ -222,7 +227,8 @@ static void keep_apart(const struct side *a, const struct side *b, const struct 
     double most = -INFINITY;
     unsigned arc_a = UINT8_MAX, arc_b = UINT8_MAX;
     for (int step = 0; step < MOST_STEPS && length > 0; step++) {
-        const narc_point n = {u.x / length, u.y / length}, n_b = unrotate(pose->rotation, (narc_point){-n.x, -n.y});
+        const narc_point n = {u.x / length, u.y / length};
+        const narc_point n_b = normalise(unrotate(pose->rotation, (narc_point){-n.x, -n.y}));
         const unsigned i = find_holder(a, n), j = find_holder(b, n_b);
         if (i == a->header->count || j == b->header->count)
             return;
@@ -231,8 +237,8 @@ static void keep_apart(const struct side *a, const struct side *b, const struct 
                          of_q = {(double)q->center_x, (double)q->center_y};
         const double in_a = radius_a - (double)p->radius, in_b = radius_b - (double)q->radius;
         u = find_difference(a, b, pose, of_p, of_q);
-        length = sqrt(u.x * u.x + u.y * u.y);
-        const double gap = u.x * n.x + u.y * n.y - scale_a * (double)p->radius - scale_b * (double)q->radius;
+        length = sqrt(narc_dot(u, u));
+        const double gap = narc_dot(u, n) - scale_a * (double)p->radius - scale_b * (double)q->radius;
         if (gap > most) {
             most = gap;
             c = (struct circles){{of_p.x - in_a * n.x, of_p.y - in_a * n.y},
