@@ -1,37 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * ground.c - pieces of chains: contacts, overlaps and rays are those of an independent search in double precision, and
- * the same in every form in which they can be asked for.
- *
- * Against a run, the gap of its closed shape by tests/support/reference.h counts if its normal is one of the front's.
- * Against a concave arc, the body's outline is sampled, and where its distance from the arc's centre is largest, among
- * points near by, is a contact if that direction is among the arc's.
+ * ground.c - pieces of chains: contacts are the same in every form in which they can be asked for; cuts and junctions; rays
+ * and what is nearest to points by the reference of ground. (Which contacts there are: ground_minima.c.)
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
-#include "families.h"
-#include "layouts.h"
+#include "chains.h"
+#include "expect.h"
 #include "narc_broad_phase.h"
-#include "narc_chains.h"
-#include "narc_scene.h"
 #include "plain_kernels.h"
-#include "reference.h"
-#include "scene.h"
-#include "support.h"
-#include "turtle.h"
 
-enum { ENTRIES = 400, SAMPLES = 300, MOST_ROWS = 64 };
+enum { ENTRIES = 400, MOST_ROWS = 64 };
 
-/* A chain of the caller's arcs, and the scene with its entries as bodies 0 .. entry_count - 1. */
-struct ground {
+/* A chain, and a scene with its entries as bodies 0 .. entry_count - 1. */
+struct ground_bodies {
     struct scene scene;
     narc_chain_entry entries[ENTRIES];
     size_t entry_count;
-    narc_arc arcs[128];
-    size_t arc_count;
+    struct chain chain;
     struct turtle walk; /* while it is made */
 };
 
@@ -39,55 +27,33 @@ static const float margin = 0.05f;
 
 /* ------------------------------------------------------------------------------------------------ chains */
 
-static void begin_chain(struct ground *g, double x, double y, double angle) {
-    memset(g, 0, sizeof *g);
+static struct ground_bodies *begin_chain(double x, double y, double angle) {
+    struct ground_bodies *g = calloc(1, sizeof *g);
+    assert_non_null(g);
     g->walk = create_turtle(x, y, angle);
     walk_arc(&g->walk, 0, 0);
+    return g;
 }
 
-/* A scene with the chain's entries. False if it crosses itself. */
-static bool place_chain(struct ground *g, const narc_chain_options *options, size_t bodies, size_t pairs) {
+static void end_chain(struct ground_bodies *g) {
+    destroy_scene(&g->scene);
+    free(g->chain.arcs);
+    free(g);
+}
+
+/* A scene with the entries of what was walked. */
+static void place_chain(struct ground_bodies *g, const narc_chain_options *options, size_t bodies, size_t pairs) {
     narc_error error;
-    assert_in_range(g->walk.count, 1, sizeof g->arcs / sizeof *g->arcs);
-    g->arc_count = g->walk.count;
-    memcpy(g->arcs, g->walk.arcs, g->arc_count * sizeof *g->arcs);
-    free(g->walk.arcs);
+    g->chain = end_walk(&g->walk, options && options->closed);
     g->scene = create_scene(NARC_FLOAT32, ENTRIES + bodies, ENTRIES + bodies, pairs);
-    const narc_status status =
-        narc_add_chain(g->scene.store, g->arcs, g->arc_count, options, g->entries, ENTRIES, &g->entry_count, &error);
-    if (status == NARC_ERROR_NOT_SIMPLE) {
-        destroy_scene(&g->scene);
-        return false;
-    }
-    if (status != NARC_OK)
+    if (narc_add_chain(g->scene.store, g->chain.arcs, g->chain.count, options, g->entries, ENTRIES, &g->entry_count,
+                       &error) != NARC_OK)
         fail_msg("%s", error.message);
     for (size_t k = 0; k < g->entry_count; k++) {
         const narc_chain_entry *e = &g->entries[k];
-        struct shape *shape = &g->scene.shapes[e->shape];
-        shape->count = narc_get_arcs(g->scene.store, e->shape, shape->arcs);
-        struct body body = {.x = e->x, .y = e->y, .cosine = 1, .scale = 1, .shape = e->shape};
-        scene_add_body(&g->scene, body);
+        scene_add_body(&g->scene, (struct body){.x = e->x, .y = e->y, .cosine = 1, .scale = 1, .shape = e->shape});
     }
     g->scene.shape_count = narc_count_shapes(g->scene.store);
-    return true;
-}
-
-/* A hilly country from right to left. */
-static bool make_country(struct test_random *random, struct ground *g, size_t bodies, size_t pairs) {
-    bool was_sharp = true;
-    begin_chain(g, 10, 0, PI / 2);
-    for (int k = 0; k < 24; k++) {
-        const double lean = g->walk.normal - PI / 2;
-        const double turn = random_between(random, 0.1, 0.9), radius = random_log_between(random, 0.2, 6);
-        const bool dips = random_below(random, 2) ? lean > -0.3 : lean > 0.6, is_sharp = !random_below(random, 4);
-        if (is_sharp || was_sharp || random_below(random, 3) == 0)
-            walk_line(&g->walk, random_between(random, 0.2, 2));
-        walk_arc(&g->walk, is_sharp ? 0 : radius, dips ? -turn : turn);
-        was_sharp = is_sharp;
-    }
-    walk_line(&g->walk, 1);
-    walk_arc(&g->walk, 0, 0);
-    return place_chain(g, &(narc_chain_options){.first_run = 7}, bodies, pairs);
 }
 
 static struct shape make_body(struct test_random *random) {
@@ -97,11 +63,11 @@ static struct shape make_body(struct test_random *random) {
 }
 
 /* Bodies near the outline, each with a pair with every entry, as A and as B. */
-static void add_movers(struct test_random *random, struct ground *g, size_t count) {
+static void add_movers(struct test_random *random, struct ground_bodies *g, size_t count) {
     struct scene *scene = &g->scene;
     for (size_t k = 0; k < count; k++) {
         const struct shape shape = make_body(random);
-        const narc_arc *near = &g->arcs[1 + random_below(random, g->arc_count - 2)];
+        const narc_arc *near = &g->chain.arcs[1 + random_below(random, g->chain.count - 2)];
         const double angle = random_between(random, near->start, near->end), scale = random_between(random, 0.1, 0.8);
         const double away = near->radius + scale * random_between(random, 0.2, 1.2);
         struct body body = turned_body(random_between(random, -PI, PI), scale);
@@ -114,298 +80,18 @@ static void add_movers(struct test_random *random, struct ground *g, size_t coun
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ the reference */
-
-struct spot {
-    double x, y;
-};
-
-static bool is_concave(const struct reference_body *b) { return b->count == 1 && signbit(b->arcs->radius); }
-static bool is_run(const struct scene *scene, uint32_t body) {
-    return narc_shape_flags(scene->store, scene->bodies[body].shape) & NARC_SHAPE_RUN;
-}
-
-static struct spot place_point(const struct reference_body *b, double x, double y) {
-    return (struct spot){b->x + b->scale * (b->cosine * x - b->sine * y),
-                         b->y + b->scale * (b->sine * x + b->cosine * y)};
-}
-
-/* The outline of a body: edges and arcs that are longer than nothing, each from a whole number to the next. Piece
- * 2 k is the edge before arc k, piece 2 k + 1 that arc. */
-struct outline {
-    const struct reference_body *body;
-    size_t count, piece[2 * NARC_MAX_ARCS];
-};
-
-static struct spot find_arc_point(const struct reference_body *b, size_t k, double part) {
-    const narc_arc *arc = &b->arcs[k];
-    const double sweep = arc->end - arc->start, angle = arc->start + part * (sweep > 0 ? sweep : sweep + 2 * PI);
-    return place_point(b, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
-}
-
-static struct spot find_outline_point(const struct outline *o, double s) {
-    const double around = fmod(s + (double)o->count, (double)o->count);
-    const size_t at = (size_t)around < o->count ? (size_t)around : 0, k = o->piece[at] / 2;
-    const double part = around - (double)at;
-    if (o->piece[at] % 2)
-        return find_arc_point(o->body, k, part);
-    const struct spot from = find_arc_point(o->body, (k + o->body->count - 1) % o->body->count, 1),
-                      to = find_arc_point(o->body, k, 0);
-    return (struct spot){from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
-}
-
-static struct outline make_outline(const struct reference_body *b) {
-    struct outline o = {.body = b};
-    for (size_t k = 0; k < b->count; k++) {
-        const struct spot from = find_arc_point(b, (k + b->count - 1) % b->count, 1), to = find_arc_point(b, k, 0);
-        if (hypot(to.x - from.x, to.y - from.y) > 1e-5 * b->scale)
-            o.piece[o.count++] = 2 * k;
-        if (b->arcs[k].radius > 0)
-            o.piece[o.count++] = 2 * k + 1;
-    }
-    return o;
-}
-
-static double find_far(const struct outline *o, double s, struct spot center) {
-    const struct spot p = find_outline_point(o, s);
-    return hypot(p.x - center.x, p.y - center.y);
-}
-
-/* What contacts there should be. */
-struct expected {
-    size_t count;
-    double separation[MOST_ROWS];
-    struct spot normal[MOST_ROWS]; /* from the piece to the body */
-    bool is_doubtful;              /* something is too close to call */
-};
-
-/* How wide a body is along a direction of the world. */
-static double find_width(const struct reference_body *b, double x, double y) {
-    const double own_x = b->cosine * x + b->sine * y, own_y = b->cosine * y - b->sine * x;
-    narc_point most, least;
-    assert_true(narc_find_support(b->arcs, b->count, own_x, own_y, &most, NULL) &&
-                narc_find_support(b->arcs, b->count, -own_x, -own_y, &least, NULL));
-    return b->scale * ((most.x - least.x) * own_x + (most.y - least.y) * own_y);
-}
-
-static bool holds_place(const struct reference_body *body, double extent, struct spot p) {
-    return hypot(p.x - body->x, p.y - body->y) < extent &&
-           reference_point_distance(body, p.x - body->x, p.y - body->y) < 0;
-}
-
-/* Does a piece's outline, of a run its front, meet a body? Or nearly so. */
-static bool meets(const struct reference_body *piece, const struct reference_body *body) {
-    const bool run = !is_concave(piece);
-    const double extent = reference_extent(body);
-    for (size_t k = run ? 1 : 0; run ? k + 5 <= piece->count : k < 1; k++) {
-        const narc_arc *arc = &piece->arcs[k], *before = k > 0 ? arc - 1 : arc;
-        const double from_x = before->center_x + before->radius * cos(before->end),
-                     from_y = before->center_y + before->radius * sin(before->end),
-                     to_x = arc->center_x + arc->radius * cos(arc->start),
-                     to_y = arc->center_y + arc->radius * sin(arc->start);
-        for (int i = 0; i <= SAMPLES; i++) {
-            const double part = (double)i / SAMPLES, angle = arc->start + part * (arc->end - arc->start);
-            const struct spot p = place_point(piece, from_x + part * (to_x - from_x), from_y + part * (to_y - from_y));
-            const struct spot q =
-                place_point(piece, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
-            if ((run && holds_place(body, extent, p)) ||
-                ((!run || k + 5 < piece->count) && holds_place(body, extent, q)))
-                return true;
-        }
-    }
-    return false;
-}
-
-/* A body that is no piece, and the only one of its pair, is to reach the surface: else what is told is behind it. What
- * meets the next piece alone may be told of or not. */
-static bool reaches(const struct reference_body *piece, const struct reference_body *body, double separation,
-                    struct spot n, bool *out_doubtful) {
-    const double width = find_width(body, n.x, n.y);
-    *out_doubtful = *out_doubtful || fabs(separation + width) < 2e-5 + 0.002 * width ||
-                    (separation < 0 && separation > -width && !meets(piece, body));
-    return separation > -width;
-}
-
-/* A place of the outline, 0 .. SAMPLES - 1 in each piece: dense at its ends, where a maximum can be as shallow as
- * may be. */
-static double find_sample(int k) {
-    const int piece = k >= 0 ? k / SAMPLES : -1;
-    return piece + 0.5 - 0.5 * cos(PI * (k - piece * SAMPLES) / SAMPLES);
-}
-
-/* The maximum between two places, where there is one. */
-static double refine(const struct outline *o, double low, double high, struct spot center) {
-    const double ratio = 0.6180339887498949;
-    for (int k = 0; k < 60; k++) {
-        const double a = high - ratio * (high - low), b = low + ratio * (high - low);
-        if (find_far(o, a, center) < find_far(o, b, center))
-            low = a;
-        else
-            high = b;
-    }
-    return (low + high) / 2;
-}
-
-static double wrap(double angle) { return remainder(angle, 2 * PI); }
-
-/* Of a run only its front counts: does what lies at s, or next to it, belong to it? */
-static bool lies_on_front(const struct outline *o, double s) {
-    const double around = fmod(s + (double)o->count, (double)o->count);
-    const size_t before = o->piece[(size_t)(around + (double)o->count - 1e-3) % o->count],
-                 after = o->piece[(size_t)(around + 1e-3) % o->count];
-    const size_t first = 2, last = 2 * (o->body->count - 5);
-    return before >= first && before <= last && after >= first && after <= last;
-}
-
-static void expect_concave(const struct reference_body *piece, const struct reference_body *body, bool run,
-                           double limit, struct expected *out) {
-    const narc_arc *arc = piece->arcs;
-    const struct spot center = place_point(piece, arc->center_x, arc->center_y);
-    const double radius = -arc->radius * piece->scale, turned = atan2(piece->sine, piece->cosine);
-    const double mid = (arc->start + arc->end) / 2 + turned, half = fabs(arc->end - arc->start) / 2;
-    const struct outline outline = make_outline(body), *const o = &outline;
-    double found[MOST_ROWS];
-    size_t count = 0;
-    for (int k = 0; k < (int)o->count * SAMPLES; k++) {
-        const double here = find_far(o, find_sample(k), center), before = find_sample(k - 1),
-                     after = find_sample(k + 1);
-        if (here < find_far(o, before, center) || here < find_far(o, after, center))
-            continue;
-        const double peak = refine(o, before, after, center), far = find_far(o, peak, center);
-        const struct spot p = find_outline_point(o, peak);
-        const double n_x = (center.x - p.x) / far, n_y = (center.y - p.y) / far,
-                     off = fabs(wrap(atan2(n_y, n_x) - mid));
-        bool is_known = false;
-        for (size_t i = 0; i < count; i++) {
-            const struct spot q = find_outline_point(o, found[i]);
-            is_known = is_known || hypot(q.x - p.x, q.y - p.y) < 1e-5;
-        }
-        if (is_known || count == MOST_ROWS)
-            continue;
-        found[count++] = peak;
-        const double separation = radius - far;
-        out->is_doubtful = out->is_doubtful || far < 0.02 || fabs(off - half) < 2e-5 || fabs(separation - limit) < 2e-5;
-        if (off <= half && separation < -radius * sin(half)) /* perhaps outside of the circle around the arc */
-            out->is_doubtful = true;
-        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)) ||
-            (!run && !reaches(piece, body, separation, (struct spot){n_x, n_y}, &out->is_doubtful)))
-            continue;
-        out->separation[out->count] = separation;
-        out->normal[out->count++] = (struct spot){n_x, n_y};
-    }
-}
-
-/* Is the gap as large along a normal of the run `run`, too? `sign`: 1 if that is A, else -1. */
-static bool is_tie(const struct reference_body *a, const struct reference_body *b, double gap, double sign,
-                   double angle) {
-    const struct reference_body *const run = sign > 0 ? a : b;
-    const double turned = angle + atan2(run->sine, run->cosine);
-    return reference_gap_along(a, b, sign * cos(turned), sign * sin(turned)) > gap - 1e-6;
-}
-
-/* Is the gap's direction one of the run's front? It is only as good as the root of the gap's precision. */
-static bool is_in_front(const struct reference_body *a, const struct reference_body *b, const struct reference_gap *gap,
-                        double sign, bool *out_doubtful) {
-    const struct reference_body *const run = sign > 0 ? a : b;
-    const narc_arc *first = &run->arcs[0], *last = &run->arcs[run->count - 5];
-    const double sweep = wrap(last->start - first->end - 1) + 1, turned = atan2(run->sine, run->cosine);
-    const double angle = atan2(sign * gap->normal_y, sign * gap->normal_x) - turned;
-    const double beyond = fabs(wrap(angle - first->end - sweep / 2)) - sweep / 2;
-    const bool is_flat = sweep < 1e-9, in_front = beyond <= (is_flat ? 1e-5 : 0);
-    const bool ties = is_tie(a, b, gap->gap, sign, in_front ? first->start : first->end) ||
-                      is_tie(a, b, gap->gap, sign, in_front ? last->end : last->start);
-    *out_doubtful = *out_doubtful || ties || (is_flat ? beyond > 1e-5 && beyond < 1e-4 : fabs(beyond) < 1e-4);
-    return in_front;
-}
-
-static struct expected find_expected(const struct scene *scene, struct pair pair, double limit) {
-    struct expected out = {.count = 0};
-    const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
-    const bool run_a = is_run(scene, pair.a), run_b = is_run(scene, pair.b);
-    if (is_concave(&a) && is_concave(&b))
-        return out;
-    const double apart = hypot(a.x - b.x, a.y - b.y);
-    if (is_concave(&a) || is_concave(&b)) {
-        const struct reference_body *const piece = is_concave(&a) ? &a : &b, *const body = is_concave(&a) ? &b : &a;
-        const double chord = -piece->arcs->radius * sin((piece->arcs->start - piece->arcs->end) / 2);
-        if (apart > chord * 1.001 + reference_extent(body) + limit + 0.01)
-            return out;
-        expect_concave(piece, body, is_concave(&a) ? run_b : run_a, limit, &out);
-        return out;
-    }
-    const struct reference_gap gap = reference_find_gap(&a, &b);
-    out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
-    const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
-    const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
-    const struct spot normal = {gap.normal_x, gap.normal_y};
-    const bool reached = run_a == run_b || reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, normal, &out.is_doubtful);
-    if (gap.gap < limit && front_a && front_b && reached) {
-        out.separation[out.count] = gap.gap;
-        out.normal[out.count++] = normal;
-    }
-    return out;
-}
-
 /* ------------------------------------------------------------------------------------------------ answers */
 
-static size_t capacity_of(const struct ground *g) { return 8 * g->scene.pair_count + 64; }
+static size_t capacity_of(const struct ground_bodies *g) { return 8 * g->scene.pair_count + 64; }
 
-static struct contacts ask(const struct ground *g, const narc_query *query) {
+static struct contacts ask(const struct ground_bodies *g, const narc_query *query) {
     struct contacts out = {make_junk(capacity_of(g) * sizeof *out.rows), 0};
     assert_int_equal(ask_contacts(&g->scene, query, out.rows, capacity_of(g), &out.count, NULL), NARC_OK);
     return out;
 }
 
-/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. Of so many pairs at
- * most the reference may not be sure. */
-static size_t check_rows(const struct ground *g, const struct contacts *rows, size_t most_doubts) {
-    const struct scene *scene = &g->scene;
-    size_t row = 0, doubts = 0, several = 0;
-    for (uint32_t k = 0; k < scene->pair_count; k++) {
-        const struct pair pair = scene->pairs[k];
-        const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
-        const struct expected e = find_expected(scene, pair, (double)margin);
-        size_t count = 0;
-        while (row + count < rows->count && rows->rows[row + count].pair == k)
-            count++;
-        if (!e.is_doubtful && count != e.count) {
-            print_pair(&a, &b);
-            fail_msg("pair %u has %zu rows, not %zu (first: %g, row: %g, normal %g %g, feature %04x)", k, count,
-                     e.count, e.count ? e.separation[0] : 0, count ? (double)rows->rows[row].separation : 0,
-                     count ? (double)rows->rows[row].normal_x : 0, count ? (double)rows->rows[row].normal_y : 0,
-                     count ? rows->rows[row].feature : 0);
-        }
-        for (size_t i = 0; i < count && !e.is_doubtful; i++) {
-            const narc_contact *c = &rows->rows[row + i];
-            const double n_x = is_concave(&b) ? -(double)c->normal_x : (double)c->normal_x,
-                         n_y = is_concave(&b) ? -(double)c->normal_y : (double)c->normal_y;
-            double least = INFINITY, other = INFINITY, bound = separation_bound(&a, &b);
-            if (is_concave(&a) || is_concave(&b)) /* the reference knows no radius below 0 */
-                bound += -2 * NARC_ERROR_BOUND * (is_concave(&a) ? &a : &b)->arcs->radius;
-            for (size_t j = 0; j < e.count; j++) {
-                const double turn = hypot(n_x - e.normal[j].x, n_y - e.normal[j].y);
-                other = turn < least ? fabs((double)c->separation - e.separation[j]) : other;
-                least = fmin(least, turn);
-            }
-            if (!(other <= bound) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
-                fail_msg("pair %u, row %zu of %zu: separation %g is off by %g, the normal by %g", k, i, count,
-                         (double)c->separation, other, least);
-            if (i > 0)
-                assert_true(c[-1].normal_x * c->normal_y - c[-1].normal_y * c->normal_x >= 0);
-            assert_int_equal(c->count, 1);
-        }
-        several += count > 1;
-        doubts += e.is_doubtful;
-        row += count;
-    }
-    assert_int_equal(row, rows->count);
-    if (doubts > most_doubts)
-        fail_msg("%zu of %zu pairs are doubtful", doubts, scene->pair_count);
-    return several;
-}
-
 /* The deepest row of a pair, of those from `row` on; NULL if there is none. */
-static const narc_contact *find_deepest(const struct contacts *rows, size_t row, uint32_t pair) {
+static const narc_contact *find_deepest_row(const struct contacts *rows, size_t row, uint32_t pair) {
     const narc_contact *deepest = NULL;
     for (; row < rows->count && rows->rows[row].pair == pair; row++)
         if (!deepest || rows->rows[row].separation < deepest->separation)
@@ -414,7 +100,7 @@ static const narc_contact *find_deepest(const struct contacts *rows, size_t row,
 }
 
 /* The same rows, in every form. */
-static void check_forms(const struct ground *g, const struct contacts *right) {
+static void check_forms(const struct ground_bodies *g, const struct contacts *right) {
     const struct scene *scene = &g->scene;
     const size_t count = scene->pair_count, size = right->count * sizeof *right->rows;
     const narc_workers two = narc_openmp_workers(2);
@@ -484,7 +170,7 @@ static void check_forms(const struct ground *g, const struct contacts *right) {
     size_t deepest_count = 0;
     row = 0;
     for (uint32_t k = 0; k < count; k++) {
-        const narc_contact *deepest = find_deepest(right, row, k);
+        const narc_contact *deepest = find_deepest_row(right, row, k);
         assert_int_equal(rows.rows[k].count, deepest != NULL);
         if (deepest)
             assert_memory_equal(&rows.rows[k], deepest, sizeof *deepest);
@@ -506,36 +192,8 @@ static void check_forms(const struct ground *g, const struct contacts *right) {
     free(rows.rows);
 }
 
-/* Manifolds: as many rows, each with its contact's normal and separation; the same bits from plain C. */
-static void check_manifolds(const struct ground *g, const struct contacts *right) {
-    const narc_bodies bodies = scene_bodies(&g->scene);
-    const narc_pairs pairs = scene_pairs(&g->scene);
-    const narc_query query = {.margin = margin};
-    narc_manifold *rows = make_junk(capacity_of(g) * sizeof *rows), *others = make_junk(capacity_of(g) * sizeof *rows);
-    size_t found = 0, again = 0;
-    assert_int_equal(narc_find_manifolds(g->scene.store, &bodies, &pairs, &query, rows, capacity_of(g), &found, NULL),
-                     NARC_OK);
-    assert_int_equal(found, right->count);
-    for (size_t k = 0; k < found; k++) {
-        const narc_contact *c = &right->rows[k];
-        assert_int_equal(rows[k].pair, c->pair);
-        assert_true(rows[k].normal_x == c->normal_x && rows[k].normal_y == c->normal_y);
-        assert_in_range(rows[k].count, 1, 2);
-        const float first = rows[k].point[0].separation, second = rows[k].point[rows[k].count - 1].separation;
-        assert_true(c->separation == (first < second ? first : second));
-    }
-    test_use_isa("scalar");
-    assert_int_equal(narc_find_manifolds(g->scene.store, &bodies, &pairs, &query, others, capacity_of(g), &again, NULL),
-                     NARC_OK);
-    test_use_isa(test_isa());
-    assert_int_equal(found, again);
-    assert_memory_equal(rows, others, found * sizeof *rows);
-    free(rows);
-    free(others);
-}
-
 /* The formula alone gives the deepest rows: all batches of a build without shortcuts are answered so. */
-static void check_formula(const struct ground *g, const struct contacts *right) {
+static void check_formula(const struct ground_bodies *g, const struct contacts *right) {
     const narc_bodies bodies = scene_bodies(&g->scene);
     const narc_pairs pairs = scene_pairs(&g->scene);
     const narc_query query = {.margin = margin};
@@ -555,7 +213,7 @@ static void check_formula(const struct ground *g, const struct contacts *right) 
         const size_t found =
             narc_kernels_plain.contact(&batch, first, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
         for (size_t k = 0; k < found; k++) {
-            const narc_contact *deepest = find_deepest(right, row, rows[k].pair);
+            const narc_contact *deepest = find_deepest_row(right, row, rows[k].pair);
             assert_non_null(deepest);
             rows[k].count %= NARC_MORE_ROW;
             assert_memory_equal(&rows[k], deepest, sizeof *deepest);
@@ -574,204 +232,99 @@ static void check_formula(const struct ground *g, const struct contacts *right) 
     free(rows);
 }
 
-/* ------------------------------------------------------------------------------------------------ tests */
-
-TEST(test_country) {
-    struct test_random random = test_random_named("country");
-    size_t several = 0, rows = 0;
-    enum { ROUNDS = 12 }; /* fewer do if a pair with several rows is among them */
-    const size_t rounds = test_trials(ROUNDS);
-    for (size_t round = 0; round < rounds || (several == 0 && round < ROUNDS); round++) {
-        struct ground *g = malloc(sizeof *g);
-        while (!make_country(&random, g, 120, (size_t)ENTRIES * 120)) {
-        }
-        add_movers(&random, g, 60);
-        struct contacts right = ask(g, &(narc_query){.margin = margin});
-        several += check_rows(g, &right, g->scene.pair_count / 20);
-        rows += right.count;
-        check_forms(g, &right);
-        check_manifolds(g, &right);
-        check_formula(g, &right);
-        free(right.rows);
-        destroy_scene(&g->scene);
-        free(g);
-    }
-    assert_true(several > 0 && rows > 0);
-}
-
-/* A closed strip that is thinner than bodies: straight, or an arch, turned anyhow. */
-static void make_strip(struct test_random *random, struct ground *g, bool is_arch, size_t bodies, size_t pairs) {
-    const double thickness = random_log_between(random, 0.02, 0.2), length = random_between(random, 1, 4);
-    const double radius = random_between(random, 1, 4), turn = random_between(random, 1, 3);
-    begin_chain(g, random_between(random, -1, 1), random_between(random, -1, 1), random_between(random, -PI, PI));
-    if (is_arch)
-        walk_arc(&g->walk, radius + thickness, turn);
-    else
-        walk_line(&g->walk, length);
-    walk_arc(&g->walk, 0, PI / 2);
-    walk_line(&g->walk, thickness);
-    walk_arc(&g->walk, 0, PI / 2);
-    if (is_arch)
-        walk_arc(&g->walk, radius, -turn);
-    else
-        walk_line(&g->walk, length);
-    walk_arc(&g->walk, 0, PI / 2);
-    walk_line(&g->walk, thickness);
-    walk_arc(&g->walk, 0, PI / 2);
-    assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, bodies, pairs));
-}
-
-/* Behind thin ground nothing is told by what faces away, in every form. */
-TEST(test_thin_ground) {
-    struct test_random random = test_random_named("thin ground");
-    size_t unreached = 0;
-    for (size_t round = 0; round < test_trials(8); round++) {
-        struct ground *g = malloc(sizeof *g);
-        make_strip(&random, g, round % 2, 60, (size_t)ENTRIES * 60);
-        add_movers(&random, g, 60);
-        struct contacts right = ask(g, &(narc_query){.margin = margin});
-        (void)check_rows(g, &right, g->scene.pair_count / 3);
-        check_forms(g, &right);
-        check_manifolds(g, &right);
-        check_formula(g, &right);
-        for (uint32_t k = 0; k < g->scene.pair_count; k++) {
-            const struct pair pair = g->scene.pairs[k];
-            const struct reference_body a = scene_reference(&g->scene, pair.a), b = scene_reference(&g->scene, pair.b);
-            const bool run_a = is_run(&g->scene, pair.a), run_b = is_run(&g->scene, pair.b);
-            bool doubtful = false;
-            if (is_concave(&a) || is_concave(&b) || run_a == run_b)
-                continue;
-            const struct reference_gap gap = reference_find_gap(&a, &b);
-            unreached += is_in_front(&a, &b, &gap, run_a ? 1 : -1, &doubtful) &&
-                         !reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, (struct spot){gap.normal_x, gap.normal_y},
-                                  &doubtful);
-        }
-        free(right.rows);
-        destroy_scene(&g->scene);
-        free(g);
-    }
-    assert_true(unreached > 0);
-}
-
-/* The place of a chain's arc at a normal. */
-static struct spot find_chain_point(const narc_arc *arc, double angle) {
-    return (struct spot){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
-}
-
-/* No ball falls between two entries, and none finds the ground where it is not. */
-TEST(test_seams) {
-    struct test_random random = test_random_named("seams");
-    const double radius = 0.1, above = 0.01;
-    for (size_t round = 0; round < test_trials(12); round++) {
-        struct ground *g = malloc(sizeof *g);
-        while (!make_country(&random, g, 2000, (size_t)ENTRIES * 2000)) {
-        }
-        const struct shape ball = circle_of(radius);
-        const uint32_t shape = scene_add_shape(&g->scene, &ball);
-        for (size_t k = 1; k + 1 < g->arc_count; k++) {
-            const narc_arc *arc = &g->arcs[k];
-            for (int i = 0; i < 40; i++) {
-                const double off = random_below(&random, 3) ? random_log_between(&random, 1e-8, 1e-2) : 0;
-                const double part = (arc->end - arc->start) * (0.5 * (double)(i % 3)); /* and where arcs are cut */
-                const struct spot p = find_chain_point(arc, arc->start + part);
-                const double normal = arc->start + part, side = i % 2 ? off : -off;
-                if (arc->radius < 0.15 && signbit(arc->radius))
-                    continue;
-                const struct body body = {.x = p.x + (radius + above) * cos(normal) + side * sin(normal),
-                                          .y = p.y + (radius + above) * sin(normal) - side * cos(normal),
-                                          .cosine = 1,
-                                          .scale = 1,
-                                          .shape = shape};
-                if (g->scene.body_count == g->entry_count + 2000)
-                    continue;
-                const uint32_t mover = scene_add_body(&g->scene, body);
-                for (uint32_t e = 0; e < g->entry_count; e++)
-                    scene_add_pair(&g->scene, mover, e);
+/* The same pairs with both bodies exchanged: the same rows, but where rounding decides which there are. */
+static void check_exchanged(struct ground_bodies *g, const struct contacts *right) {
+    size_t other = 0, row = 0;
+    for (size_t k = 0; k < g->scene.pair_count; k++)
+        g->scene.pairs[k] = (struct pair){g->scene.pairs[k].b, g->scene.pairs[k].a};
+    struct contacts rows = ask(g, &(narc_query){.margin = margin});
+    for (uint32_t k = 0, at = 0; k < g->scene.pair_count; k++) {
+        size_t found = 0, count = 0;
+        while (at + found < rows.count && rows.rows[at + found].pair == k)
+            found++;
+        for (; row + count < right->count && right->rows[row + count].pair == k; count++) {
+            const narc_contact *c = &right->rows[row + count];
+            bool is_there = false;
+            for (size_t i = 0; i < found; i++) {
+                const narc_contact *d = &rows.rows[at + i];
+                is_there |= fabsf(c->separation - d->separation) < 1e-5f && c->radius_a == d->radius_b &&
+                            hypotf(c->normal_x + d->normal_x, c->normal_y + d->normal_y) < 1e-3f;
             }
+            other += !is_there;
         }
-        struct contacts rows = ask(g, &(narc_query){.margin = margin});
-        const size_t balls = g->scene.body_count - g->entry_count;
-        float *least = malloc(balls * sizeof *least);
-        for (size_t k = 0; k < balls; k++)
-            least[k] = INFINITY;
-        for (size_t k = 0; k < rows.count; k++) {
-            float *const of = &least[rows.rows[k].pair / g->entry_count];
-            *of = fminf(*of, rows.rows[k].separation);
-        }
-        for (size_t k = 0; k < balls; k++)
-            if (!(fabs((double)least[k] - above) <= 1e-5 + 1e-2 * 1e-2 / radius))
-                fail_msg("ball %zu is %g away", k, (double)least[k]);
-        free(least);
-        free(rows.rows);
-        destroy_scene(&g->scene);
-        free(g);
+        other += found != count;
+        at += (uint32_t)found;
+        row += count;
+    }
+    free(rows.rows);
+    if (50 * other > right->count + 50)
+        fail_msg("%zu of %zu rows are other ones with bodies exchanged", other, right->count);
+}
+
+static bool has_several(const struct contacts *rows) {
+    for (size_t k = 1; k < rows->count; k++)
+        if (rows->rows[k].pair == rows->rows[k - 1].pair)
+            return true;
+    return false;
+}
+
+/* Hills, bowls, and what is thinner than bodies, so that what faces away is not reached. */
+TEST(test_forms) {
+    static const enum chain_family families[] = {CHAIN_BOWLS, CHAIN_MIXED, CHAIN_HILLS, CHAIN_ARCH, CHAIN_SHEET};
+    enum { MOVERS = 60, FAMILIES = sizeof families / sizeof *families };
+    struct test_random random = test_random_named("forms");
+    bool several = false;
+    const size_t rounds = test_trials(20);
+    for (size_t round = 0; round < rounds || !several; round++) {
+        narc_shapes *probe = empty_store();
+        struct chain chain;
+        narc_chain_entry entries[ENTRIES];
+        size_t count;
+        while (chain = make_chain(&random, families[round % FAMILIES]),
+               chain.count < 3 ||
+                   narc_add_chain(probe, chain.arcs, chain.count, &(narc_chain_options){.closed = chain.closed},
+                                  entries, ENTRIES, &count, NULL) != NARC_OK)
+            free(chain.arcs);
+        narc_destroy_shapes(probe);
+        struct ground_bodies *g = begin_chain(0, 0, 0);
+        free(g->walk.arcs);
+        g->walk.arcs = chain.arcs;
+        g->walk.count = chain.count;
+        place_chain(g, &(narc_chain_options){.closed = chain.closed, .first_run = 7}, MOVERS, (size_t)ENTRIES * MOVERS);
+        add_movers(&random, g, MOVERS);
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        several |= has_several(&right);
+        check_forms(g, &right);
+        check_formula(g, &right);
+        check_exchanged(g, &right);
+        free(right.rows);
+        end_chain(g);
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ rays */
-
-struct crossing {
-    double along;
-    struct spot normal;
-};
-
-/* Keeps a crossing of the line o + t v, |v| = 1, if it is ahead, comes from the air, and is the first. */
-static void keep_crossing(double along, struct spot n, struct spot v, struct crossing *out) {
-    if (along > 0 && along < out->along && n.x * v.x + n.y * v.y < 0)
-        *out = (struct crossing){along, n};
-}
-
-static struct crossing cross_chain(const struct ground *g, struct spot o, struct spot v) {
-    struct crossing out = {INFINITY, {0, 0}};
-    for (size_t k = 0; k < g->arc_count; k++) {
-        const narc_arc *arc = &g->arcs[k];
-        const double x = arc->center_x - o.x, y = arc->center_y - o.y, ahead = x * v.x + y * v.y,
-                     beside = v.x * y - v.y * x, square = arc->radius * arc->radius - beside * beside;
-        for (int side = -1; side <= 1 && square > 0; side += 2) {
-            const double along = ahead + side * sqrt(square);
-            const struct spot n = {(along * v.x - x) / arc->radius, (along * v.y - y) / arc->radius};
-            const double mid = (arc->start + arc->end) / 2, half = fabs(arc->end - arc->start) / 2;
-            if (fabs(wrap(atan2(n.y, n.x) - mid)) <= half + 1e-9) /* a ray through a seam meets both */
-                keep_crossing(along, n, v, &out);
-        }
-        if (k == 0)
-            continue;
-        const struct spot from = find_chain_point(&g->arcs[k - 1], g->arcs[k - 1].end),
-                          to = find_chain_point(arc, arc->start), n = {cos(arc->start), sin(arc->start)};
-        const double left = v.x * (from.y - o.y) - v.y * (from.x - o.x),
-                     right = v.x * (to.y - o.y) - v.y * (to.x - o.x);
-        if (hypot(to.x - from.x, to.y - from.y) > 1e-9 && fmin(left, right) <= 1e-9 && fmax(left, right) >= -1e-9 &&
-            fabs(left - right) > 0) {
-            const double part = left / (left - right);
-            const struct spot p = {from.x + part * (to.x - from.x) - o.x, from.y + part * (to.y - from.y) - o.y};
-            keep_crossing(p.x * v.x + p.y * v.y, n, v, &out);
-        }
-    }
-    return out;
-}
+/* ------------------------------------------------------------------------------------------------ rays and points */
 
 TEST(test_rays) {
     enum { RAYS = 400 };
     struct test_random random = test_random_named("rays");
     for (size_t round = 0; round < test_trials(20); round++) {
-        struct ground *g = malloc(sizeof *g);
-        while (!make_country(&random, g, 1, 1)) {
+        struct ground_scene *g = lay_random_ground(&random, round % 2 ? CHAIN_MIXED : CHAIN_HILLS);
+        if (g->chain.count < 3) {
+            destroy_ground_scene(g);
+            continue;
         }
-        const narc_bodies bodies = scene_bodies(&g->scene);
-        narc_box *boxes = malloc(g->entry_count * sizeof *boxes);
-        narc_index *index = NULL;
-        assert_int_equal(narc_compute_boxes(g->scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
-        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-        assert_int_equal(narc_build_index(index, boxes, g->entry_count, NULL, NULL), NARC_OK);
+        const narc_bodies bodies = view_columns(g->bodies, g->count);
+        narc_box *boxes = malloc(g->count * sizeof *boxes);
+        narc_index *index = index_bodies(g->store, &bodies, NULL, boxes);
         double x[RAYS], y[RAYS];
         float motion_x[RAYS], motion_y[RAYS];
         for (size_t k = 0; k < RAYS; k++) {
-            const narc_arc *arc = &g->arcs[1 + random_below(&random, g->arc_count - 2)];
+            const narc_arc *arc = &g->chain.arcs[1 + random_below(&random, g->chain.count - 2)];
             const bool in_ground = fabs(arc->radius) > 0 &&
                                    !random_below(&random, 4); /* not at seams, which reach a little into the ground */
             const bool at_seam = !in_ground && !random_below(&random, 3);
             const double angle = at_seam ? arc->start : random_between(&random, arc->start, arc->end);
-            struct spot p = find_chain_point(arc, angle);
+            narc_point p = chain_point(arc, angle);
             if (!(fabs(arc->radius) > 0)) /* beside a corner */
                 p.x += random_between(&random, -0.1, 0.1);
             const double air = fabs(arc->radius) > 0 ? angle : (arc->start + arc->end) / 2;
@@ -792,21 +345,21 @@ TEST(test_rays) {
         for (int inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++) {
             const narc_ray_options options = {.inside = (narc_inside)inside};
             assert_int_equal(
-                narc_cast_rays(index, g->scene.store, &bodies, &rays, &options, inside ? others : hits, RAYS, NULL),
-                NARC_OK);
+                narc_cast_rays(index, g->store, &bodies, &rays, &options, inside ? others : hits, RAYS, NULL), NARC_OK);
             if (inside)
                 assert_memory_equal(hits, others, sizeof hits);
         }
         test_use_isa("scalar");
-        assert_int_equal(narc_cast_rays(index, g->scene.store, &bodies, &rays, NULL, others, RAYS, NULL), NARC_OK);
+        assert_int_equal(narc_cast_rays(index, g->store, &bodies, &rays, NULL, others, RAYS, NULL), NARC_OK);
         test_use_isa(test_isa());
         assert_memory_equal(hits, others, sizeof hits);
         for (size_t k = 0; k < RAYS; k++) {
             const double length = hypot((double)motion_x[k], (double)motion_y[k]), room = 2e-5;
-            const struct spot o = {x[k], y[k]}, v = {(double)motion_x[k] / length, (double)motion_y[k] / length};
-            const struct spot left = {o.x - room * v.y, o.y + room * v.x}, right = {o.x + room * v.y, o.y - room * v.x};
-            const struct crossing here = cross_chain(g, o, v), beside = cross_chain(g, left, v),
-                                  other = cross_chain(g, right, v);
+            const narc_point o = {x[k], y[k]}, v = {(double)motion_x[k] / length, (double)motion_y[k] / length};
+            const narc_point left = {o.x - room * v.y, o.y + room * v.x}, right = {o.x + room * v.y, o.y - room * v.x};
+            const struct ground_crossing here = ground_cross(ground_of(g), o, v),
+                                         beside = ground_cross(ground_of(g), left, v),
+                                         other = ground_cross(ground_of(g), right, v);
             const double along = hits[k].count ? (double)hits[k].fraction * length : INFINITY;
             const bool found = here.along < length;
             /* Rays that graze, meet a corner, or begin by next to nothing in the ground. */
@@ -834,15 +387,109 @@ TEST(test_rays) {
             fail_msg("of %d rays %zu hit, and %zu are doubtful", RAYS, hit_count, doubts);
         narc_destroy_index(index);
         free(boxes);
-        destroy_scene(&g->scene);
-        free(g);
+        destroy_ground_scene(g);
     }
+}
+
+#define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
+
+/* Is a row that of the nearest place of the ground? `size`: what the chain's numbers are in proportion to. */
+static void check_nearest(struct ground_scene *scene, narc_point p, const narc_distance *row, double size) {
+    const struct body *const body = &scene->bodies[row->body];
+    struct ground *const ground = ground_of(scene);
+    const narc_point at = rotate_to_ground(scene, body->x + (double)row->place_x, body->y + (double)row->place_y);
+    const narc_point n = rotate_to_ground(scene, (double)row->normal_x, (double)row->normal_y);
+    const double distance = ground_outline_distance(ground, p), room = 3e-5 * (size + distance);
+    assert_int_equal(row->count, 1);
+    EXPECT(fabsf(row->separation), distance, room);
+    EXPECT(ground_outline_distance(ground, at), 0, room);
+    EXPECT(hypot(p.x - at.x, p.y - at.y), distance, room);
+    if (distance > 100 * room) {
+        EXPECT(n.x, (p.x - at.x) / (double)row->separation, 0.05);
+        EXPECT(n.y, (p.y - at.y) / (double)row->separation, 0.05);
+    }
+    const struct ground_foot foot = ground_distance(ground, p);
+    if (isfinite(foot.distance) && distance > 2 * room) /* else an open end is nearer */
+        assert_true((row->separation < 0) == (foot.distance < 0));
+}
+
+TEST(test_nearest) {
+    enum { POINTS = 50 };
+    struct test_random random = test_random_named("points and ground");
+    const size_t trials = test_trials(100);
+    size_t behind = 0, all = 0, alone = 0;
+    for (size_t k = 0; k < trials; k++) {
+        const enum chain_family family = (enum chain_family)(k % CHAIN_SLAB);
+        struct ground_scene *scene = create_ground_scene();
+        double x[POINTS], y[POINTS], size = 1;
+        narc_point point[POINTS];
+        narc_distance rows[2 * POINTS], others[2 * POINTS];
+        narc_error error;
+        scene->place = turned_body(random_between(&random, -PI, PI), 1);
+        if (add_ground(scene, make_chain(&random, family), (narc_chain_options){0}, &error) != NARC_OK) {
+            destroy_ground_scene(scene);
+            continue;
+        }
+        const struct chain *chain = &scene->chain;
+        for (size_t i = 0; i < chain->count; i++) {
+            const narc_point at = chain_point(&chain->arcs[i], chain->arcs[i].start);
+            size = fmax(size, fmax(fabs(chain->arcs[i].radius), fabs(at.x) + fabs(at.y)));
+        }
+        for (int i = 0; i < POINTS; i++) {
+            const narc_arc *arc = &chain->arcs[random_below(&random, chain->count)];
+            const narc_point at = chain_point(arc, arc->start + random_unit(&random) * (arc->end - arc->start));
+            const double away = random_log_between(&random, 1e-3, 10);
+            struct body there = turned_body(0, 1);
+            point[i] =
+                (narc_point){at.x + random_between(&random, -away, away), at.y + random_between(&random, -away, away)};
+            there.x = point[i].x;
+            there.y = point[i].y;
+            there = ground_to_world(scene, there);
+            x[i] = there.x;
+            y[i] = there.y;
+        }
+        narc_box *boxes = malloc(scene->count * sizeof *boxes);
+        const narc_bodies bodies = view_columns(scene->bodies, scene->count);
+        narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
+        const narc_points points = {POINTS, NARC_POSITION_ARRAY(x), NARC_POSITION_ARRAY(y), {NULL}};
+        const narc_nearest_options two = {.most = 2};
+        expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, &two, rows, 2 * POINTS, &error), &error);
+        for (int i = 0; i < POINTS; i++, all++) {
+            check_nearest(scene, point[i], &rows[2 * i], size);
+            behind += rows[2 * i].separation < 0;
+            if (rows[2 * i + 1].count == 1)
+                assert_true(fabs((double)rows[2 * i].separation) <=
+                            fabs((double)rows[2 * i + 1].separation) + 4e-5 * size);
+        }
+        test_use_isa("scalar");
+        expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, &two, others, 2 * POINTS, &error), &error);
+        assert_memory_equal(rows, others, sizeof rows);
+        test_use_isa(test_isa());
+        /* The same rows of points each with its nearest piece. */
+        uint32_t near[POINTS];
+        for (int i = 0; i < POINTS; i++)
+            near[i] = rows[2 * i].body;
+        expect_ok(narc_find_distances(scene->store, &bodies, &points, NARC_ARRAY(near), NULL, others, &error), &error);
+        for (int i = 0; i < POINTS; i++) {
+            alone += others[i].count;
+            const double off = hypot((double)(others[i].place_x - rows[2 * i].place_x),
+                                     (double)(others[i].place_y - rows[2 * i].place_y));
+            if (others[i].count == 1) { /* else an end is nearest */
+                EXPECT(off, 0, 3e-5 * size);
+                EXPECT(fabsf(others[i].separation), fabs((double)rows[2 * i].separation), 4e-6 * size);
+            }
+        }
+        narc_destroy_index(index);
+        free(boxes);
+        destroy_ground_scene(scene);
+    }
+    assert_true(behind > all / 8 && behind < all && alone > all / 2);
 }
 
 /* ------------------------------------------------------------------------------------------------ plain cases */
 
 /* The rows of a body of this shape in one place against all entries, as A. */
-static struct contacts ask_one(struct ground *g, struct shape shape, double x, double y) {
+static struct contacts ask_one(struct ground_bodies *g, struct shape shape, double x, double y) {
     const uint32_t mover = scene_add_body(
         &g->scene, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1, .shape = scene_add_shape(&g->scene, &shape)});
     for (uint32_t e = 0; e < g->entry_count; e++)
@@ -861,12 +508,11 @@ static void check_separations(const struct contacts *rows, size_t count, double 
 
 /* A bowl of radius 2 about the origin with rims that are flat. */
 TEST(test_bowl) {
-    struct ground *g = malloc(sizeof *g);
     const double half = 0.8, deep = 2 * cos(half);
-    begin_chain(g, 2 * sin(half), -deep, PI / 2 + half);
+    struct ground_bodies *g = begin_chain(2 * sin(half), -deep, PI / 2 + half);
     walk_arc(&g->walk, 2, -2 * half);
     walk_arc(&g->walk, 0, 0);
-    assert_true(place_chain(g, NULL, 8, 64));
+    place_chain(g, NULL, 8, 64);
     assert_int_equal(g->entry_count, 1);
 
     /* A box on two corners, each sqrt(0.6^2 + 1.87^2) from the centre; the body is A, so that normals point down. */
@@ -884,51 +530,7 @@ TEST(test_bowl) {
     check_separations(&rows, 1, 0.02);
     rows = ask_one(g, circle_of(3), 0, 1);
     check_separations(&rows, 0, 0);
-    destroy_scene(&g->scene);
-    free(g);
-}
-
-/* A rounded plateau: a box that is narrower, or wider, lies on its edge, or on the arc. */
-TEST(test_plateau) {
-    struct ground *g = malloc(sizeof *g);
-    begin_chain(g, sin(0.5), cos(0.5) - 1, PI / 2 - 0.5);
-    walk_arc(&g->walk, 1, 0.5);
-    walk_line(&g->walk, 1);
-    walk_arc(&g->walk, 1, 0.5);
-    walk_arc(&g->walk, 0, 0);
-    assert_true(place_chain(g, NULL, 8, 64));
-    struct contacts rows = ask_one(g, box_of(0.5, 0.5, 0), -0.5, 0.26);
-    assert_true(rows.rows[0].radius_b == INFINITY);
-    check_separations(&rows, 1, 0.01);
-    rows = ask_one(g, box_of(3, 0.5, 0), -0.5, 0.24);
-    check_separations(&rows, 1, -0.01);
-    rows = ask_one(g, box_of(3, 0.5, 0), -0.5, 0.31); /* further than the margin */
-    check_separations(&rows, 0, 0);
-    destroy_scene(&g->scene);
-    free(g);
-}
-
-/* A valley with slopes of 45 degrees: a capsule in its bottom touches both, and the bottom itself only if it is
- * below. */
-TEST(test_valley) {
-    struct ground *g = malloc(sizeof *g);
-    begin_chain(g, 2, 2, 3 * PI / 4);
-    walk_line(&g->walk, sqrt(8));
-    walk_arc(&g->walk, 0, -PI / 2);
-    walk_line(&g->walk, sqrt(8));
-    walk_arc(&g->walk, 0, 0);
-    assert_true(place_chain(g, NULL, 8, 64));
-    assert_int_equal(g->entry_count, 3);
-    const double height = 0.5 * sqrt(2) + 0.25, above = 0.01 * sqrt(2);
-    struct contacts rows = ask_one(g, capsule_of(0.5, 0.5), 0, height + above);
-    check_separations(&rows, 2, 0.01);
-    rows = ask_one(g, circle_of(0.5), 0, 0.45);
-    assert_int_equal(rows.count, 2);
-    free(rows.rows);
-    rows = ask_one(g, circle_of(0.5), 0, -0.25);
-    check_separations(&rows, 1, -0.75);
-    destroy_scene(&g->scene);
-    free(g);
+    end_chain(g);
 }
 
 /* ------------------------------------------------------------------------------------------------ cut lines */
@@ -955,15 +557,14 @@ TEST(test_cut_lines) {
     enum { TRIALS = 2000, LENGTH = 12 };
     static const uint32_t runs[ENTRIES] = {0};
     for (size_t round = 0; round < test_trials(4); round++) {
-        struct ground *ground[2];
+        struct ground_bodies *ground[2];
         const double angle = round % 4 ? random_between(&random, 0, 2 * PI) : PI / 2;
         const double weld = random_between(&random, 0.5, 3);
         for (int cut = 0; cut < 2; cut++) {
-            ground[cut] = malloc(sizeof *ground[cut]);
-            begin_chain(ground[cut], LENGTH / 2.0 * sin(angle), -LENGTH / 2.0 * cos(angle), angle);
+            ground[cut] = begin_chain(LENGTH / 2.0 * sin(angle), -LENGTH / 2.0 * cos(angle), angle);
             walk_line(&ground[cut]->walk, LENGTH);
             walk_arc(&ground[cut]->walk, 0, 0);
-            assert_true(place_chain(ground[cut], &(narc_chain_options){.weld = cut ? weld : LENGTH}, TRIALS, 1));
+            place_chain(ground[cut], &(narc_chain_options){.weld = cut ? weld : LENGTH}, TRIALS, 1);
         }
         assert_int_equal(ground[0]->entry_count, 1);
         assert_in_range(ground[1]->entry_count, (size_t)(LENGTH / weld), (size_t)(1.5 * LENGTH / weld) + 1);
@@ -996,10 +597,8 @@ TEST(test_cut_lines) {
             }
         }
         assert_true(pairs > TRIALS / 2);
-        for (int cut = 0; cut < 2; cut++) {
-            destroy_scene(&ground[cut]->scene);
-            free(ground[cut]);
-        }
+        for (int cut = 0; cut < 2; cut++)
+            end_chain(ground[cut]);
     }
 }
 
@@ -1013,9 +612,9 @@ TEST(test_rolling_over_junctions) {
     const struct shape ball = circle_of(radius);
     double worst = 0;
     for (size_t round = 0; round < test_trials(20); round++) {
-        struct ground *g = malloc(sizeof *g);
+        struct ground_bodies *g;
         uint32_t runs[ENTRIES];
-        begin_chain(g, 20, 0, PI / 2);
+        g = begin_chain(20, 0, PI / 2);
         walk_arc(&g->walk, random_between(&random, 1, 4), 0.2);
         for (int k = 0; k < 20; k++) {
             const double turn = random_between(&random, 0.05, 0.4), large = random_between(&random, 1, 4);
@@ -1027,16 +626,17 @@ TEST(test_rolling_over_junctions) {
                 walk_arc(&g->walk, large, 0.5);
         }
         walk_arc(&g->walk, 0, 0);
-        assert_true(place_chain(g, NULL, 1, 8));
+        place_chain(g, NULL, 1, 8);
         const uint32_t shape = scene_add_shape(&g->scene, &ball);
         for (uint32_t e = 0; e < g->entry_count; e++)
             runs[e] = g->entries[e].run;
         for (int trial = 0; trial < 400; trial++) {
-            const narc_arc *arc = &g->arcs[2 + random_below(&random, g->arc_count - 3)]; /* not at the open end */
+            const narc_arc *arc =
+                &g->chain.arcs[2 + random_below(&random, g->chain.count - 3)]; /* not at the open end */
             const double part = (double)random_below(&random, 3) * random_log_between(&random, 1e-8, 0.45);
             const double normal = arc->start + part * (arc->end - arc->start), c = cos(normal), s = sin(normal);
             const double deep = (double)random_below(&random, 2) * random_log_between(&random, 1e-6, 0.02);
-            const struct spot p = find_chain_point(arc, normal);
+            const narc_point p = chain_point(arc, normal);
             struct body body = turned_body(random_between(&random, -PI, PI), 1);
             body.x = p.x + (radius - deep) * c;
             body.y = p.y + (radius - deep) * s;
@@ -1047,8 +647,7 @@ TEST(test_rolling_over_junctions) {
             worst = fmax(worst, hypot((double)row.normal_x + c, (double)row.normal_y + s));
             assert_true(fabs((double)row.point[0].separation + deep) < 2e-5);
         }
-        destroy_scene(&g->scene);
-        free(g);
+        end_chain(g);
     }
     print_message("  normals off by %.2g at most\n", worst);
     assert_true(worst < 2e-5);
@@ -1056,11 +655,11 @@ TEST(test_rolling_over_junctions) {
 
 /* The separation next to -deep of a box with a corner that points against the normal, `deep` below the place `beside` a chain's
  * arc's start, along the tangent there. */
-static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,
-                          double beside) {
+static double find_corner(struct ground_bodies *g, const uint32_t *runs, uint32_t box, double turn, size_t arc,
+                          double deep, double beside) {
     struct pair pairs[ENTRIES];
-    const double normal = g->arcs[arc].start, c = cos(normal), s = sin(normal), half = 0.2;
-    const struct spot p = find_chain_point(&g->arcs[arc], normal);
+    const double normal = g->chain.arcs[arc].start, c = cos(normal), s = sin(normal), half = 0.2;
+    const narc_point p = chain_point(&g->chain.arcs[arc], normal);
     struct body body = turned_body(normal - PI / 4 + turn, 1);
     const double x = -half, y = -half, cosine = (double)body.cosine, sine = (double)body.sine;
     body.x = p.x - deep * c - beside * s - (cosine * x - sine * y);
@@ -1083,14 +682,14 @@ static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, 
     return best;
 }
 
-static void expect_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,
-                          double beside) {
+static void expect_corner(struct ground_bodies *g, const uint32_t *runs, uint32_t box, double turn, size_t arc,
+                          double deep, double beside) {
     const double found = find_corner(g, runs, box, turn, arc, deep, beside);
     if (!(fabs(found + deep) < 1e-5))
         fail_msg("at arc %zu, %g deep, %g beside, turned by %g: %g", arc, deep, beside, turn, found);
 }
 
-static uint32_t add_box(struct ground *g) {
+static uint32_t add_box(struct ground_bodies *g) {
     const struct shape shape = box_of(0.4, 0.4, 0);
     return scene_add_shape(&g->scene, &shape);
 }
@@ -1101,20 +700,19 @@ TEST(test_corners_on_cut_corners) {
     struct test_random random = test_random_named("corners on cut corners");
     static const uint32_t runs[ENTRIES] = {0};
     for (size_t round = 0; round < test_trials(40); round++) {
-        struct ground *g = calloc(1, sizeof *g);
+        struct ground_bodies *g = begin_chain(0, 0, random_between(&random, -PI, PI));
         const double sides = round % 2 ? 3 : 4, side = random_between(&random, 0.5, 5);
-        g->walk = create_turtle(0, 0, random_between(&random, -PI, PI));
+        g->walk.count = 0; /* closed: it begins with a corner */
         for (int k = 0; k < sides; k++) {
             walk_arc(&g->walk, 0, 2 * PI / sides);
             walk_line(&g->walk, side);
         }
-        assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, 2, 8));
+        place_chain(g, &(narc_chain_options){.closed = 1}, 2, 8);
         const uint32_t box = add_box(g);
         for (size_t trial = 0; trial < 200; trial++)
             expect_corner(g, runs, box, PI / sides + random_between(&random, -0.5, 0.5),
-                          random_below(&random, g->arc_count), 0, 0);
-        destroy_scene(&g->scene);
-        free(g);
+                          random_below(&random, g->chain.count), 0, 0);
+        end_chain(g);
     }
 }
 
@@ -1123,20 +721,19 @@ TEST(test_edges_along_junctions) {
     struct test_random random = test_random_named("edges along junctions");
     static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1};
     for (size_t round = 0; round < test_trials(200); round++) {
-        struct ground *g = malloc(sizeof *g);
+        struct ground_bodies *g;
         const double large = random_between(&random, 0.5, 3), small = large / random_log_between(&random, 3, 300);
-        begin_chain(g, random_between(&random, -2, 2), 0, random_between(&random, -PI, PI));
+        g = begin_chain(random_between(&random, -2, 2), 0, random_between(&random, -PI, PI));
         walk_arc(&g->walk, large, 0.4);
         walk_arc(&g->walk, small, -0.3);
         walk_arc(&g->walk, large, 0.4);
         walk_arc(&g->walk, 0, 0);
-        assert_true(place_chain(g, NULL, 2, 8));
+        place_chain(g, NULL, 2, 8);
         const uint32_t box = add_box(g);
         for (size_t trial = 0; trial < 20; trial++) /* the edge above the convex arc */
             expect_corner(g, runs, box, trial % 2 ? PI / 4 : -PI / 4, trial % 2 ? 3 : 2,
                           -random_log_between(&random, 1e-4, 0.03), 0);
-        destroy_scene(&g->scene);
-        free(g);
+        end_chain(g);
     }
 }
 
@@ -1145,9 +742,9 @@ TEST(test_edges_along_junctions) {
 TEST(test_corners_below_junctions) {
     struct test_random random = test_random_named("corners below junctions");
     for (size_t round = 0; round < test_trials(20); round++) {
-        struct ground *g = malloc(sizeof *g);
+        struct ground_bodies *g;
         static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1, NARC_NO_RUN, 2};
-        begin_chain(g, 5, 0, PI / 2 + 0.3);
+        g = begin_chain(5, 0, PI / 2 + 0.3);
         walk_line(&g->walk, random_between(&random, 0.5, 2)); /* line, concave arc, convex arc, line, valley, line */
         walk_arc(&g->walk, random_between(&random, 0.5, 3), -0.4);
         walk_arc(&g->walk, random_between(&random, 0.5, 2), 0.5);
@@ -1155,7 +752,7 @@ TEST(test_corners_below_junctions) {
         walk_arc(&g->walk, 0, -random_between(&random, 0.1, 0.6));
         walk_line(&g->walk, random_between(&random, 0.5, 2));
         walk_arc(&g->walk, 0, 0);
-        assert_true(place_chain(g, NULL, 2, 8));
+        place_chain(g, NULL, 2, 8);
         assert_int_equal(g->entry_count, 5);
         const uint32_t box = add_box(g);
         for (size_t trial = 0; trial < 300; trial++) {
@@ -1165,8 +762,7 @@ TEST(test_corners_below_junctions) {
                 random_below(&random, 3) ? random_log_between(&random, 1e-9, 1e-3) * deep * (trial % 2 ? 1 : -1) : 0;
             expect_corner(g, runs, box, turn, arc, deep, beside);
         }
-        destroy_scene(&g->scene);
-        free(g);
+        end_chain(g);
     }
 }
 

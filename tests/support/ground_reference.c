@@ -53,7 +53,7 @@ static double dot(narc_point a, narc_point b) { return a.x * b.x + a.y * b.y; }
 static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
 static double length_of(narc_point a) { return sqrt(a.x * a.x + a.y * a.y); }
 
-static narc_point on_arc(const narc_arc *arc, double angle) {
+narc_point chain_point(const narc_arc *arc, double angle) {
     return (narc_point){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
 }
 
@@ -73,9 +73,10 @@ static void add_arc(struct ground *ground, const narc_arc *arc, size_t run) {
         double high = arc->start + sweep * (double)(k + 1) / (double)parts;
         struct piece piece = {
             .is_concave = concave, .center = {arc->center_x, arc->center_y}, .run = concave ? GROUND_CONCAVE : run};
-        piece.from = on_arc(arc, low);
-        piece.to = on_arc(arc, high);
+        piece.from = chain_point(arc, low);
+        piece.to = chain_point(arc, high);
         piece.radius = fabs(arc->radius);
+        piece.length = fabs(arc->radius * sweep) / (double)parts;
         piece.size = fabs(arc->radius * sweep) > point_size ? fabs(arc->radius * sweep) : INFINITY;
         piece.thickness = arc->radius == 0 && sweep > PI / 2 + 1e-6 ? 0 : INFINITY; /* the tip of a wedge */
         piece.room = end_tolerance * (1 + fabs(piece.from.x) + fabs(piece.from.y) + piece.radius);
@@ -106,15 +107,15 @@ static struct ground *walk_pieces(const struct chain *chain) {
     struct ground *ground = calloc(1, sizeof *ground);
     ground->pieces = malloc(5 * chain->count * sizeof *ground->pieces);
     ground->open = !chain->closed;
-    ground->ends[0] = on_arc(&chain->arcs[0], chain->arcs[0].start);
-    ground->ends[1] = on_arc(&chain->arcs[chain->count - 1], chain->arcs[chain->count - 1].end);
+    ground->ends[0] = chain_point(&chain->arcs[0], chain->arcs[0].start);
+    ground->ends[1] = chain_point(&chain->arcs[chain->count - 1], chain->arcs[chain->count - 1].end);
     size_t concave_count = 0, run = 0; /* concave arcs: of all, and before arc k */
     for (size_t k = 0; k < chain->count; k++)
         concave_count += signbit(chain->arcs[k].radius) != 0;
     for (size_t k = 0; k < chain->count; k++) {
         const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
         struct piece edge = {
-            .is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start), .run = run};
+            .is_edge = true, .from = chain_point(before, before->end), .to = chain_point(arc, arc->start), .run = run};
         const narc_point along = minus(edge.to, edge.from);
         edge.length = length_of(along);
         edge.size = edge.length > point_size ? edge.length : INFINITY;
@@ -129,6 +130,20 @@ static struct ground *walk_pieces(const struct chain *chain) {
         run = chain->closed && run == concave_count ? 0 : run; /* the last one is the first one */
     }
     return ground;
+}
+
+/* The outline of a body. */
+static struct ground *walk_body(const struct reference_body *body) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    const double c = body->cosine * body->scale, s = body->sine * body->scale, scale = hypot(c, s), turn = atan2(s, c);
+    for (size_t k = 0; k < body->count; k++) {
+        const narc_arc *arc = &body->arcs[k];
+        const double sweep = arc->end - arc->start + (arc->end <= arc->start ? 2 * PI : 0);
+        arcs[k] =
+            (narc_arc){body->x + c * arc->center_x - s * arc->center_y, body->y + s * arc->center_x + c * arc->center_y,
+                       scale * fabs(arc->radius), arc->start + turn, arc->start + turn + sweep};
+    }
+    return walk_pieces(&(struct chain){arcs, body->count, true});
 }
 
 void destroy_ground(struct ground *ground) {
@@ -218,24 +233,39 @@ size_t ground_feet(const struct ground *ground, narc_point point, struct ground_
 
 /* ------------------------------------------------------------------------------------------------ how thick it is */
 
-/* How far it is along a direction of length 1 to where a piece crosses that, further than `least`. */
-static double find_crossing(const struct piece *piece, narc_point from, narc_point along, double least) {
+/* Where a line along a vector of length 1 first crosses a piece beyond `least`, from either side or from the air alone. */
+static struct ground_crossing find_crossing(const struct piece *piece, narc_point from, narc_point along, double least,
+                                            bool from_air) {
     const narc_point to = minus(piece->is_edge ? piece->from : piece->center, from);
+    struct ground_crossing out = {INFINITY, piece->low};
     if (piece->is_edge) {
         const double area = cross(along, piece->along), way = cross(to, piece->along) / area,
                      place = cross(to, along) / area;
-        return way > least && place >= -piece->room && place <= piece->length + piece->room ? way : INFINITY;
+        if (way > least && place >= -piece->room && place <= piece->length + piece->room &&
+            !(from_air && dot(piece->low, along) >= 0))
+            out.along = way;
+        return out;
     }
-    const double middle = dot(to, along),
+    const double sign = piece->is_concave ? -1 : 1, middle = dot(to, along),
                  half = sqrt(fmax(0, piece->radius * piece->radius - dot(to, to) + middle * middle));
-    double best = INFINITY;
     for (int side = -1; side <= 1; side += 2) {
         const double way = middle + side * half;
         const narc_point away = {way * along.x - to.x, way * along.y - to.y};
-        if (way > least && fabs(length_of(away) - piece->radius) <= piece->room && faces(piece, away))
-            best = fmin(best, way);
+        const narc_point normal = {sign * away.x / piece->radius, sign * away.y / piece->radius};
+        if (way > least && way < out.along && fabs(length_of(away) - piece->radius) <= piece->room &&
+            faces(piece, away) && !(from_air && !(dot(normal, along) < 0)))
+            out = (struct ground_crossing){way, normal};
     }
-    return best;
+    return out;
+}
+
+struct ground_crossing ground_cross(const struct ground *ground, narc_point from, narc_point along) {
+    struct ground_crossing first = {INFINITY, {0, 0}};
+    for (size_t k = 0; k < ground->count; k++) {
+        const struct ground_crossing crossing = find_crossing(&ground->pieces[k], from, along, 0, true);
+        first = crossing.along < first.along ? crossing : first;
+    }
+    return first;
 }
 
 /* How thick the solid is behind a piece, at many places: the way against the normal to where there is ground again. */
@@ -255,8 +285,9 @@ static double find_thickness(const struct ground *ground, const struct piece *pi
                                  piece->center.y + sign * piece->radius * normal.y};
         }
         for (size_t i = 0; i < ground->count; i++)
-            least = fmin(
-                least, find_crossing(&ground->pieces[i], place, (narc_point){-normal.x, -normal.y}, 1e4 * piece->room));
+            least = fmin(least, find_crossing(&ground->pieces[i], place, (narc_point){-normal.x, -normal.y},
+                                              1e4 * piece->room, false)
+                                    .along);
     }
     return least;
 }
@@ -383,16 +414,7 @@ static double find_end_gap(const struct ground *ground, const struct ground *out
 }
 
 struct ground_clearance ground_find_clearance(struct ground *ground, const struct reference_body *body) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    const double c = body->cosine * body->scale, s = body->sine * body->scale, scale = hypot(c, s), turn = atan2(s, c);
-    for (size_t k = 0; k < body->count; k++) {
-        const narc_arc *arc = &body->arcs[k];
-        const double sweep = arc->end - arc->start + (arc->end <= arc->start ? 2 * PI : 0);
-        arcs[k] =
-            (narc_arc){body->x + c * arc->center_x - s * arc->center_y, body->y + s * arc->center_x + c * arc->center_y,
-                       scale * fabs(arc->radius), arc->start + turn, arc->start + turn + sweep};
-    }
-    struct ground *outline = walk_pieces(&(struct chain){arcs, body->count, true});
+    struct ground *outline = walk_body(body);
     const bool is_outside = ground_distance(outline, ground->pieces[0].from).distance > 0;
     struct ground_clearance out = {is_outside ? find_gap(outline, ground) : 0, false};
     const double extent = reference_extent(body);
@@ -404,69 +426,34 @@ struct ground_clearance ground_find_clearance(struct ground *ground, const struc
 
 /* ------------------------------------------------------------------------------------------------ the outline */
 
-/* A part of a body's outline, an arc or an edge, from `start` on, measured along the outline. */
-struct stretch {
-    bool is_arc;
-    narc_point from, along; /* an edge's; `along` of length 1 */
-    narc_point center;
-    double radius, angle;
-    double start, length;
-};
-
 struct sample {
     double along, distance;
 };
 
 struct ground_search {
     struct ground near; /* the pieces that any point of the body may be next to; behind them there is room for others */
-    struct stretch stretches[2 * NARC_MAX_ARCS];
-    size_t stretch_count;
+    struct ground *outline; /* the body's */
+    double *start;          /* of its pieces, measured along it */
     double perimeter, size, margin, step, part;
     narc_point inner; /* in the body */
     struct sample *samples;
     size_t count, capacity;
 };
 
-static void add_stretch(struct ground_search *search, struct stretch stretch) {
-    stretch.start = search->perimeter;
-    search->perimeter += stretch.length;
-    if (stretch.length > 0)
-        search->stretches[search->stretch_count++] = stretch;
-}
-
-static void walk_outline(struct ground_search *search, const struct reference_body *body) {
-    const double c = body->cosine * body->scale, s = body->sine * body->scale, scale = hypot(c, s);
-    const double turn = atan2(s, c), tiny = end_tolerance * reference_extent(body);
-    for (size_t k = 0; k < body->count; k++) {
-        const narc_arc *before = &body->arcs[(k + body->count - 1) % body->count], *arc = &body->arcs[k];
-        const narc_point p = on_arc(before, before->end), q = on_arc(arc, arc->start);
-        const narc_point from = {body->x + c * p.x - s * p.y, body->y + s * p.x + c * p.y};
-        const double x = c * (q.x - p.x) - s * (q.y - p.y), y = s * (q.x - p.x) + c * (q.y - p.y), length = hypot(x, y);
-        if (length > tiny)
-            add_stretch(search, (struct stretch){.from = from, .along = {x / length, y / length}, .length = length});
-        double sweep = arc->end - arc->start;
-        sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
-        add_stretch(search, (struct stretch){.is_arc = true,
-                                             .center = {body->x + c * arc->center_x - s * arc->center_y,
-                                                        body->y + s * arc->center_x + c * arc->center_y},
-                                             .radius = scale * arc->radius,
-                                             .angle = arc->start + turn,
-                                             .length = scale * arc->radius * sweep});
-    }
-}
-
 static narc_point point_at(const struct ground_search *search, double along) {
     along -= search->perimeter * floor(along / search->perimeter);
-    size_t k = search->stretch_count - 1;
-    while (k > 0 && search->stretches[k].start > along)
+    size_t k = search->outline->count - 1;
+    while (k > 0 && search->start[k] > along)
         k--;
-    const struct stretch *stretch = &search->stretches[k];
-    const double t = fmin(along - stretch->start, stretch->length);
-    if (!stretch->is_arc)
-        return (narc_point){stretch->from.x + t * stretch->along.x, stretch->from.y + t * stretch->along.y};
-    const double angle = stretch->angle + t / stretch->radius;
-    return (narc_point){stretch->center.x + stretch->radius * cos(angle),
-                        stretch->center.y + stretch->radius * sin(angle)};
+    const struct piece *piece = &search->outline->pieces[k];
+    const double t = fmin(along - search->start[k], piece->length);
+    if (piece->is_edge)
+        return (narc_point){piece->from.x + t * piece->along.x, piece->from.y + t * piece->along.y};
+    if (!(piece->length > 0))
+        return piece->from;
+    const double turn = t / piece->radius, c = cos(turn), s = sin(turn);
+    return (narc_point){piece->center.x + piece->radius * (c * piece->low.x - s * piece->low.y),
+                        piece->center.y + piece->radius * (s * piece->low.x + c * piece->low.y)};
 }
 
 static double distance_at(struct ground_search *search, double along) {
@@ -539,21 +526,27 @@ struct ground_search *search_ground(const struct ground *ground, const struct re
     search->margin = margin;
     search->step = step;
     search->part = part;
-    walk_outline(search, body);
+    search->outline = walk_body(body);
+    search->start = malloc(search->outline->count * sizeof *search->start);
+    for (size_t k = 0; k < search->outline->count; k++) {
+        search->start[k] = search->perimeter;
+        search->perimeter += search->outline->pieces[k].length;
+    }
     struct piece *near = malloc((ground->count + 1) * sizeof *near);
     search->near = choose_pieces(ground, middle, search->size, near);
     search->near.pieces = malloc(DEPTH * (search->near.count + 1) * sizeof *near);
     memcpy(search->near.pieces, near, search->near.count * sizeof *near);
     free(near);
-    for (size_t k = 0; k < search->stretch_count; k++) {
-        const struct stretch *stretch = &search->stretches[k];
-        add_samples(search, &search->near, search->near.pieces + search->near.count, stretch->start,
-                    stretch->start + stretch->length);
-    }
+    for (size_t k = 0; k < search->outline->count; k++)
+        if (search->outline->pieces[k].length > 0)
+            add_samples(search, &search->near, search->near.pieces + search->near.count, search->start[k],
+                        search->start[k] + search->outline->pieces[k].length);
     return search;
 }
 
 void destroy_search(struct ground_search *search) {
+    destroy_ground(search->outline);
+    free(search->start);
     free(search->near.pieces);
     free(search->samples);
     free(search);
@@ -684,15 +677,16 @@ size_t ground_minima(struct ground_search *search, double noise, struct ground_m
 double ground_project(const struct ground_search *search, narc_point point, double *out_distance) {
     double best = 0;
     *out_distance = INFINITY;
-    for (size_t k = 0; k < search->stretch_count; k++) {
-        const struct stretch *stretch = &search->stretches[k];
-        double t = (point.x - stretch->from.x) * stretch->along.x + (point.y - stretch->from.y) * stretch->along.y;
-        if (stretch->is_arc) {
-            const double middle = stretch->angle + stretch->length / stretch->radius / 2;
-            const double angle = atan2(point.y - stretch->center.y, point.x - stretch->center.x);
-            t = stretch->length / 2 + remainder(angle - middle, 2 * PI) * stretch->radius;
+    for (size_t k = 0; k < search->outline->count; k++) {
+        const struct piece *piece = &search->outline->pieces[k];
+        const narc_point from = minus(point, piece->is_edge ? piece->from : piece->center);
+        double t = dot(from, piece->along);
+        if (!piece->is_edge && piece->length > 0) {
+            const double half = piece->length / piece->radius / 2,
+                         turn = atan2(cross(piece->low, from), dot(piece->low, from));
+            t = piece->length / 2 + remainder(turn - half, 2 * PI) * piece->radius;
         }
-        t = stretch->start + fmin(fmax(t, 0), stretch->length);
+        t = search->start[k] + fmin(fmax(t, 0), piece->length);
         const double distance = length_of(minus(point_at(search, t), point));
         best = distance < *out_distance ? t : best;
         *out_distance = fmin(*out_distance, distance);

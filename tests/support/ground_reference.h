@@ -10,12 +10,7 @@
 #define NARC_TEST_GROUND_REFERENCE_H
 
 #include "reference.h"
-
-struct chain {
-    narc_arc *arcs;
-    size_t count;
-    bool closed;
-};
+#include "turtle.h"
 
 /* A perpendicular from a point to a piece: how long (negative from the solid's side), to where, the outward normal
  * there, which convex stretch of the chain between concave arcs it is, or GROUND_CONCAVE, the smallest length or radius
@@ -30,6 +25,9 @@ struct ground_foot {
 
 #define GROUND_CONCAVE ((size_t)-1)
 
+/* The point of an arc at a normal. */
+narc_point chain_point(const narc_arc *arc, double angle);
+
 struct ground; /* a chain, piece by piece */
 struct ground *make_ground(const struct chain *chain);
 void destroy_ground(struct ground *ground);
@@ -40,6 +38,14 @@ struct ground_foot ground_distance(struct ground *ground, narc_point point);
 
 /* How far a point is from the outline. */
 double ground_outline_distance(const struct ground *ground, narc_point point);
+
+/* Where a ray of any length along a vector of length 1 first goes from the air into the ground, INFINITY if nowhere, and the
+ * normal there. */
+struct ground_crossing {
+    double along;
+    narc_point normal;
+};
+struct ground_crossing ground_cross(const struct ground *ground, narc_point from, narc_point along);
 
 /* How far a body is from the ground's outline: in closed form, of each two pieces; 0 if they meet, or if all of the outline
  * is in the body. Is it all in the air? Of an open chain it is not if it comes near the normals at the ends, on the

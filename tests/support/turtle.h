@@ -19,6 +19,13 @@ struct turtle {
     double x, y, normal; /* where it is, and the angle of the normal, to the right of its way */
 };
 
+/* An open chain or a closed one: the caller's arcs. */
+struct chain {
+    narc_arc *arcs;
+    size_t count;
+    bool closed;
+};
+
 static inline struct turtle create_turtle(double x, double y, double normal) {
     return (struct turtle){.x = x, .y = y, .normal = normal};
 }
@@ -42,6 +49,11 @@ static inline void walk_arc(struct turtle *t, double radius, double turn) {
 static inline void walk_line(struct turtle *t, double length) {
     t->x -= length * sin(t->normal);
     t->y += length * cos(t->normal);
+}
+
+/* The arcs are the caller's to free. */
+static inline struct chain end_walk(const struct turtle *t, bool closed) {
+    return (struct chain){t->arcs, t->count, closed};
 }
 
 /* Ground from right to left that never crosses itself: normals stay within `steep` of +y. Arcs and corners both ways,
