@@ -17,7 +17,8 @@
  *   - the shape index of a body, or its scale, has other bits,
  *   - a shape is replaced or removed (narc_shapes.history changes with each; a shape that is added changes nothing here, nor
  *     does it that the store moves its memory).
- * Then it must be made anew, or filled with zeros. */
+ * Then it must be made anew, or filled with zeros. Ends are written of pairs that touch, and read without effect of others: they
+ * are to have some value from the start. */
 void narc_make_entries(const narc_batch *batch, size_t first, size_t count, const uint32_t *pairs, const void *rows,
                        ptrdiff_t row_stride, narc_entry *entries, narc_entry_ends *ends);
 
