@@ -62,6 +62,32 @@ enum { NARC_MORE_ROW = 256 };
 #define NARC_MORE_AT(row, member) (offsetof(row, member) + 1)
 #endif
 
+/* What is kept of a pair of smooth shapes (NARC_SHAPE_SMOOTH), so that it is answered again without them, as long as the
+ * shapes, their scales and the pair's order stay: two circles, at world scale but for the centre of B's, and when they
+ * stand for the bodies (kernels/sat/follow.c). All zeros: nothing is known.
+ *   spare     `only` needs it; -INFINITY: these circles hold the bodies, and say no more than that they are apart
+ *   slack     what the shapes' extents add to it
+ *   feature   the two features as in a row, and NARC_ENTRY_KNOWN
+ *   normal    The normals at the ends of the arcs, start and end of A, then of B, in their shape's frame, turned inwards:
+ *             x in the lower 16 bits and y in the upper ones. 0 where there are no ends. */
+typedef struct narc_entry {
+    float center_a[2], center_b[2];
+    float radius_a, radius_b;
+    float scale_b;
+    float spare;
+    float slack;
+    uint32_t feature;
+    uint32_t unused[2]; /* 0 */
+    uint32_t normal[4];
+} narc_entry;
+
+#define NARC_ENTRY_KNOWN (1u << 16)
+
+/* Of a manifold besides: the same normals as they are stored; zeros of circles. */
+typedef struct narc_entry_ends {
+    float start_a[2], end_a[2], start_b[2], end_b[2];
+} narc_entry_ends;
+
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
     return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;

@@ -4,6 +4,8 @@
  *
  *     update.c   the call: pairs, what of them is to be asked, rows, lists
  *     slots.c    memory, and which slot belongs to which pair
+ *     plan.c     what is to be done with each pair
+ *     ask.c      rows of pairs that are asked; entries.c makes what answers smooth ones again
  *     ground.c   bodies on pieces of chains, whose rows are asked for and merged together
  *     recycle.c  rows that follow their bodies
  */
@@ -11,6 +13,7 @@
 #define NARC_CONTACTS_INTERNAL_H
 
 #include "broad_phase.h"
+#include "kernels.h"
 #include "narc_contacts.h"
 
 /* What is kept of a row to let it follow its bodies: in the frames of both, without their scale. Where an arc touches in one
@@ -29,7 +32,10 @@ enum {
     NARC_SLOT_STALE = 1,
     NARC_SLOT_SENSOR = 2,
     NARC_SLOT_CROSSED = 4, /* began or ended to touch in this step */
-    NARC_SLOT_KEPT = 8     /* `kept` counts */
+    NARC_SLOT_KEPT = 8,    /* `kept` counts */
+    NARC_SLOT_ENTRY = 16,  /* `entries` does, which answers the pair again */
+    NARC_SLOT_SEEN = 32,   /* it was asked before */
+    NARC_SLOT_PLAIN = 64   /* not both are smooth: it has no entry */
 };
 
 /* Rows beyond the first of a slot: a range of `more`. */
@@ -43,7 +49,10 @@ typedef struct narc_slot_pair {
 
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
  * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
-enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
+enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART, NARC_WHAT = 7 };
+
+/* Besides: a body has another shape or scale, so that nothing that was kept of the pair counts. */
+enum { NARC_OTHER_SHAPE = 8 };
 
 typedef struct narc_pair_work {
     uint32_t pair; /* of the list */
@@ -73,17 +82,22 @@ struct narc_contacts {
     float *margins;                           /* that it was asked with */
     void *rows, *user;
     narc_kept_row *kept;
+    narc_entry *entries;
+    narc_entry_ends *ends; /* of manifolds */
     narc_more_rows *more_of;
     size_t free_count, end_capacity;
 
     size_t order_capacity; /* of pairs: */
     uint32_t *order, *next_order;
-    narc_pair_work *work; /* what is to be done in this step, in the order of pairs */
-    uint32_t *asked, *sensors_asked, *ground_asked, *touching, *sensors;
+    narc_pair_work *work;           /* what is to be done in this step, in the order of pairs */
+    uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide */
+    uint32_t *sensors_asked, *ground_asked, *touching, *sensors;
     float *ground_margins;
     uint64_t *bits;
     narc_touch_event *began, *ended;
-    size_t work_count, asked_count, sensor_count, ground_count, marked_count, parted_count, crossed_count;
+    size_t work_count, asked_count, known_count, sensor_count, ground_count, marked_count, parted_count, crossed_count;
+
+    unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
     size_t body_capacity;
     float *room; /* of each body: what its separations may be off by */
@@ -136,13 +150,6 @@ static inline uint32_t narc_count_points(bool contact_rows, const void *row) {
     return contact_rows ? ((const narc_contact *)row)->count : ((const narc_manifold *)row)->count;
 }
 
-/* The slot that a pair of a list has, or had in the list before; NARC_NO_MATCH: none yet. Before narc_take_slots(). */
-static inline uint32_t narc_old_slot(const narc_contacts *c, const narc_pair_list *list, size_t k) {
-    if (list->kept)
-        return c->order[k];
-    return list->previous[k] == UINT32_MAX ? UINT32_MAX : c->order[list->previous[k]];
-}
-
 static inline void *narc_row_at(const narc_contacts *c, void *rows, size_t k) { return (char *)rows + k * c->row_size; }
 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
@@ -182,7 +189,10 @@ narc_status narc_ask_ground(const narc_contact_step *s);
  * from before. */
 void narc_take_ground(const narc_contact_step *s);
 
-/* ------------------------------------------------------------------------------------------------ update.c */
+/* ------------------------------------------------------------------------------------------------ ask.c */
+
+/* Rows of the slots in `asked` and `known`; which are written then, and what touches. */
+narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs);
 
 /* Asks some pairs as the step says. `slots`: their hints and dense rows are those of slots. */
 narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,

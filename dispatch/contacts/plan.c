@@ -31,16 +31,9 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b) {
     return header_of(s, a)->flags & header_of(s, b)->flags & NARC_SHAPE_SMOOTH;
 }
 
-/* Is there no row, as the boxes of both, which have half of the margin each, are further apart than a separation may be
- * off? Its error bound is 2^-19 of the distance of the positions and both extents (narc.h); the distance is the gap between
- * the boxes, the margin and both extents at most. */
-static inline bool are_apart(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    const narc_contacts *const c = s->contacts;
-    const narc_box *const p = &c->broad->boxes_now[a], *const q = &c->broad->boxes_now[b];
-    const float left = p->min_x - q->max_x, right = q->min_x - p->max_x;
-    const float below = p->min_y - q->max_y, above = q->min_y - p->max_y;
-    const float x = left > right ? left : right, y = below > above ? below : above, gap = x > y ? x : y;
-    return (!s->step->ahead.base) & (gap * (1 - 0x1p-18f) > c->room[a] + c->room[b] + 0x1p-18f * s->step->margin);
+float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b) {
+    const narc_float_column ahead = s->step->ahead;
+    return s->step->margin + (ahead.base ? narc_float_at(ahead, a) + narc_float_at(ahead, b) : 0);
 }
 
 /* Twice 2^-18 of a body's extent; infinite where it is not known. */
@@ -51,50 +44,77 @@ static float find_room(const narc_contact_step *s, uint32_t body) {
                                              : 0x1p-17f * (float)header->extent_ratio * header->bound_radius * scale;
 }
 
-static bool has_changed(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    const uint8_t *const changed = s->contacts->broad->known.changed;
-    return changed[a] | changed[b];
-}
+/* What is looked at of each pair, in one place: the loop over all pairs is as long as much of what follows. */
+typedef struct pair_view {
+    const uint32_t *a, *b, *previous, *order; /* previous NULL: the list is the last one */
+    const uint8_t *marks, *flags, *changed;
+    const narc_box *boxes;
+    const float *room;
+    float margin_room; /* INFINITY: no pair is known to have no row by its boxes */
+    bool again;
+} pair_view;
 
-static bool is_reshaped(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    const uint8_t *const changed = s->contacts->broad->known.changed;
-    return (changed[a] | changed[b]) & NARC_RESHAPED;
-}
-
-float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    const narc_float_column ahead = s->step->ahead;
-    return s->step->margin + (ahead.base ? narc_float_at(ahead, a) + narc_float_at(ahead, b) : 0);
-}
-
-/* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, was it at rest while
- * something changed? */
-static bool is_stale(const narc_contact_step *s, size_t k, uint32_t slot) {
+static pair_view view_pairs(const narc_contact_step *s) {
     const narc_contacts *const c = s->contacts;
-    if (slot == UINT32_MAX || c->again)
-        return true;
-    const bool sensor = s->list->marks[k] & NARC_SENSOR, was_sensor = c->flags[slot] & NARC_SLOT_SENSOR;
-    return c->flags[slot] & NARC_SLOT_STALE || sensor != was_sensor || s->list->marks[k] & NARC_FLIPPED;
+    return (pair_view){.a = s->list->pairs.a.base,
+                       .b = s->list->pairs.b.base,
+                       .previous = s->list->kept ? NULL : s->list->previous,
+                       .order = c->order,
+                       .marks = s->list->marks,
+                       .flags = c->flags,
+                       .changed = c->broad->known.changed,
+                       .boxes = c->broad->boxes_now,
+                       .room = c->room,
+                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin,
+                       .again = c->again};
 }
 
-static void add_work(narc_contacts *c, size_t k, unsigned what) {
+/* The slot that a pair has, or NARC_NO_MATCH. */
+static inline uint32_t slot_of(const pair_view *v, size_t k) {
+    const uint32_t place = v->previous ? v->previous[k] : (uint32_t)k;
+    return place == UINT32_MAX ? UINT32_MAX : v->order[place];
+}
+
+/* Is there no row, as the boxes of both, which have half of the margin each, are further apart than a separation may be
+ * off? Its error bound is 2^-19 of the distance of the positions and both extents (narc.h); the distance is the gap between
+ * the boxes, the margin and both extents at most. */
+static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
+    const narc_box *const p = &v->boxes[a], *const q = &v->boxes[b];
+    const float left = p->min_x - q->max_x, right = q->min_x - p->max_x;
+    const float below = p->min_y - q->max_y, above = q->min_y - p->max_y;
+    const float x = left > right ? left : right, y = below > above ? below : above, gap = x > y ? x : y;
+    return gap * (1 - 0x1p-18f) > v->room[a] + v->room[b] + v->margin_room;
+}
+
+/* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, or was it at rest while
+ * something changed? */
+static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
+    if (slot == UINT32_MAX || v->again)
+        return true;
+    const unsigned flags = v->flags[slot], marks = v->marks[k];
+    const bool sensor = marks & NARC_SENSOR, was_sensor = flags & NARC_SLOT_SENSOR;
+    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | (sensor ^ was_sensor);
+}
+
+static inline void add_work(narc_contacts *c, size_t k, unsigned what) {
     c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, what};
 }
 
-static void plan_pair(const narc_contact_step *s, size_t k, uint32_t a, uint32_t b) {
-    narc_contacts *const c = s->contacts;
-    const uint32_t slot = narc_old_slot(c, s->list, k);
-    const bool stale = is_stale(s, k, slot);
-    if (!stale && !has_changed(s, a, b))
+static inline void plan_pair(const narc_contact_step *s, const pair_view *v, size_t k) {
+    const uint32_t a = v->a[k], b = v->b[k], slot = slot_of(v, k);
+    const unsigned changed = v->changed[a] | v->changed[b];
+    const bool stale = is_stale(v, k, slot);
+    if (!stale && !changed)
         return;
-    unsigned what = are_apart(s, a, b) ? NARC_APART : NARC_ASK; /* as chance has it: without a branch */
+    unsigned what = are_apart(v, a, b) ? NARC_APART : NARC_ASK; /* as chance has it: without a branch */
     if (s->step->filter && !narc_is_tested(s, a, b))
         what = NARC_REST;
-    else if (s->list->marks[k] & NARC_SENSOR)
+    else if (v->marks[k] & NARC_SENSOR)
         what = NARC_ASK_SENSOR;
-    else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !is_reshaped(s, a, b) &&
-             c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, a, b, &c->kept[slot]))
+    else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !(changed & NARC_RESHAPED) &&
+             v->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, a, b, &s->contacts->kept[slot]))
         what = NARC_FOLLOW;
-    add_work(c, k, what);
+    add_work(s->contacts, k, what | (changed & NARC_RESHAPED ? NARC_OTHER_SHAPE : 0));
 }
 
 /* May all rows of a pair of ground follow? A pair without one may, too. */
@@ -109,27 +129,28 @@ static bool may_follow_ground(const narc_contact_step *s, uint32_t slot, uint32_
 }
 
 /* The pairs first .. end - 1 of one body, some with ground: all of these are asked together, as their rows are merged. */
-static void plan_ground(const narc_contact_step *s, size_t first, size_t end) {
+static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end) {
     narc_contacts *const c = s->contacts;
-    const uint32_t a = s->list->pairs.a.base[first], *const b = s->list->pairs.b.base;
+    const uint32_t a = v->a[first];
     bool changed = false, stale = false, apart = true, touches = false, follows = s->step->recycling > 0;
     for (size_t k = first; k < end; k++) {
-        const uint32_t slot = narc_old_slot(c, s->list, k);
-        if (!narc_is_ground_pair(s, a, b[k]) || s->list->marks[k] & NARC_SENSOR)
+        const uint32_t b = v->b[k], slot = slot_of(v, k);
+        if (!narc_is_ground_pair(s, a, b) || v->marks[k] & NARC_SENSOR)
             continue;
-        const bool old = is_stale(s, k, slot);
+        const bool old = is_stale(v, k, slot);
+        const unsigned moved = v->changed[a] | v->changed[b];
         stale |= old;
-        changed |= old || has_changed(s, a, b[k]);
-        apart = apart && are_apart(s, a, b[k]);
+        changed |= old || moved;
+        apart = apart && are_apart(v, a, b);
         touches |= slot != UINT32_MAX && c->state[slot] & NARC_TOUCHING;
-        follows = follows && !old && !is_reshaped(s, a, b[k]) && may_follow_ground(s, slot, a, b[k]);
+        follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, slot, a, b);
     }
     const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end; k++)
-        if (!narc_is_ground_pair(s, a, b[k]) || s->list->marks[k] & NARC_SENSOR)
-            plan_pair(s, k, a, b[k]);
+        if (!narc_is_ground_pair(s, a, v->b[k]) || v->marks[k] & NARC_SENSOR)
+            plan_pair(s, v, k);
         else if (changed)
-            add_work(c, k, narc_is_tested(s, a, b[k]) ? what : NARC_REST);
+            add_work(c, k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST);
 }
 
 /* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -164,29 +185,31 @@ static bool has_any_changed(const uint8_t *changed, size_t count) {
 
 void narc_plan_step(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
-    const narc_pairs *const pairs = &s->list->pairs;
-    const uint32_t *const a = pairs->a.base, *const b = pairs->b.base;
-    const uint8_t *const changed = c->broad->known.changed;
+    const pair_view v = view_pairs(s);
+    const size_t count = s->list->pairs.count;
     const bool kept = is_list_kept(s);
     c->work_count = 0;
-    if (kept && !has_any_changed(changed, s->step->bodies->count))
+    if (kept && !has_any_changed(v.changed, s->step->bodies->count))
         return;
     for (size_t k = 0; k < s->step->bodies->count; k++)
-        if (changed[k] & NARC_RESHAPED)
+        if (v.changed[k] & NARC_RESHAPED)
             c->room[k] = find_room(s, (uint32_t)k);
     if (!s->has_ground) {
-        for (size_t k = 0; (k = kept ? find_changed(pairs, changed, k) : k) < pairs->count; k++)
-            plan_pair(s, k, a[k], b[k]);
+        for (size_t k = 0; k < count;)
+            if (kept && !(v.changed[v.a[k]] | v.changed[v.b[k]]))
+                k = find_changed(&s->list->pairs, v.changed, k);
+            else
+                plan_pair(s, &v, k++);
         return;
     }
-    for (size_t k = 0, end; k < pairs->count; k = end) {
+    for (size_t k = 0, end; k < count; k = end) {
         bool ground = false;
-        for (end = k; end < pairs->count && a[end] == a[k]; end++)
-            ground = ground || narc_is_ground_pair(s, a[end], b[end]);
+        for (end = k; end < count && v.a[end] == v.a[k]; end++)
+            ground = ground || narc_is_ground_pair(s, v.a[end], v.b[end]);
         if (ground)
-            plan_ground(s, k, end);
+            plan_ground(s, &v, k, end);
         else
             for (size_t i = k; i < end; i++)
-                plan_pair(s, i, a[i], b[i]);
+                plan_pair(s, &v, i);
     }
 }

@@ -22,7 +22,7 @@ typedef struct array {
 /* Makes all arrays longer, what is in them stays: all of them or none. */
 static narc_status grow(const narc_allocator *allocator, const array *arrays, size_t array_count, size_t *capacity,
                         size_t needed) {
-    enum { MOST = 12 };
+    enum { MOST = 16 };
     void *fresh[MOST];
     size_t made = 0;
     if (needed <= *capacity)
@@ -73,6 +73,8 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->rows, c->row_size),
                               ARRAY(c->user, c->user_size),
                               ARRAY(c->kept, sizeof *c->kept),
+                              ARRAY(c->entries, sizeof *c->entries),
+                              ARRAY(c->ends, c->contact_rows ? 0 : sizeof *c->ends),
                               ARRAY(c->more_of, sizeof *c->more_of),
                               ARRAY(c->marked, sizeof *c->marked),
                               ARRAY(c->parted, sizeof *c->parted)};
@@ -80,6 +82,8 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->next_order, sizeof *c->next_order),
                               ARRAY(c->work, sizeof *c->work),
                               ARRAY(c->asked, sizeof *c->asked),
+                              ARRAY(c->known, sizeof *c->known),
+                              ARRAY(c->left, sizeof *c->left),
                               ARRAY(c->sensors_asked, sizeof *c->sensors_asked),
                               ARRAY(c->ground_asked, sizeof *c->ground_asked),
                               ARRAY(c->ground_margins, sizeof *c->ground_margins),
@@ -142,7 +146,7 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
         c->pair[slot] = (narc_slot_pair){list->pairs.a.base[k], list->pairs.b.base[k]};
         if (list->marks[k] & NARC_FLIPPED) {
             c->flags[slot] |= NARC_SLOT_STALE;
-            c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
+            c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
             c->hints[slot] = 0;
             narc_mark_slot(c, slot, NARC_TURNED);
         }
@@ -158,13 +162,13 @@ static void release(narc_contacts *c, void *memory) {
 }
 
 void narc_free_slots(narc_contacts *c) {
-    void *const memory[] = {c->pair,       c->state,          c->flags,          c->hints,          c->free,
-                            c->margins,    c->rows,           c->user,           c->kept,           c->more_of,
-                            c->order,      c->next_order,     c->work,           c->asked,          c->sensors_asked,
-                            c->marked,     c->parted,         c->ground_asked,   c->touching,       c->sensors,
-                            c->bits,       c->ground_margins, c->began,          c->ended,          c->room,
-                            c->more.rows,  c->more.kept,      c->next_more.rows, c->next_more.kept, c->ground.rows,
-                            c->ground.kept};
+    void *const memory[] = {c->entries,        c->ends,           c->known,          c->left,          c->pair,
+                            c->state,          c->flags,          c->hints,          c->free,          c->margins,
+                            c->rows,           c->user,           c->kept,           c->more_of,       c->order,
+                            c->next_order,     c->work,           c->asked,          c->sensors_asked, c->marked,
+                            c->parted,         c->ground_asked,   c->touching,       c->sensors,       c->bits,
+                            c->ground_margins, c->began,          c->ended,          c->room,          c->more.rows,
+                            c->more.kept,      c->next_more.rows, c->next_more.kept, c->ground.rows,   c->ground.kept};
     for (size_t k = 0; k < COUNT_OF(memory); k++)
         release(c, memory[k]);
 }

@@ -16,26 +16,6 @@
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
-                           bool slots, void *rows, size_t capacity, size_t *out_count) {
-    const narc_contacts *const c = s->contacts;
-    const narc_step *const step = s->step;
-    const float *const margins = slots ? c->margins : c->ground_margins;
-    const narc_query query = {.margin = step->margin,
-                              .second_margin = step->second_margin,
-                              .flat_angle = step->flat_angle,
-                              .front_only = step->front_only,
-                              .dense = slots,
-                              .margins = {step->ahead.base ? margins : NULL, sizeof *margins},
-                              .hints = {slots ? c->hints : NULL, sizeof *c->hints},
-                              .selection = {selection, sizeof *selection},
-                              .selection_count = count,
-                              .workers = step->workers};
-    return c->contact_rows
-               ? narc_find_contacts(s->shapes, step->bodies, pairs, &query, rows, capacity, out_count, s->error)
-               : narc_find_manifolds(s->shapes, step->bodies, pairs, &query, rows, capacity, out_count, s->error);
-}
-
 /* No row is left. */
 static void clear_row(narc_contacts *c, uint32_t slot) {
     char *const row = narc_row_at(c, c->rows, slot);
@@ -69,18 +49,22 @@ static void do_work(const narc_contact_step *s) {
     const uint32_t *const order = c->order;
     const uint8_t *const marks = s->list->marks, *const state = c->state;
     uint8_t *const flags = c->flags;
-    uint32_t *const asked = c->asked;
+    uint32_t *const asked = c->asked, *const known = c->known;
     const bool margins = s->step->ahead.base;
     const size_t count = c->work_count;
-    size_t asked_count = 0;
+    size_t asked_count = 0, known_count = 0;
     c->sensor_count = 0;
     for (size_t i = 0; i < count; i++) {
-        const uint32_t k = work[i].pair, what = work[i].what, slot = order[k];
+        const uint32_t k = work[i].pair, what = work[i].what & NARC_WHAT, slot = order[k];
         const unsigned own = marks[k] & NARC_SENSOR ? NARC_SLOT_SENSOR : 0,
                        rest = what == NARC_REST ? NARC_SLOT_STALE : 0;
-        flags[slot] = (uint8_t)((flags[slot] & (NARC_SLOT_CROSSED | NARC_SLOT_KEPT)) | own | rest);
-        asked[asked_count] = slot; /* as chance has it: without a branch */
-        asked_count += what == NARC_ASK;
+        const unsigned stays = work[i].what & NARC_OTHER_SHAPE ? NARC_SLOT_CROSSED | NARC_SLOT_KEPT
+                                                               : 0xff & ~(NARC_SLOT_STALE | NARC_SLOT_SENSOR);
+        const unsigned now = (flags[slot] & stays) | own | rest;
+        flags[slot] = (uint8_t)now;
+        asked[asked_count] = known[known_count] = slot; /* as chance has it: without a branch */
+        asked_count += (what == NARC_ASK) & !(now & NARC_SLOT_ENTRY);
+        known_count += (what == NARC_ASK) & ((now & NARC_SLOT_ENTRY) != 0);
         if (margins && what == NARC_ASK)
             c->margins[slot] = narc_find_margin(s, c->pair[slot].a, c->pair[slot].b);
         if (what == NARC_APART && state[slot] & NARC_TOUCHING)
@@ -90,51 +74,8 @@ static void do_work(const narc_contact_step *s) {
         else if (what == NARC_ASK_SENSOR)
             c->sensors_asked[c->sensor_count++] = slot;
     }
+    c->known_count = known_count;
     c->asked_count = asked_count;
-}
-
-/* Rows that were asked for are kept to follow their bodies. */
-static void keep_rows(const narc_contact_step *s) {
-    narc_contacts *const c = s->contacts;
-    for (size_t i = 0; i < c->asked_count; i++) {
-        const uint32_t slot = c->asked[i];
-        const narc_slot_pair pair = c->pair[slot];
-        c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, pair.a, pair.b))
-            continue;
-        narc_keep_row(s, pair.a, pair.b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
-        c->flags[slot] |= NARC_SLOT_KEPT;
-    }
-}
-
-static narc_status ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
-    narc_contacts *const c = s->contacts;
-    const size_t count = c->asked_count, row_size = c->row_size;
-    const bool contact_rows = c->contact_rows;
-    const uint32_t *const asked = c->asked;
-    const char *const rows = c->rows;
-    uint8_t *const state = c->state, *const flags = c->flags;
-    uint32_t *const marked = c->marked;
-    size_t found = 0, crossed = 0, marked_count = c->marked_count;
-    if (count == 0)
-        return NARC_OK;
-    const narc_status status = narc_ask_pairs(s, pairs, asked, count, true, c->rows, c->slot_capacity, &found);
-    for (size_t i = 0; i < count && status == NARC_OK; i++) {
-        const uint32_t slot = asked[i];
-        const unsigned was = state[slot];
-        const unsigned now = narc_count_points(contact_rows, rows + slot * row_size) > 0 ? NARC_TOUCHING : 0,
-                       crosses = (was ^ now) & NARC_TOUCHING;
-        marked[marked_count] = slot;
-        marked_count += !(was & ~(unsigned)NARC_TOUCHING);
-        state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        flags[slot] = (uint8_t)(flags[slot] ^ crosses * NARC_SLOT_CROSSED);
-        crossed += crosses;
-    }
-    c->marked_count = marked_count;
-    c->crossed_count += crossed;
-    if (status == NARC_OK && s->step->recycling > 0)
-        keep_rows(s);
-    return status;
 }
 
 static narc_status ask_sensors(const narc_contact_step *s, const narc_pairs *pairs) {
@@ -282,7 +223,7 @@ static narc_status carry_out(const narc_contact_step *s) {
     const narc_pairs pairs = {
         .count = c->slot_count, .a = {&c->pair->a, sizeof *c->pair}, .b = {&c->pair->b, sizeof *c->pair}};
     do_work(s);
-    narc_status status = ask_contacts(s, &pairs);
+    narc_status status = narc_ask_contacts(s, &pairs);
     if (status == NARC_OK)
         status = ask_sensors(s, &pairs);
     if (status != NARC_OK)
@@ -299,7 +240,7 @@ static narc_status carry_out(const narc_contact_step *s) {
     if (c->crossed_count > 0 || c->broad->marked)
         make_lists(s);
     r->skipped = s->list->skipped;
-    r->asked_count = c->asked_count + c->sensor_count + c->ground_count;
+    r->asked_count = c->asked_count + c->known_count + c->sensor_count + c->ground_count;
     return NARC_OK;
 }
 

@@ -73,13 +73,13 @@ static void copy_body(struct world *w, size_t to, size_t from) {
     w->ahead[to] = w->ahead[from];
 }
 
-static void add_ground(struct world *w) {
-    narc_arc arcs[CHAIN_ARCS];
+static void lay_world(struct world *w) {
     narc_chain_entry entries[ROOM / 2];
     narc_error error;
     const enum chain_family families[] = {CHAIN_HILLS, CHAIN_BOWLS, CHAIN_MIXED, CHAIN_STEPS};
-    const struct chain chain = make_chain(&w->random, families[random_below(&w->random, 4)], arcs);
+    const struct chain chain = make_chain(&w->random, families[random_below(&w->random, 4)]);
     expect_ok(narc_add_chain(w->store, chain.arcs, chain.count, NULL, entries, ROOM / 2, &w->ground, &error), &error);
+    free(chain.arcs);
     for (size_t k = 0; k < w->ground; k++) {
         make_body(w, w->count + k);
         w->body[w->count + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
@@ -106,7 +106,7 @@ static struct world *make_world(struct test_random random, bool ground) {
     w->margin = (float)random_between(&w->random, 0, 0.1);
     w->skin = random_below(&w->random, 4) ? (float)random_between(&w->random, 0, 0.2) : 0;
     if (ground)
-        add_ground(w);
+        lay_world(w);
     for (size_t k = 0; k < w->count; k++)
         make_body(w, k);
     if (random_below(&w->random, 2))

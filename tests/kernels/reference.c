@@ -5,6 +5,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "chains.h"
 #include "corpus.h"
@@ -125,9 +126,8 @@ TEST(test_ground_of_shapes) {
  * more: below a corner the corner is not the nearest. (Beyond open ends there is no distance.) */
 TEST(test_ground_under_discs) {
     struct test_random random = test_random_named("ground under discs");
-    static narc_arc arcs[CHAIN_ARCS];
     for (size_t trial = 0; trial < test_trials(300); trial++) {
-        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES), arcs);
+        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
         const struct shape disc = circle_of(random_log_between(&random, 0.1, 1));
         const struct body body = ride_chain(&random, &chain, &disc, 0.1);
         const struct reference_body posed = pose_shape(&disc, &body);
@@ -140,7 +140,7 @@ TEST(test_ground_under_discs) {
         for (size_t k = ground_minima(search, 0, minima); k > 0; k--)
             least = fmin(least, minima[k - 1].foot.distance);
         const double off = least - fmin(middle - radius, 0.5);
-        const narc_arc *first = &arcs[0], *last = &arcs[chain.count - 1];
+        const narc_arc *first = &chain.arcs[0], *last = &chain.arcs[chain.count - 1];
         const double to_first = hypot(first->center_x + first->radius * cos(first->start) - body.x,
                                       first->center_y + first->radius * sin(first->start) - body.y);
         const double to_last = hypot(last->center_x + last->radius * cos(last->end) - body.x,
@@ -151,6 +151,7 @@ TEST(test_ground_under_discs) {
                      chain_family_name((enum chain_family)(trial % CHAIN_FAMILIES)), least, middle - radius);
         destroy_search(search);
         destroy_ground(ground);
+        free(chain.arcs);
     }
 }
 
@@ -159,10 +160,9 @@ TEST(test_ground_under_discs) {
 TEST(test_clearance_of_ground) {
     enum { DIRECTIONS = 512, PARTS = 8 };
     struct test_random random = test_random_named("clearance of ground");
-    static narc_arc arcs[CHAIN_ARCS];
     size_t in_air = 0, met = 0;
     for (size_t trial = 0; trial < test_trials(20 * CHAIN_FAMILIES); trial++) {
-        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES), arcs);
+        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
         const struct shape shape = make_rider(&random, &chain, (enum chain_family)(trial % CHAIN_FAMILIES));
         struct ground *ground = make_ground(&chain);
         const double gap = random_between(&random, -0.1, 0.3);
@@ -187,8 +187,9 @@ TEST(test_clearance_of_ground) {
             last = at;
         }
         const bool is_around =
-            reference_point_distance(&posed, arcs[0].center_x + arcs[0].radius * cos(arcs[0].start) - posed.x,
-                                     arcs[0].center_y + arcs[0].radius * sin(arcs[0].start) - posed.y) < 0;
+            reference_point_distance(
+                &posed, chain.arcs[0].center_x + chain.arcs[0].radius * cos(chain.arcs[0].start) - posed.x,
+                chain.arcs[0].center_y + chain.arcs[0].radius * sin(chain.arcs[0].start) - posed.y) < 0;
         const double room = way / PARTS + 1e-4 * reference_extent(&posed);
         if (found.distance > least + room || (found.distance > 0 && found.distance < least - room) ||
             (found.in_air && lowest < -1e-4 * reference_extent(&posed)) ||
@@ -199,6 +200,7 @@ TEST(test_clearance_of_ground) {
         in_air += found.in_air;
         met += !(found.distance > 0);
         destroy_ground(ground);
+        free(chain.arcs);
     }
     print_message("  %zu in the air, %zu meet the ground\n", in_air, met);
     assert_true(test_trials(100) < 100 || (in_air > test_trials(100) && met > test_trials(20)));
