@@ -200,7 +200,8 @@ TEST(test_forgets) {
     step_for(&w, 1.0 / 60);
     assert_int_equal(w.result->count, 1);
     assert_int_equal(world_contact_of(&w, 0)->point_count, 0);
-    assert_true(world_contact_of(&w, 0)->points[0].normal_impulse == 0 && world_contact_of(&w, 0)->rolling_impulse == 0);
+    assert_true(world_contact_of(&w, 0)->points[0].normal_impulse == 0 &&
+                world_contact_of(&w, 0)->rolling_impulse == 0);
     world_destroy(&w);
 }
 
