@@ -349,8 +349,10 @@ scene_state measure_scene(const world *w) {
         state.moving += !(world_speed(w, body) <= 0.01f);
         state.awake += body->kind == 0;
     }
-    for (size_t k = 0; k < w->list->pairs.count; k++)
-        for (unsigned i = 0; i < w->contacts[k].point_count; i++, state.points++)
-            state.overlap = fmax(state.overlap, -(double)w->contacts[k].points[i].separation);
+    for (size_t k = 0; k < w->result->count; k++) {
+        const world_contact *const c = world_contact_of(w, k);
+        for (unsigned i = 0; i < c->point_count; i++, state.points++)
+            state.overlap = fmax(state.overlap, -(double)c->points[i].separation);
+    }
     return state;
 }

@@ -33,31 +33,22 @@ narc_status world_create(world *w, world_settings settings, size_t capacity) {
     *w = (world){.settings = settings, .capacity = capacity, .pair_room = pairs};
     w->shapes = calloc(2 * capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
-    w->contacts = calloc(pairs, sizeof *w->contacts);
-    w->next_contacts = calloc(pairs, sizeof *w->next_contacts);
-    w->overlaps = calloc(NARC_BIT_WORDS(pairs), sizeof *w->overlaps);
-    w->asked = calloc(pairs, sizeof *w->asked);
-    w->rows = calloc(2 * pairs, sizeof *w->rows);
     w->active = calloc(pairs, sizeof *w->active);
     w->joints = calloc(capacity, sizeof *w->joints);
-    w->events = calloc(2 * pairs, sizeof *w->events); /* of each pair one, of this list and of the last */
-    if (!w->shapes || !w->bodies || !w->contacts || !w->next_contacts || !w->overlaps || !w->asked || !w->rows ||
-        !w->active || !w->joints || !w->events || narc_create_shapes(NULL, &w->store) != NARC_OK ||
-        narc_create_broad_phase(NULL, &w->broad_phase) != NARC_OK)
+    w->events = calloc(2 * pairs, sizeof *w->events); /* of each pair one, of this step and of the last */
+    const narc_contacts_settings contacts = {.user_size = sizeof(world_contact)};
+    if (!w->shapes || !w->bodies || !w->active || !w->joints || !w->events ||
+        narc_create_shapes(NULL, &w->store) != NARC_OK ||
+        narc_create_contacts(&contacts, &w->contacts, &w->error) != NARC_OK)
         return world_fail(w, NARC_ERROR_MEMORY, "no memory for a world");
     return NARC_OK;
 }
 
 void world_destroy(world *w) {
-    narc_destroy_broad_phase(w->broad_phase);
+    narc_destroy_contacts(w->contacts);
     narc_destroy_shapes(w->store);
     free(w->bodies);
     free(w->shapes);
-    free(w->contacts);
-    free(w->next_contacts);
-    free(w->overlaps);
-    free(w->asked);
-    free(w->rows);
     free(w->active);
     free(w->joints);
     free(w->events);
@@ -166,6 +157,8 @@ static void predict_motion(world *w) {
         const bool falls = body->inverse_mass > 0 && body->kind == 0;
         body->motion = scale(time, falls ? add(body->velocity, scale(time, w->settings.gravity)) : body->velocity);
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
+        const float ahead = length(body->motion) + body->turn_reach - 0.5f * w->settings.margin;
+        body->ahead = ahead > 0 ? ahead : 0; /* so two find each other that could meet in this step */
         body->from = body->position;
         body->from_rotation = (vec){body->cosine, body->sine};
         body->turn = 0;
@@ -175,11 +168,8 @@ static void predict_motion(world *w) {
 
 narc_status world_step(world *w) {
     predict_motion(w);
-    narc_status status = world_update_pairs(w);
+    narc_status status = world_update_contacts(w);
     if (status != NARC_OK)
-        return status;
-    world_recycle_contacts(w);
-    if ((status = world_find_manifolds(w)) != NARC_OK || (status = world_find_overlaps(w)) != NARC_OK)
         return status;
     world_make_contacts(w);
     world_sleep(w);

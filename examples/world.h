@@ -16,8 +16,8 @@
 #include <math.h>
 
 #include <narc.h>
-#include <narc_broad_phase.h>
 #include <narc_chains.h>
+#include <narc_contacts.h>
 #include <narc_scene.h>
 
 typedef struct vec {
@@ -38,11 +38,11 @@ typedef struct world_body {
     /* What follows is the world's. */
     uint64_t id;                         /* never given twice, whatever number the body has */
     uint32_t run;                        /* of ground: see narc_chain_entry */
-    vec stood, stood_rotation;           /* its pose when its contacts with the ground were found */
     vec start;                           /* where it was added */
     float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
     vec motion;                          /* in this step, at first if nothing stops it, then as it was */
     float turn, turn_reach;              /* its rotation in this step; how far that may carry its points */
+    float ahead;                         /* how much further than the margin its contacts are to be found */
     vec from, from_rotation;             /* its pose before: position, cosine and sine */
     float stop;                          /* the part of the step after which it hits, and waits for the next one; 1 */
     float rest;                          /* for how long it has been slow, seconds */
@@ -89,15 +89,13 @@ typedef struct world_point {
     float greatest_impulse;                /* in this step */
 } world_point;
 
-/* What the engine knows of a pair in the list of pairs; zeros for one that is new. */
+/* What the engine knows of a pair that is close, in the slot that narc keeps for it; zeros for one that is new. */
 typedef struct world_contact {
     world_body *a, *b;
-    uint32_t hint; /* narc's */
     float margin;
     float depth;   /* above 0: the bodies could pass through each other in this step, and may get so deep */
     bool touching; /* has begun and has not ended */
     unsigned point_count;
-    vec span; /* that of its first point as it was found */
     float friction, restitution;
     float rolling_impulse; /* of rotation */
     world_point points[2];
@@ -117,16 +115,12 @@ typedef struct world {
     size_t body_count, ground_count, capacity, pair_room;
     uint32_t run_count;
     uint64_t last_id;
-    narc_broad_phase *broad_phase;
-    const narc_pair_list *list;              /* pairs of bodies that are close; the broad phase owns it */
-    world_contact *contacts, *next_contacts; /* one for each pair of this list; room for the next one */
-    uint64_t *overlaps;                      /* of sensors, as bits */
-    uint32_t *asked;                         /* pairs to find contacts of */
-    narc_manifold *rows;                     /* narc's answers, in that order; a pair may have several */
-    world_contact **active;                  /* those with points and a body that moves: what the solver goes through */
+    narc_contacts *contacts;        /* pairs that are close, their rows, and a world_contact of each */
+    const narc_step_result *result; /* of this step; `contacts` owns it */
+    world_contact **active;         /* those with points and a body that moves: what the solver goes through */
     world_contact *joints;
     world_event *events;
-    size_t asked_count, row_count, active_count, joint_count, event_count;
+    size_t active_count, joint_count, event_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
@@ -164,12 +158,9 @@ narc_status world_step(world *w);
 /* Notes what went wrong, and returns the status. */
 narc_status world_fail(world *w, narc_status status, const char *message);
 
-/* world_contacts.c: pairs, with what is known of them; which to ask of; manifolds; contacts; overlaps of sensors. */
-narc_status world_update_pairs(world *w);
-void world_recycle_contacts(world *w);
-narc_status world_find_manifolds(world *w);
+/* world_contacts.c: pairs and rows; what the solver wants of them. */
+narc_status world_update_contacts(world *w);
 void world_make_contacts(world *w);
-narc_status world_find_overlaps(world *w);
 
 /* What was so fast that it passed into a body, or through it, stands where the two met: it loses time, no momentum. */
 narc_status world_stop_bullets(world *w);
@@ -181,6 +172,11 @@ void world_solve(world *w);
 void world_end_lost_pairs(world *w);
 void world_sleep(world *w);
 void world_list_events(world *w);
+
+/* What is known of pair k, in the order of pairs. */
+static inline world_contact *world_contact_of(const world *w, size_t k) {
+    return (world_contact *)w->result->user + w->result->order[k];
+}
 
 /* ------------------------------------------------------------------------------------------------ measures */
 

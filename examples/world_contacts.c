@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * world_contacts.c - from bodies to contacts: pairs, what the last step knew of them, manifolds.
+ * world_contacts.c - from bodies to contacts: pairs, what the last step knew of them, manifolds; and bullets.
  */
 #include <string.h>
 
@@ -23,41 +23,31 @@ static narc_status find_broken_body(world *w) {
     return status == NARC_OK ? world_fail(w, NARC_ERROR_NOT_FINITE, "a velocity is out of range") : status;
 }
 
-/* All pairs of bodies that come closer than the margin in this step, rotation included. Where the list is another one,
- * what is known of the pairs that were in the last is carried over; zeros for the others. */
-narc_status world_update_pairs(world *w) {
+/* One call: pairs, with what is known of them, and the rows of those that have moved. */
+narc_status world_update_contacts(world *w) {
     const narc_bodies bodies = view_bodies(w);
     const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, kind), .group = NARC_COLUMN(w->bodies, group)};
-    const narc_pair_options options = {.margin = w->settings.margin,
-                                       .skin = w->settings.skin,
-                                       .motion_x = NARC_COLUMN(w->bodies, motion.x),
-                                       .motion_y = NARC_COLUMN(w->bodies, motion.y),
-                                       .reach = NARC_COLUMN(w->bodies, turn_reach),
-                                       .id = NARC_COLUMN(w->bodies, id),
-                                       .filter = &filter,
-                                       .workers = &w->settings.workers};
-    const narc_status status = narc_update_pairs(w->broad_phase, w->store, &bodies, &options, &w->list, &w->error);
+    const narc_step step = {.bodies = &bodies,
+                            .margin = w->settings.margin,
+                            .flat_angle = w->settings.flat_angle,
+                            .skin = w->settings.skin,
+                            .recycling = w->settings.recycling,
+                            .motion_x = NARC_COLUMN(w->bodies, motion.x),
+                            .motion_y = NARC_COLUMN(w->bodies, motion.y),
+                            .reach = NARC_COLUMN(w->bodies, turn_reach),
+                            .ahead = NARC_COLUMN(w->bodies, ahead),
+                            .id = NARC_COLUMN(w->bodies, id),
+                            .run = NARC_COLUMN(w->bodies, run),
+                            .filter = &filter,
+                            .workers = &w->settings.workers};
+    const narc_status status = narc_update_contacts(w->contacts, w->store, &step, &w->result, &w->error);
     w->event_count = 0;
-    if (status != NARC_OK || w->list->kept)
-        return status == NARC_OK && w->list->skipped > 0 ? find_broken_body(w) : status;
-    const size_t count = w->list->pairs.count;
-    if (count > w->pair_room)
-        return world_fail(w, NARC_ERROR_CAPACITY, "too many pairs");
+    if (status != NARC_OK)
+        return status;
     world_end_lost_pairs(w);
-    world_contact *const last = w->contacts;
-    narc_gather(w->list->previous, count, sizeof *last, last, w->next_contacts);
-    w->contacts = w->next_contacts;
-    w->next_contacts = last;
-    for (size_t k = 0; k < count; k++) {
-        world_contact *c = &w->contacts[k];
-        if (w->list->marks[k] & NARC_FLIPPED) /* what is known is that of (b, a) */
-            *c = (world_contact){.touching = c->touching};
-        c->a = &w->bodies[w->list->pairs.a.base[k]];
-        c->b = &w->bodies[w->list->pairs.b.base[k]];
-        if (w->list->previous[k] == NARC_NO_MATCH)
-            c->a->stood.x = INFINITY; /* its contacts with the ground are found anew */
-    }
-    return w->list->skipped > 0 ? find_broken_body(w) : NARC_OK;
+    return w->result->count > w->pair_room ? world_fail(w, NARC_ERROR_CAPACITY, "too many pairs")
+           : w->result->skipped > 0        ? find_broken_body(w)
+                                           : NARC_OK;
 }
 
 /* How deep a pair may get that in this step moves by much of the thinner body: into a quarter of it. Others: 0. Where
@@ -67,63 +57,6 @@ static void find_depth(const world *w, world_contact *c) {
     const float depth = 0.25f * fminf(w->shapes[c->a->shape].thickness, w->shapes[c->b->shape].thickness);
     c->depth = way > depth ? depth : 0;
     c->margin = w->settings.margin + (way > depth ? way : 0);
-}
-
-/* By how much have a contact's bodies moved since it was found? */
-static float find_change(const world *w, const world_contact *c) {
-    const world_point *p = &c->points[0];
-    const float turn_a = fabsf(cross(p->normal_in_a, to_local(c->a, p->normal)));
-    const float turn_b = fabsf(cross(p->normal_in_b, to_local(c->b, p->normal)));
-    const float reach = fminf(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach);
-    return length(subtract(find_span(c, p), c->span)) + fmaxf(turn_a, turn_b) * reach;
-}
-
-/* By how much has a body moved since its contacts with the ground were found? They are found or serve again together:
- * what several entries tell of a body is merged. */
-static float find_way(const world *w, const world_body *body) {
-    const float turn = fabsf(cross(body->stood_rotation, (vec){body->cosine, body->sine}));
-    return length(subtract(body->position, body->stood)) + turn * w->shapes[body->shape].reach;
-}
-
-/* A contact of bodies that have hardly moved since it was found serves again: normal and anchors stay as they are in
- * world axes, and only its separations are new. So lever arms do not grow while a column leans a little, and the normal
- * is not now that of one body's edge and now that of the other's. A point that walks goes on from there. */
-void world_recycle_contacts(world *w) {
-    w->asked_count = 0;
-    for (size_t k = 0; k < w->list->contact_count; k++) {
-        world_contact *c = &w->contacts[w->list->contacts[k]];
-        find_depth(w, c);
-        const bool on_ground = c->b >= w->bodies + w->body_count;
-        if (c->depth == 0 && (on_ground || c->point_count > 0) &&
-            (on_ground ? find_way(w, c->a) : find_change(w, c)) < w->settings.recycling)
-            continue;
-        w->asked[w->asked_count++] = w->list->contacts[k];
-    }
-}
-
-narc_status world_find_manifolds(world *w) {
-    const narc_bodies bodies = view_bodies(w);
-    size_t skipped = 0;
-    const narc_query query = {.margins = NARC_COLUMN(w->contacts, margin),
-                              .flat_angle = w->settings.flat_angle,
-                              .hints = NARC_HINT_COLUMN(w->contacts, hint),
-                              .selection = NARC_ARRAY(w->asked),
-                              .selection_count = w->asked_count,
-                              .workers = &w->settings.workers,
-                              .out_skipped = &skipped};
-    const narc_status status = narc_find_manifolds(w->store, &bodies, &w->list->pairs, &query, w->rows,
-                                                   2 * w->pair_room, &w->row_count, &w->error);
-    if (status == NARC_OK && w->ground_count > 0)
-        w->row_count = narc_merge_manifolds(&w->list->pairs, NARC_COLUMN(w->bodies, run), w->rows, w->row_count);
-    return status == NARC_OK && skipped > 0 ? find_broken_body(w) : status;
-}
-
-narc_status world_find_overlaps(world *w) {
-    const narc_bodies bodies = view_bodies(w);
-    const narc_query query = {.selection = {w->list->sensors, sizeof *w->list->sensors},
-                              .selection_count = w->list->sensor_count,
-                              .workers = &w->settings.workers};
-    return narc_find_overlaps(w->store, &bodies, &w->list->pairs, &query, w->overlaps, &w->error);
 }
 
 /* What the solver wants of a point of narc's row. A point starts with the impulses of that of the last step where the
@@ -155,36 +88,55 @@ static void make_point(const world_contact *c, const narc_manifold *m, unsigned 
 }
 
 /* A contact of all rows of its pair: two points of one row, or of what touches a concave arc in several places the
- * deepest two, each with its own normal. A pair without a point keeps nothing. */
-static void make_contact(world_contact *c, const narc_manifold *rows, size_t count) {
+ * deepest two, each with its own normal. What is further away than the two may move in this step is left out. A pair without
+ * a point keeps nothing. */
+static void make_contact(world_contact *c, const narc_manifold *row, const narc_manifold *more, size_t more_count) {
     const world_point last[2] = {c->points[0], c->points[1]};
     c->friction = sqrtf(c->a->friction * c->b->friction);
     c->restitution = fmaxf(c->a->restitution, c->b->restitution);
     c->point_count = 0;
-    for (const narc_manifold *row = rows; row < rows + count; row++)
+    for (size_t k = 0; k <= more_count; k++, row = more++)
         for (unsigned i = 0; i < row->count; i++) {
             const bool full = c->point_count == 2;
-            const size_t place = full ? c->points[1].separation > c->points[0].separation : c->point_count++;
-            if (!full || row->point[i].separation < c->points[place].separation)
+            const size_t place = full ? c->points[1].separation > c->points[0].separation : c->point_count;
+            if (row->point[i].separation < (full ? c->points[place].separation : c->margin)) {
                 make_point(c, row, i, last, &c->points[place]);
+                c->point_count += !full;
+            }
         }
     for (unsigned i = c->point_count; i < 2; i++) {
         c->points[i].separation = INFINITY;
         c->points[i].normal_impulse = 0;
     }
-    c->rolling_impulse = count > 0 ? c->rolling_impulse : 0;
-    c->span = find_span(c, &c->points[0]);
-    c->a->stood = c->a->position;
-    c->a->stood_rotation = (vec){c->a->cosine, c->a->sine};
+    c->rolling_impulse = c->point_count > 0 ? c->rolling_impulse : 0;
 }
 
+/* Has the normal of a row that followed its bodies turned? They turned together, as in a column that falls over. */
+static bool has_turned(const world *w, const world_contact *c, const narc_manifold *row) {
+    const vec turned = subtract((vec){row->normal_x, row->normal_y}, c->points[0].normal);
+    return length(turned) * fminf(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach) >= w->settings.recycling;
+}
+
+/* A contact whose row was kept, or followed its bodies, serves again: normal and anchors stay as they are in world axes, and
+ * the solver finds its separations. So lever arms do not grow while a column leans a little, and the normal is not now that
+ * of one body's edge and now that of the other's. A point that walks goes on from there. */
 void world_make_contacts(world *w) {
-    const narc_manifold *row = w->rows, *const end = row + w->row_count;
-    for (size_t k = 0; k < w->asked_count; k++) {
-        const narc_manifold *const first = row;
-        while (row < end && row->pair == w->asked[k])
-            row++;
-        make_contact(&w->contacts[w->asked[k]], first, (size_t)(row - first));
+    const narc_step_result *const r = w->result;
+    const narc_manifold *more = r->more, *const end = more + r->more_count;
+    for (size_t k = 0; k < r->count; k++) {
+        const uint32_t slot = r->order[k];
+        world_contact *const c = world_contact_of(w, k);
+        const narc_manifold *const first = more;
+        c->a = &w->bodies[r->pairs.a.base[slot]];
+        c->b = &w->bodies[r->pairs.b.base[slot]];
+        while (more < end && more->pair == slot)
+            more++;
+        if (r->state[slot] & NARC_TURNED) /* what is known is that of (b, a) */
+            *c = (world_contact){.a = c->a, .b = c->b, .touching = c->touching};
+        find_depth(w, c);
+        const narc_manifold *const row = &r->manifolds[slot];
+        if (r->state[slot] & NARC_ASKED || (r->state[slot] & NARC_FOLLOWED && has_turned(w, c, row)))
+            make_contact(c, row, first, (size_t)(more - first));
     }
 }
 
@@ -200,12 +152,12 @@ narc_status world_stop_bullets(world *w) {
     before.sine = NARC_COLUMN(all, from_rotation.y);
     for (world_body *body = w->bodies; body < end; body++)
         body->motion = subtract(body->position, body->from);
-    for (size_t k = 0; k < w->list->contact_count; k++) {
-        const uint32_t pair = w->list->contacts[k];
-        const world_contact *c = &w->contacts[pair];
+    for (size_t k = 0; k < w->result->count; k++) {
+        const uint32_t slot = w->result->order[k];
+        const world_contact *const c = world_contact_of(w, k);
+        const uint32_t pair[2] = {w->result->pairs.a.base[slot], w->result->pairs.b.base[slot]};
         const float deepest = fminf(c->points[0].separation, c->points[1].separation);
-        const narc_pairs one = {
-            .count = 1, .a = {w->list->pairs.a.base + pair, 0}, .b = {w->list->pairs.b.base + pair, 0}};
+        const narc_pairs one = {.count = 1, .a = {&pair[0], 0}, .b = {&pair[1], 0}};
         const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest),
                                            .tolerance = 0.01f * c->depth};
         narc_impact hit = {.count = 0};

@@ -4,14 +4,15 @@
  */
 #include "world.h"
 
-/* Bodies of a lost pair may be gone. What lay on one that is gone wakes. */
+/* Bodies of a pair that parted may be gone. What lay on one that is gone wakes. */
 void world_end_lost_pairs(world *w) {
-    for (size_t k = 0; k < w->list->lost_count; k++) {
-        const narc_lost_pair *lost = &w->list->lost[k];
-        if (!w->contacts[lost->pair].touching)
+    const world_contact *const contacts = w->result->user;
+    for (size_t k = 0; k < w->result->ended_count; k++) {
+        const narc_touch_event *const ended = &w->result->ended[k];
+        if (!ended->parted || !contacts[ended->slot].touching)
             continue;
-        w->events[w->event_count++] = (world_event){lost->id_a, lost->id_b, false, (lost->marks & NARC_SENSOR) != 0};
-        world_body *const a = world_find_body(w, lost->id_a), *const b = world_find_body(w, lost->id_b);
+        w->events[w->event_count++] = (world_event){ended->id_a, ended->id_b, false, (ended->marks & NARC_SENSOR) != 0};
+        world_body *const a = world_find_body(w, ended->id_a), *const b = world_find_body(w, ended->id_b);
         if (a)
             world_wake_body(a);
         if (b)
@@ -28,17 +29,19 @@ static void set_touching(world *w, world_contact *c, bool touching, bool sensor)
 /* A touch begins where bodies overlap or press, and ends where they are further apart than the margin: what hardly
  * touches does not begin and end in turns. Sleepers are not asked: between them nothing changes. */
 void world_list_events(world *w) {
-    for (size_t k = 0; k < w->list->contact_count; k++) {
-        world_contact *c = &w->contacts[w->list->contacts[k]];
+    for (size_t k = 0; k < w->result->count; k++) {
+        world_contact *const c = world_contact_of(w, k);
+        const unsigned kinds = c->a->kind | c->b->kind;
         float nearest = INFINITY, pressed = 0;
         for (unsigned i = 0; i < c->point_count; i++) {
             nearest = fminf(nearest, c->points[i].separation);
             pressed = fmaxf(pressed, c->points[i].greatest_impulse);
         }
-        set_touching(w, c, pressed > 0 || nearest < (c->touching ? w->settings.margin : 0), false);
+        if (kinds & NARC_SENSOR)
+            set_touching(w, c, w->result->state[w->result->order[k]] & NARC_TOUCHING, true);
+        else
+            set_touching(w, c, pressed > 0 || nearest < (c->touching ? w->settings.margin : 0), false);
     }
-    for (size_t k = 0; k < w->list->sensor_count; k++)
-        set_touching(w, &w->contacts[w->list->sensors[k]], w->overlaps[k / 64] >> k % 64 & 1, true);
 }
 
 void world_wake_body(world_body *body) {
@@ -70,9 +73,9 @@ void world_sleep(world *w) {
         body->island = body;
         body->rest = world_speed(w, body) > w->settings.sleep_speed ? 0 : body->rest + w->settings.time_step;
     }
-    for (size_t k = 0; k < w->list->pairs.count; k++) {
-        const world_contact *c = &w->contacts[k];
-        if ((c->point_count > 0 || c->touching) && !(w->list->marks[k] & (NARC_STATIC | NARC_SENSOR)))
+    for (size_t k = 0; k < w->result->count; k++) {
+        const world_contact *const c = world_contact_of(w, k);
+        if ((c->point_count > 0 || c->touching) && !((c->a->kind | c->b->kind) & (NARC_STATIC | NARC_SENSOR)))
             join(c->a, c->b);
     }
     for (size_t k = 0; k < w->joint_count; k++)
@@ -92,8 +95,8 @@ void world_sleep(world *w) {
             world_wake_body(body);
     }
     w->active_count = 0;
-    for (size_t k = 0; k < w->list->pairs.count; k++) {
-        world_contact *c = &w->contacts[k];
+    for (size_t k = 0; k < w->result->count; k++) {
+        world_contact *const c = world_contact_of(w, k);
         if (c->point_count > 0 && (c->a->kind == 0 || c->b->kind == 0))
             w->active[w->active_count++] = c;
     }

@@ -116,25 +116,23 @@ static bool close_picture(picture *p) {
 static narc_status run(const scene *chosen, double seconds, world *w, picture *drawn, double every) {
     const long steps = lround(seconds / (double)w->settings.time_step);
     const long second = lroundf(1 / w->settings.time_step);
-    size_t events = 0, kept = 0, asked = 0; /* in a second: events, lists of pairs that were kept, contacts found */
-    printf("%8s %14s %12s %9s %7s %6s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
-           "awake", "points", "events", "kept", "found");
+    size_t events = 0, asked = 0; /* in a second: events, pairs that were asked */
+    printf("%8s %14s %12s %9s %7s %6s %7s %7s %8s\n", "seconds", "energy", "displacement", "overlap", "moving", "awake",
+           "points", "events", "asked");
     for (long step = 1; step <= steps; step++) {
         const narc_status status = step_scene(chosen, w, step);
         if (status != NARC_OK)
             return status;
         events += w->event_count;
-        kept += w->list->kept;
-        asked += w->asked_count;
+        asked += w->result->asked_count;
         if (every > 0 && (step - 1) % lround(every / (double)w->settings.time_step) == 0)
             draw_bodies(drawn, w, 0.4);
         if (step % second != 0 && step != steps)
             continue;
         const scene_state state = measure_scene(w);
-        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %7zu %7zu %5zu %8zu\n",
-               (double)((float)step * w->settings.time_step), state.energy, state.displacement, state.overlap,
-               state.moving, state.awake, state.points, events, kept, asked);
-        events = kept = asked = 0;
+        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %7zu %7zu %8zu\n", (double)((float)step * w->settings.time_step),
+               state.energy, state.displacement, state.overlap, state.moving, state.awake, state.points, events, asked);
+        events = asked = 0;
     }
     printf("state %016" PRIx64 "\n", world_hash(w));
     return NARC_OK;

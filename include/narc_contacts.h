@@ -121,7 +121,7 @@ typedef struct narc_touch_event {
 enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_TURNED = 16 };
 
 /* After a step; all arrays belong to the contacts, and are valid until their next step.
- *   pairs         by slot: its bodies a < b. Only slots that are listed in `order` are pairs
+ *   pairs         by slot: its bodies a < b, plain arrays. Only slots that are listed in `order` are pairs
  *   order         the slots of all pairs, in the order of a and then b
  *   state         by slot, see above
  *   manifolds     by slot, or `contacts`: rows, with count 0 where nothing touches; their `pair` is the slot

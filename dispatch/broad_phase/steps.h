@@ -107,7 +107,7 @@ bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shap
 
 /* narc_update_pairs(), where bodies that moved may be listed; NULL: all may have. */
 narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, const narc_moved_bodies *moved,
+                                    const narc_pair_options *options, const narc_moved_bodies *given,
                                     const narc_pair_list **out_list, narc_error *error);
 
 /* Takes the list before the last one back, if it is still whole: what follows the last one failed. */

@@ -84,7 +84,7 @@ static void make_entries(const narc_contact_step *s, const narc_batch *batch, si
         c->flags[slot] |= NARC_SLOT_SEEN;
         if (i < plain_count && !again)
             continue;
-        const bool smooth = !again || narc_are_smooth(s, c->pair[slot].a, c->pair[slot].b);
+        const bool smooth = !again || narc_are_smooth(s, c->a[slot], c->b[slot]);
         c->flags[slot] |= smooth ? NARC_SLOT_ENTRY : NARC_SLOT_PLAIN;
         c->left[count] = slot;
         count += smooth;
@@ -124,11 +124,11 @@ static void keep_rows(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     for (size_t i = 0; i < c->asked_count; i++) {
         const uint32_t slot = c->asked[i];
-        const narc_slot_pair pair = c->pair[slot];
+        const uint32_t a = c->a[slot], b = c->b[slot];
         c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, pair.a, pair.b))
+        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, a, b))
             continue;
-        narc_keep_row(s, pair.a, pair.b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
+        narc_keep_row(s, a, b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
         c->flags[slot] |= NARC_SLOT_KEPT;
     }
 }

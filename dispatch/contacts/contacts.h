@@ -43,10 +43,6 @@ typedef struct narc_more_rows {
     uint32_t first, count;
 } narc_more_rows;
 
-typedef struct narc_slot_pair {
-    uint32_t a, b;
-} narc_slot_pair;
-
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
  * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
 enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART, NARC_WHAT = 7 };
@@ -76,7 +72,7 @@ struct narc_contacts {
     bool again;          /* all pairs are to be asked: they are asked differently */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
-    narc_slot_pair *pair;
+    uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
     uint32_t *hints, *free, *marked, *parted; /* `free` and so on: lists of slots */
     float *margins;                           /* that it was asked with */
@@ -115,6 +111,11 @@ typedef struct narc_contact_step {
     bool has_ground;
 } narc_contact_step;
 
+/* Slots as pairs of a batch. */
+static inline narc_pairs narc_view_slots(const narc_contacts *c) {
+    return (narc_pairs){.count = c->slot_count, .a = {c->a, sizeof *c->a}, .b = {c->b, sizeof *c->b}};
+}
+
 /* ------------------------------------------------------------------------------------------------ slots.c */
 
 /* Room for a list of pairs and its slots, and for bodies; what is known of slots stays. NARC_ERROR_MEMORY: all is as it
@@ -122,7 +123,7 @@ typedef struct narc_contact_step {
 narc_status narc_reserve_slots(narc_contacts *contacts, const narc_pair_list *list, size_t bodies);
 
 /* Room for so many rows in an array; those there are stay. */
-narc_status narc_reserve_row_array(narc_contacts *contacts, narc_row_array *array, size_t count);
+narc_status narc_reserve_row_array(narc_contacts *contacts, narc_row_array *rows, size_t count);
 
 /* Gives each pair of a new list its slot, and those that are gone back at the next call. */
 void narc_take_slots(narc_contacts *contacts, const narc_pair_list *list);

@@ -48,7 +48,7 @@ static void put_row(const narc_contact_step *s, uint32_t slot, const void *from,
     const narc_contacts *const c = s->contacts;
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
-    narc_keep_row(s, c->pair[slot].a, c->pair[slot].b, row, kept);
+    narc_keep_row(s, c->a[slot], c->b[slot], row, kept);
 }
 
 /* The further rows of a pair that was not asked stay. */

@@ -64,7 +64,8 @@ narc_status narc_reserve_row_array(narc_contacts *c, narc_row_array *rows, size_
 narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, size_t bodies) {
     const size_t free_count = c->free_count + c->parted_count, fresh = list->kept ? 0 : list->added_count;
     const size_t slots = c->slot_count + (fresh > free_count ? fresh - free_count : 0), pairs = list->pairs.count;
-    const array of_slots[] = {ARRAY(c->pair, sizeof *c->pair),
+    const array of_slots[] = {ARRAY(c->a, sizeof *c->a),
+                              ARRAY(c->b, sizeof *c->b),
                               ARRAY(c->state, 1),
                               ARRAY(c->flags, 1),
                               ARRAY(c->hints, sizeof *c->hints),
@@ -102,8 +103,7 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
         status = grow(&c->allocator, of_ends, COUNT_OF(of_ends), &c->end_capacity, pairs + list->lost_count);
     }
     /* the result of the last step shows arrays that moved */
-    c->result.pairs =
-        (narc_pairs){.count = c->slot_count, .a = {&c->pair->a, sizeof *c->pair}, .b = {&c->pair->b, sizeof *c->pair}};
+    c->result.pairs = narc_view_slots(c);
     c->result.order = c->order;
     c->result.state = c->state;
     c->result.manifolds = c->contact_rows ? NULL : c->rows;
@@ -143,7 +143,8 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
     for (size_t k = 0; k < list->pairs.count; k++) {
         const uint32_t last = list->previous[k], slot = last == UINT32_MAX ? open_slot(c) : c->order[last];
         c->next_order[k] = slot;
-        c->pair[slot] = (narc_slot_pair){list->pairs.a.base[k], list->pairs.b.base[k]};
+        c->a[slot] = list->pairs.a.base[k];
+        c->b[slot] = list->pairs.b.base[k];
         if (list->marks[k] & NARC_FLIPPED) {
             c->flags[slot] |= NARC_SLOT_STALE;
             c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
@@ -162,13 +163,14 @@ static void release(narc_contacts *c, void *memory) {
 }
 
 void narc_free_slots(narc_contacts *c) {
-    void *const memory[] = {c->entries,        c->ends,           c->known,          c->left,          c->pair,
-                            c->state,          c->flags,          c->hints,          c->free,          c->margins,
-                            c->rows,           c->user,           c->kept,           c->more_of,       c->order,
-                            c->next_order,     c->work,           c->asked,          c->sensors_asked, c->marked,
-                            c->parted,         c->ground_asked,   c->touching,       c->sensors,       c->bits,
-                            c->ground_margins, c->began,          c->ended,          c->room,          c->more.rows,
-                            c->more.kept,      c->next_more.rows, c->next_more.kept, c->ground.rows,   c->ground.kept};
+    void *const memory[] = {c->entries,    c->ends,           c->known,          c->left,           c->a,
+                            c->b,          c->state,          c->flags,          c->hints,          c->free,
+                            c->margins,    c->rows,           c->user,           c->kept,           c->more_of,
+                            c->order,      c->next_order,     c->work,           c->asked,          c->sensors_asked,
+                            c->marked,     c->parted,         c->ground_asked,   c->touching,       c->sensors,
+                            c->bits,       c->ground_margins, c->began,          c->ended,          c->room,
+                            c->more.rows,  c->more.kept,      c->next_more.rows, c->next_more.kept, c->ground.rows,
+                            c->ground.kept};
     for (size_t k = 0; k < COUNT_OF(memory); k++)
         release(c, memory[k]);
 }

@@ -31,13 +31,13 @@ static void clear_row(narc_contacts *c, uint32_t slot) {
 
 static void follow(const narc_contact_step *s, uint32_t slot) {
     narc_contacts *const c = s->contacts;
-    const narc_slot_pair pair = c->pair[slot];
+    const uint32_t a = c->a[slot], b = c->b[slot];
     const narc_more_rows more = c->more_of[slot];
     if (!(c->state[slot] & NARC_TOUCHING))
         return;
-    narc_follow_row(s, pair.a, pair.b, &c->kept[slot], narc_row_at(c, c->rows, slot));
+    narc_follow_row(s, a, b, &c->kept[slot], narc_row_at(c, c->rows, slot));
     for (uint32_t i = more.first; i < more.first + more.count; i++)
-        narc_follow_row(s, pair.a, pair.b, &c->more.kept[i], narc_row_at(c, c->more.rows, i));
+        narc_follow_row(s, a, b, &c->more.kept[i], narc_row_at(c, c->more.rows, i));
     narc_mark_slot(c, slot, NARC_FOLLOWED);
 }
 
@@ -66,7 +66,7 @@ static void do_work(const narc_contact_step *s) {
         asked_count += (what == NARC_ASK) & !(now & NARC_SLOT_ENTRY);
         known_count += (what == NARC_ASK) & ((now & NARC_SLOT_ENTRY) != 0);
         if (margins && what == NARC_ASK)
-            c->margins[slot] = narc_find_margin(s, c->pair[slot].a, c->pair[slot].b);
+            c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
         if (what == NARC_APART && state[slot] & NARC_TOUCHING)
             clear_row(c, slot);
         else if (what == NARC_FOLLOW)
@@ -129,15 +129,15 @@ static void make_lists(const narc_contact_step *s) {
         const uint32_t slot = order[k];
         const unsigned marks = all_marks[k];
         const bool touches = state[slot] & NARC_TOUCHING, sensor = marks & NARC_SENSOR;
-        const bool tested = !filtered || narc_is_tested(s, c->pair[slot].a, c->pair[slot].b);
+        const bool tested = !filtered || narc_is_tested(s, c->a[slot], c->b[slot]);
         touching[touching_count] = sensors[sensor_count] = slot; /* as chance has it: without a branch */
         touching_count += touches & !sensor & tested;
         sensor_count += touches & sensor;
         if (!(flags[slot] & NARC_SLOT_CROSSED))
             continue;
         flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
-        const narc_slot_pair pair = c->pair[slot];
-        const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0, 0, id_of(s, pair.a), id_of(s, pair.b)};
+        const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
+                                        0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
         if (touches)
             c->began[r->began_count++] = event;
         else
@@ -220,8 +220,7 @@ static narc_status carry_out(const narc_contact_step *s) {
         c->state[c->marked[k]] &= NARC_TOUCHING;
     c->marked_count = 0;
     narc_take_slots(c, s->list);
-    const narc_pairs pairs = {
-        .count = c->slot_count, .a = {&c->pair->a, sizeof *c->pair}, .b = {&c->pair->b, sizeof *c->pair}};
+    const narc_pairs pairs = narc_view_slots(c);
     do_work(s);
     narc_status status = narc_ask_contacts(s, &pairs);
     if (status == NARC_OK)

@@ -199,8 +199,8 @@ INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_
 
 /* The deciding formula, for pairs that more than two edges may answer (box_walk.c): the largest gap, with a normal of unit
  * length, and the numbers of the corners in place of records. */
-void NARC_NAMED(walk_boxes)(const struct box_pair *pair, struct gap *out_best);
-void NARC_NAMED(walk_capsules)(const struct box_pair *pair, struct gap *out_best);
+void NARC_NAMED(walk_boxes)(const struct box_pair *given, struct gap *out_best);
+void NARC_NAMED(walk_capsules)(const struct box_pair *given, struct gap *out_best);
 
 /* How the boxes of a pair touch, in the lanes `open`. */
 INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {

@@ -246,8 +246,8 @@ static void check_pairs(const struct world *w, const narc_step *step, const narc
     assert_true(r->count < PAIRS);
     for (size_t k = 0; k < r->count; k++) {
         const uint32_t slot = r->order[k];
-        pair_a[k] = r->pairs.a.base[2 * slot];
-        pair_b[k] = r->pairs.b.base[2 * slot];
+        pair_a[k] = r->pairs.a.base[slot];
+        pair_b[k] = r->pairs.b.base[slot];
         assert_true(pair_a[k] < pair_b[k]);
         assert_true(k == 0 || pair_a[k - 1] < pair_a[k] || (pair_a[k - 1] == pair_a[k] && pair_b[k - 1] < pair_b[k]));
         at += at < found && near_a[at] == pair_a[k] && near_b[at] == pair_b[k];

@@ -194,13 +194,14 @@ TEST(test_forgets) {
     world w = create_slope(0.2);
     world_body *circle = add_circle(&w, 0.5, 0, 0.5f);
     step_for(&w, 0.5);
-    assert_true(w.contacts[0].points[0].normal_impulse > 0 && w.contacts[0].rolling_impulse != 0);
+    assert_true(world_contact_of(&w, 0)->points[0].normal_impulse > 0 && world_contact_of(&w, 0)->rolling_impulse != 0);
     circle->position.y += 0.03f;
     circle->velocity = (vec){0, 0};
     step_for(&w, 1.0 / 60);
-    assert_int_equal(w.list->pairs.count, 1);
-    assert_int_equal(w.contacts[0].point_count, 0);
-    assert_true(w.contacts[0].points[0].normal_impulse == 0 && w.contacts[0].rolling_impulse == 0);
+    assert_int_equal(w.result->count, 1);
+    assert_int_equal(world_contact_of(&w, 0)->point_count, 0);
+    assert_true(world_contact_of(&w, 0)->points[0].normal_impulse == 0 &&
+                world_contact_of(&w, 0)->rolling_impulse == 0);
     world_destroy(&w);
 }
 
