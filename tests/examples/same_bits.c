@@ -29,8 +29,7 @@ static uint64_t run_scene(const char *name, float margin, const char *isa, unsig
         }
     }
     hash ^= world_hash(&r.world);
-    print_message("%s, %s, %u threads: %zu pairs, %016" PRIx64 "\n", name, isa, threads, r.world.result->count,
-                  hash);
+    print_message("%s, %s, %u threads: %zu pairs, %016" PRIx64 "\n", name, isa, threads, r.world.result->count, hash);
     /* Enough for two threads, of chunks of 512. */
     assert_true(margin < 0.1f || (r.world.result->count > 512 && r.world.result->asked_count > 512));
     end_run(&r);
