@@ -174,7 +174,7 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Does one of both move? */
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-/* Do two bodies have a chain's piece between them? */
+/* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);
 
 /* ------------------------------------------------------------------------------------------------ ground.c */

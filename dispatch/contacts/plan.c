@@ -4,6 +4,7 @@
  */
 #include "column.h"
 #include "contacts.h"
+#include "narc_chains.h"
 #include "store.h"
 
 #include <math.h>
@@ -24,7 +25,10 @@ static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t b
 }
 
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    return s->has_ground && (narc_is_piece(header_of(s, a)) || narc_is_piece(header_of(s, b)));
+    if (!s->has_ground)
+        return false;
+    return (s->step->run.base && narc_index_at(s->step->run, b) != NARC_NO_RUN) || narc_is_piece(header_of(s, a)) ||
+           narc_is_piece(header_of(s, b));
 }
 
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b) {

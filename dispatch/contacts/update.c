@@ -247,7 +247,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     narc_status status = check_step(contacts, shapes, step, out_result, error);
     if (status != NARC_OK)
         return status;
-    narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0};
+    narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0 || step->run.base};
     contacts->again = is_asked_differently(contacts, step);
     status = prepare(&s);
     if (status != NARC_OK) {
