@@ -2,6 +2,18 @@
  *
  * kept.inl - what is kept of pairs, and their bodies, without their shapes.
  */
+#ifndef NARC_SAT_KEPT_INL
+#define NARC_SAT_KEPT_INL
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/bodies.inl"
+#include "base/call.inl"
+#include "base/pair_setup.inl"
+#include "column.h"
+#include "simd/simd.h"
 
 /* The items of an array for the pairs in a vector, `words` of four bytes each. `in_line`: they follow each other. */
 INLINE void load_items(const void *items, int words, const int32_t *number, bool in_line, vf *word) {
@@ -39,3 +51,5 @@ INLINE void load_bodies_of(const struct sources *given, size_t first, int count,
         out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
     }
 }
+
+#endif
