@@ -18,7 +18,7 @@ struct group {
 
 #define QUERIES "overlap contact hinted manifold"
 #define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
-#define STEPS   "boxes pairs match step kept"
+#define STEPS   "boxes pairs match step kept contacts-stay"
 #define STACKS  "pyramid pyramid-templates lattice lattice-templates"
 #define PARTS                                                                                                          \
     "BEST/64pairs BEST/256pairs BEST/1024pairs BEST/4096pairs BEST/16384pairs BEST/65536pairs BEST/262144pairs"
@@ -43,7 +43,7 @@ static const struct group groups[] = {
     {"overlap", "n8", "pile-1000000", PARTS},
     {"overlap", "n8", "pile-1000000", PARTS_2},
     {"step", "n8", "pile-2000 pile", "box2d chipmunk"},
-    {"update", "n8", "pile-10000", "BEST/1of1 BEST/1of20 BEST/1of100 BEST/1of0"},
+    {"update stay", "n8", "pile-10000", "BEST/1of1 BEST/1of20 BEST/1of100 BEST/1of0"},
     {"overlap contact manifold", "squares", STACKS, "BEST"},
     {"contact", "squares", STACKS, "box2d"},
     {"overlap contact", "n4 n6 n8 n12 n16 kinds general capsules", "mixed", "EACH"},

@@ -6,6 +6,7 @@
 #define NARC_BENCH_SCENE_H
 
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 #include "narc_scene.h"
 #include "shapes.h"
 

@@ -17,6 +17,7 @@ enum step {
     STEP_MATCH, /* pairs of one frame with those of the other, and hints carried over */
     STEP_WHOLE, /* all of these, and manifolds; or a peer's */
     STEP_KEPT,  /* pairs that are updated, and kept, and manifolds */
+    STEP_STAY,  /* narc_update_contacts() */
 };
 
 /* What there is of each frame. */
@@ -33,6 +34,7 @@ struct steps {
     size_t runs, capacity, manifold_count;
     narc_broad_phase *broad;
     const narc_pair_list *list; /* STEP_KEPT: that of the first frame, which serves both */
+    narc_contacts *contacts;    /* STEP_STAY */
     uint32_t *match;
 };
 
@@ -87,6 +89,15 @@ static void run_kept(struct steps *s, const struct frame *frame) {
     find_frame_manifolds(s, frame, &s->list->pairs, s->frames[0].hints);
 }
 
+static void run_contacts(struct steps *s, const struct frame *frame) {
+    const narc_bodies bodies = bodies_of(frame->scene->bodies, frame->scene->body_count);
+    const narc_step step = {.bodies = &bodies, .skin = (float)(SKIN / 2), .workers = s->workers};
+    const narc_step_result *result;
+    narc_error error;
+    must(narc_update_contacts(s->contacts, frame->scene->shapes, &step, &result, &error), &error);
+    s->manifold_count = result->touching_count;
+}
+
 static void run(struct row *row) {
     struct steps *s = row->state;
     struct frame *frame = &s->frames[s->runs % 2], *last = &s->frames[1 - s->runs % 2];
@@ -109,6 +120,9 @@ static void run(struct row *row) {
         break;
     case STEP_KEPT:
         run_kept(s, frame);
+        break;
+    case STEP_STAY:
+        run_contacts(s, frame);
         break;
     }
 }
@@ -170,18 +184,26 @@ static void prepare(struct row *row) {
         update_pairs(s, &s->frames[0]);
         run_kept(s, &s->frames[1]);
         row->bench.wrong += count_wrong(s, s->frames[1].scene, &s->list->pairs);
+    } else if (row->question->what == STEP_STAY) { /* as many touch as just now */
+        const size_t touching = s->manifold_count;
+        must(narc_create_contacts(NULL, &s->contacts, NULL), NULL);
+        for (size_t k = 0; k < 8; k++)
+            run_contacts(s, &s->frames[k % 2]);
+        row->bench.wrong += s->manifold_count != touching;
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ kept lists */
 
-/* narc_update_pairs() of a pile in which one body of so many leaves its kept box in each step, another one in the next;
+/* narc_update_pairs(), or narc_update_contacts(), of a pile in which one body of so many leaves its kept box in each step, another one in the next;
  * 1: all of them, 0: none. */
 struct rest {
     size_t runs;
     struct body *bodies;
     narc_broad_phase *broad;
-    const narc_pair_list *list;
+    narc_contacts *contacts; /* instead, with the bodies that have moved listed */
+    uint32_t *moved;
+    bool kept;
 };
 
 /* There and back, farther than the skin. */
@@ -191,10 +213,21 @@ static void run_rest(struct row *row) {
     const size_t count = row->scene->body_count, one_of = row->one_of, runs = rest->runs++;
     const narc_bodies bodies = bodies_of(rest->bodies, count);
     const narc_pair_options options = {.skin = skin};
+    const narc_pair_list *list;
+    const narc_step_result *result;
+    narc_step step = {.bodies = &bodies, .skin = skin, .moved = NARC_ARRAY(rest->moved)};
     narc_error error;
-    for (size_t k = one_of > 0 ? runs % one_of : count; k < count; k += one_of)
+    for (size_t k = one_of > 0 ? runs % one_of : count; k < count; k += one_of) {
         rest->bodies[k].x += runs / one_of % 2 == 0 ? 1.5f * skin : -1.5f * skin;
-    must(narc_update_pairs(rest->broad, row->scene->shapes, &bodies, &options, &rest->list, &error), &error);
+        rest->moved[step.moved_count++] = (uint32_t)k;
+    }
+    if (rest->contacts) {
+        must(narc_update_contacts(rest->contacts, row->scene->shapes, &step, &result, &error), &error);
+        rest->kept = result->asked_count == 0;
+    } else {
+        must(narc_update_pairs(rest->broad, row->scene->shapes, &bodies, &options, &list, &error), &error);
+        rest->kept = list->kept;
+    }
 }
 
 static void prepare_rest(struct row *row) {
@@ -202,11 +235,14 @@ static void prepare_rest(struct row *row) {
     const struct scene *scene = row->scene;
     rest->bodies = allocate(scene->body_count, sizeof *rest->bodies);
     memcpy(rest->bodies, scene->bodies, scene->body_count * sizeof *rest->bodies);
+    rest->moved = allocate(scene->body_count, sizeof *rest->moved);
     must(narc_create_broad_phase(NULL, &rest->broad), NULL);
+    if (row->question->what == STEP_STAY)
+        must(narc_create_contacts(NULL, &rest->contacts, NULL), NULL);
     row->bench.count = scene->pair_count;
     for (int step = 0; step < 10; step++)
         run_rest(row);
-    row->bench.wrong = rest->list->kept != (row->one_of == 0);
+    row->bench.wrong = rest->kept != (row->one_of == 0);
 }
 
 const struct question step_questions[] = {{"boxes", prepare, run, STEP_BOXES, false},
@@ -214,5 +250,7 @@ const struct question step_questions[] = {{"boxes", prepare, run, STEP_BOXES, fa
                                           {"match", prepare, run, STEP_MATCH, false},
                                           {"step", prepare, run, STEP_WHOLE, false},
                                           {"kept", prepare, run, STEP_KEPT, false},
+                                          {"contacts-stay", prepare, run, STEP_STAY, false},
                                           {"update", prepare_rest, run_rest, 0, false},
+                                          {"stay", prepare_rest, run_rest, STEP_STAY, false},
                                           {.name = NULL}};

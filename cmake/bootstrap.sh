@@ -460,7 +460,9 @@ gate() {
     build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
     test_app dem
-    ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' || fail "tests failed in build/ci"
+    # Of what is random two fifths of the trials: all of them take minutes, and are for who changes a kernel.
+    NARC_TEST_TRIALS=0.4 ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
+        fail "tests failed in build/ci"
     # What these libraries do for the kernels is the same on each instruction set: plain C is built.
     cmake --preset bare -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF ||
         fail "configuring build/bare failed"

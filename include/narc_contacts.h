@@ -65,21 +65,23 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *   skin                at least 0: bodies may move by this until pairs are looked for again. A larger one makes that
  *                       rarer, and more pairs
  *   recycling           at least 0, a length. 0: rows are, to the last bit, what narc_find_manifolds() (or contacts)
- *                       says of these bodies. Above 0: a row with an edge, or of ground, is kept while its points have
+ *                       says of these bodies; those of pairs of which neither moves (narc_pair_filter), what it said
+ *                       when one did. Above 0: a row with an edge, or of ground, is kept while its points have
  *                       moved less than that against each other since it was asked for, turns counted by the smaller
- *                       body's largest radius: features and the normal in A stay, points and separations follow the
+ *                       body's diameter: features and the normal in A stay, points and separations follow the
  *                       bodies. So a separation is off by less than `recycling`, and a contact that should have come
  *                       at another place of the two may come late by as much
  *   motion_x, motion_y  world axes: what each body moves in this step; pairs that come close on the way are there, too
  *   reach               at least 0: how far beyond that a body may reach, such as by rotation
  *   ahead               at least 0: how much further than the margin contacts of a body are told, a fast one's; of two
- *                       bodies the sum. Motion and reach must hold it
+ *                       bodies the sum. Motion and reach must hold it. A body with a broken one is in no pair
  *   id                  what a body is known by, whatever its number; no two have the same. Left out: its number
  *   run                 of bodies that are entries of chains, their entry's run, and NARC_NO_RUN for all others: what
  *                       several entries tell of one body is merged, as narc_merge_manifolds() does
  *   filter              which bodies may form a pair; which are static, asleep, sensors
- *   moved               the numbers of all bodies that may have another pose, shape, filter, id, motion, reach or ahead
- *                       than in the last step, each once, `moved_count` of them; others are not looked at. Left out
+ *   moved               the numbers of all bodies that may have another pose, scale, shape, filter, id, run, motion, reach
+ *                       or ahead than in the last step that did not fail, each once, `moved_count` of them; others are
+ *                       not looked at. Left out
  *                       ({0}, base and stride): all may. An empty list is one, as NARC_ARRAY() makes it
  *   workers             threads to use; NULL: the calling one
  * Columns have one item for each body. */
@@ -116,11 +118,11 @@ typedef struct narc_touch_event {
  *   NARC_ASKED     the row is new in this step: it was asked for
  *   NARC_FOLLOWED  the row was kept, and follows its bodies (narc_step.recycling)
  *   NARC_TURNED    new bytes are wanted: the bodies stand in the other order (a is b) since the last step, and what the
- *                  caller keeps is that of the pair (b, a)
+ *                  caller keeps is that of the pair (b, a). Its row is asked for, even if neither moves
  * A row with neither ASKED nor FOLLOWED has the bytes of the last step. */
 enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_TURNED = 16 };
 
-/* After a step; all arrays belong to the contacts, and are valid until their next step.
+/* After a step; all arrays belong to the contacts, and are valid until the next call.
  *   pairs         by slot: its bodies a < b, plain arrays. Only slots that are listed in `order` are pairs
  *   order         the slots of all pairs, in the order of a and then b
  *   state         by slot, see above
@@ -129,7 +131,8 @@ enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_
  *   user          by slot: user_size bytes each, the caller's to write
  *   touching      slots with a row of which one body moves (narc_pair_filter): what a solver goes through
  *   sensors       slots of sensors' pairs whose bodies overlap
- *   began, ended  since the last step, sensors among them. What falls asleep ends nothing
+ *   began, ended  since the last step, sensors among them; of those that ended the parted ones first. What falls asleep
+ *                 ends nothing
  *   skipped       how many bodies are in no pair because they are broken (narc_validate_bodies() says which)
  *   asked_count   how many pairs were asked */
 typedef struct narc_step_result {
@@ -151,7 +154,8 @@ typedef struct narc_step_result {
 
 /* A step: boxes, pairs, rows, events. For the same calls the same bits, for any workers and on every instruction set.
  * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE, NARC_ERROR_INDEX, NARC_ERROR_COUNT (2^32 pairs), NARC_ERROR_MEMORY,
- * those for NARC_ISA. On an error the last step's result is as it was, and the next call goes on from there. */
+ * those for NARC_ISA. On an error the last step's result is as it was, though its arrays may have moved, and the next call
+ * goes on from there. */
 NARC_API narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *shapes, const narc_step *step,
                                           const narc_step_result **out_result, narc_error *error);
 

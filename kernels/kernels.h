@@ -88,6 +88,20 @@ typedef struct narc_entry_ends {
     float start_a[2], end_a[2], start_b[2], end_b[2];
 } narc_entry_ends;
 
+/* What is kept of a row, so that it follows its bodies (kernels/sat/recycle.c): all in the frames of both bodies, without
+ * their scale. Where an arc touches in one point the arc's centre is kept, so that the body may roll.
+ *   rotation   of B in A's frame, as it was
+ *   normal     in A's frame
+ *   point      x, y on A, then on B; of the second point anything where there is none
+ *   radius_a   what lies between these and the surface of A; and of B
+ *   apart      the distance of the first point's two places, as it was
+ *   lever      the smaller body's diameter */
+typedef struct narc_kept_row {
+    float rotation[2], normal[2];
+    float point[2][4];
+    float radius_a, radius_b, apart, lever;
+} narc_kept_row;
+
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
     return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;

@@ -61,9 +61,10 @@ typedef struct narc_pose_bits {
     uint64_t word[4];
 } narc_pose_bits;
 
-/* All bits of what a body does in a step: motion, reach, how far ahead its contacts are told; 0 where there is no column. */
+/* All bits of what a body does in a step: motion, reach, how far ahead its contacts are told, its run; 0 where there is no
+ * column. */
 typedef struct narc_motion_bits {
-    uint32_t word[4];
+    uint32_t word[5];
 } narc_motion_bits;
 
 /* What is another one than it was, or another body's: the pose; scale or shape, too. */

@@ -28,7 +28,8 @@ typedef struct box_job {
     const narc_kernel_table *kernels;
     const narc_known_poses *known;
     narc_float_column reach, ahead; /* known, too */
-    narc_index_column moved;        /* the bodies, where they are listed */
+    narc_index_column run;
+    narc_index_column moved; /* the bodies, where they are listed */
     size_t first;
     narc_box *out_boxes;
     atomic_size_t skipped;
@@ -108,6 +109,8 @@ static narc_motion_bits get_motion_bits(const box_job *job, size_t k) {
     for (int i = 0; i < 4; i++)
         if (column[i].base)
             bits.word[i] = (uint32_t)bits_at(column[i].base, column[i].stride, k);
+    if (job->run.base)
+        bits.word[4] = narc_index_at(job->run, k);
     return bits;
 }
 
@@ -137,7 +140,7 @@ static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t 
         }
         if (known.has_motions) {
             const narc_motion_bits motion = get_motion_bits(job, k);
-            same_shape = same_shape && motion.word[3] == known.motions[k].word[3];
+            same_shape = same_shape && memcmp(&motion.word[3], &known.motions[k].word[3], 2 * sizeof(uint32_t)) == 0;
             same_motion = same_motion && memcmp(&motion, &known.motions[k], sizeof motion) == 0;
             known.motions[k] = motion;
         }
@@ -165,8 +168,10 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
     size_t skipped = 0;
     if (count > 0) /* mostly nothing moves */
         skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
-    for (size_t i = 0; i < count && job->reach.base; i++)
-        job->out_boxes[list[i]] = add_room(job->out_boxes[list[i]], 0, narc_float_at(job->reach, list[i]));
+    for (size_t i = 0; i < count && (job->reach.base || job->ahead.base); i++) {
+        const float ahead = narc_float_or(job->ahead, list[i], 0), reach = narc_float_or(job->reach, list[i], 0);
+        job->out_boxes[list[i]] = add_room(job->out_boxes[list[i]], 0, ahead >= 0 && ahead <= FLT_MAX ? reach : -1);
+    }
     if (skipped > 0)
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
@@ -215,7 +220,8 @@ void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_c
 
 void narc_forget_poses(narc_broad_phase *broad) {
     broad->known.count = 0;
-    memset(broad->known.moved, 1, broad->body_capacity);
+    if (broad->body_capacity > 0)
+        memset(broad->known.moved, 1, broad->body_capacity);
 }
 
 /* Are the listed bodies, and their shapes, there? */
@@ -235,7 +241,8 @@ static narc_status check_moved(const narc_shapes *shapes, const narc_bodies *bod
 }
 
 static bool has_motions(const narc_pair_options *options, const narc_moved_bodies *moved) {
-    return options->motion_x.base || options->motion_y.base || options->reach.base || (moved && moved->ahead.base);
+    return options->motion_x.base || options->motion_y.base || options->reach.base ||
+           (moved && (moved->ahead.base || moved->run.base));
 }
 
 bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
@@ -261,6 +268,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     box_job job = {.known = known,
                    .reach = options->reach,
                    .ahead = moved ? moved->ahead : (narc_float_column){NULL, 0},
+                   .run = moved ? moved->run : (narc_index_column){NULL, 0},
                    .out_boxes = broad->boxes_now};
     size_t count = listed ? moved->count : 0;
     narc_status status = NARC_OK;

@@ -92,7 +92,8 @@ typedef struct narc_moved_bodies {
     narc_index_column body;
     size_t count;
     bool listed;             /* else all may be others */
-    narc_float_column ahead; /* narc_step.ahead: who has another is reshaped */
+    narc_float_column ahead; /* of narc_step: who has another is reshaped */
+    narc_index_column run;   /* the same */
 } narc_moved_bodies;
 
 /* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, and without a look at them if they
@@ -110,8 +111,9 @@ narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *
                                     const narc_pair_options *options, const narc_moved_bodies *given,
                                     const narc_pair_list **out_list, narc_error *error);
 
-/* Takes the list before the last one back, if it is still whole: what follows the last one failed. */
-void narc_take_back_pairs(narc_broad_phase *broad);
+/* What follows, or came before, the last call failed: the next one makes a list from nothing that is kept, and compares it
+ * with the last list, or, if that was `made` in the last call, with the one before. */
+void narc_take_back_pairs(narc_broad_phase *broad, bool made);
 
 /* Knows no pose: all bodies may have moved. */
 void narc_forget_poses(narc_broad_phase *broad);

@@ -456,10 +456,11 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     return narc_update_moved_pairs(broad, shapes, bodies, options, NULL, out_list, error);
 }
 
-void narc_take_back_pairs(narc_broad_phase *broad) {
-    broad->last = 1 - broad->last;
+void narc_take_back_pairs(narc_broad_phase *broad, bool made) {
+    broad->last = made ? 1 - broad->last : broad->last;
     broad->is_current = false;
-    memset(broad->known.changed, NARC_ALL_CHANGED, broad->body_capacity);
+    if (broad->body_capacity > 0)
+        memset(broad->known.changed, NARC_ALL_CHANGED, broad->body_capacity);
 }
 
 narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,

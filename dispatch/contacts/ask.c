@@ -8,9 +8,6 @@
 #include "entries.h"
 #include "narc.h"
 
-/* Pairs that a thread takes at a time: some 10 microseconds of work. */
-enum { PART = 1024 };
-
 /* If more than one in FEW of the entries decided nothing, bodies move too far for them: none is made for a while, and then
  * for twice as long each time, up to MOST_STEPS. */
 enum { FEW = 5, MOST_STEPS = 16 };
@@ -65,9 +62,9 @@ static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) 
     narc_status status = NARC_OK;
     known_job job = {c, batch, narc_kernels(&status, NULL)};
     const size_t before = c->asked_count;
-    narc_run_ranges(s->step->workers, c->known_count, PART, follow_part, &job);
-    for (size_t first = 0; first < c->known_count; first += PART)
-        for (size_t k = first; k < first + PART && k < c->known_count && c->left[k] != UINT32_MAX; k++)
+    narc_run_ranges(s->step->workers, c->known_count, NARC_SLOT_PART, follow_part, &job);
+    for (size_t first = 0; first < c->known_count; first += NARC_SLOT_PART)
+        for (size_t k = first; k < first + NARC_SLOT_PART && k < c->known_count && c->left[k] != UINT32_MAX; k++)
             c->asked[c->asked_count++] = c->left[k];
     return c->asked_count - before;
 }
@@ -161,5 +158,6 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     mark_answered(c, c->asked, plain_count);
     if (s->step->recycling > 0)
         keep_rows(s);
+    c->asked_count = plain_count; /* the others are among the known ones */
     return NARC_OK;
 }

@@ -16,17 +16,6 @@
 #include "kernels.h"
 #include "narc_contacts.h"
 
-/* What is kept of a row to let it follow its bodies: in the frames of both, without their scale. Where an arc touches in one
- * point it is the arc's centre that is kept, so that a body may roll. */
-typedef struct narc_kept_row {
-    float cosine, sine; /* of B in the frame of A, as it was */
-    float normal_x, normal_y;
-    float a_x[2], a_y[2], b_x[2], b_y[2];
-    float radius_a, radius_b; /* between what is kept and the surfaces */
-    float apart;              /* the first point's separation as it was */
-    float lever;              /* the smaller body's diameter; below 0: the row is not kept */
-} narc_kept_row;
-
 /* What one slot is, beside its state: bits. */
 enum {
     NARC_SLOT_STALE = 1,
@@ -46,6 +35,9 @@ typedef struct narc_more_rows {
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
  * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
 enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART, NARC_WHAT = 7 };
+
+/* Slots that a thread takes at a time: some 10 microseconds of work. */
+enum { NARC_SLOT_PART = 1024 };
 
 /* Besides: a body has another shape or scale, so that nothing that was kept of the pair counts. */
 enum { NARC_OTHER_SHAPE = 8 };
@@ -87,11 +79,13 @@ struct narc_contacts {
     uint32_t *order, *next_order;
     narc_pair_work *work;           /* what is to be done in this step, in the order of pairs */
     uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide */
+    uint32_t *candidates;           /* slots whose rows may follow */
     uint32_t *sensors_asked, *ground_asked, *touching, *sensors;
     float *ground_margins;
     uint64_t *bits;
     narc_touch_event *began, *ended;
-    size_t work_count, asked_count, known_count, sensor_count, ground_count, marked_count, parted_count, crossed_count;
+    size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, marked_count,
+        parted_count, crossed_count;
 
     unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
@@ -158,11 +152,13 @@ static inline void *narc_row_at(const narc_contacts *c, void *rows, size_t k) { 
 /* Keeps a row with `count` points of two bodies. */
 void narc_keep_row(const narc_contact_step *s, uint32_t a, uint32_t b, const void *row, narc_kept_row *kept);
 
-/* Have the points of a row moved so little that it may follow? */
-bool narc_may_follow(const narc_contact_step *s, uint32_t a, uint32_t b, const narc_kept_row *kept);
+/* May `count` rows of pairs `pair` of the list follow their bodies? Row i is that of kept[item[i]]. */
+bool narc_may_follow(const narc_contact_step *s, const uint32_t *pair, const uint32_t *item, size_t count,
+                     const narc_kept_row *kept);
 
-/* Writes points, separations and the normal anew. */
-void narc_follow_row(const narc_contact_step *s, uint32_t a, uint32_t b, const narc_kept_row *kept, void *row);
+/* Lets the rows of slots that are listed in `candidates` follow, and all that they have in `more`; those that may not join
+ * `asked`. */
+narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs);
 
 /* ------------------------------------------------------------------------------------------------ plan.c */
 
@@ -178,7 +174,7 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Does one of both move? */
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-/* Do two bodies have a chain's piece between them? */
+/* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);
 
 /* ------------------------------------------------------------------------------------------------ ground.c */

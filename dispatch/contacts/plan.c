@@ -4,6 +4,7 @@
  */
 #include "column.h"
 #include "contacts.h"
+#include "narc_chains.h"
 #include "store.h"
 
 #include <math.h>
@@ -24,7 +25,10 @@ static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t b
 }
 
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    return s->has_ground && (narc_is_piece(header_of(s, a)) || narc_is_piece(header_of(s, b)));
+    if (!s->has_ground)
+        return false;
+    return (s->step->run.base && narc_index_at(s->step->run, b) != NARC_NO_RUN) || narc_is_piece(header_of(s, a)) ||
+           narc_is_piece(header_of(s, b));
 }
 
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b) {
@@ -107,24 +111,25 @@ static inline void plan_pair(const narc_contact_step *s, const pair_view *v, siz
     if (!stale && !changed)
         return;
     unsigned what = are_apart(v, a, b) ? NARC_APART : NARC_ASK; /* as chance has it: without a branch */
-    if (s->step->filter && !narc_is_tested(s, a, b))
-        what = NARC_REST;
+    if (s->step->filter && !narc_is_tested(s, a, b) && !(v->marks[k] & NARC_FLIPPED))
+        what = NARC_REST; /* one that is turned has the other bodies' row */
     else if (v->marks[k] & NARC_SENSOR)
         what = NARC_ASK_SENSOR;
     else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !(changed & NARC_RESHAPED) &&
-             v->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, a, b, &s->contacts->kept[slot]))
+             v->flags[slot] & NARC_SLOT_KEPT)
         what = NARC_FOLLOW;
     add_work(s->contacts, k, what | (changed & NARC_RESHAPED ? NARC_OTHER_SHAPE : 0));
 }
 
-/* May all rows of a pair of ground follow? A pair without one may, too. */
-static bool may_follow_ground(const narc_contact_step *s, uint32_t slot, uint32_t a, uint32_t b) {
+/* May all rows of pair k, of ground, follow? A pair without one may, too. */
+static bool may_follow_ground(const narc_contact_step *s, uint32_t k, uint32_t slot) {
     const narc_contacts *const c = s->contacts;
     const narc_more_rows more = c->more_of[slot];
-    bool may = !(c->state[slot] & NARC_TOUCHING) ||
-               (c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, a, b, &c->kept[slot]));
-    for (uint32_t i = 0; i < more.count; i++)
-        may = may && narc_may_follow(s, a, b, &c->more.kept[more.first + i]);
+    if (!(c->state[slot] & NARC_TOUCHING))
+        return true;
+    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, &k, &slot, 1, c->kept);
+    for (uint32_t i = more.first; may && i < more.first + more.count; i++)
+        may = narc_may_follow(s, &k, &i, 1, c->more.kept);
     return may;
 }
 
@@ -135,15 +140,21 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     bool changed = false, stale = false, apart = true, touches = false, follows = s->step->recycling > 0;
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
-        if (!narc_is_ground_pair(s, a, b) || v->marks[k] & NARC_SENSOR)
-            continue;
-        const bool old = is_stale(v, k, slot);
         const unsigned moved = v->changed[a] | v->changed[b];
+        if (!narc_is_ground_pair(s, a, b) || v->marks[k] & NARC_SENSOR) { /* it may have been */
+            const bool sensor = v->marks[k] & NARC_SENSOR;
+            const bool was_sensor = slot != UINT32_MAX && v->flags[slot] & NARC_SLOT_SENSOR;
+            const bool other = slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || sensor != was_sensor);
+            stale |= other;
+            changed |= other;
+            continue;
+        }
+        const bool old = is_stale(v, k, slot);
         stale |= old;
         changed |= old || moved;
         apart = apart && are_apart(v, a, b);
         touches |= slot != UINT32_MAX && c->state[slot] & NARC_TOUCHING;
-        follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, slot, a, b);
+        follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
     }
     const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end; k++)
@@ -183,6 +194,19 @@ static bool has_any_changed(const uint8_t *changed, size_t count) {
     return any;
 }
 
+/* Where a pair has parted, rows of the same body may have been merged with its row. */
+static void note_lost_ground(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    for (size_t i = 0; i < s->list->lost_count; i++) {
+        const size_t at = s->list->lost[i].pair;
+        const uint32_t a = c->a[c->order[at]];
+        for (size_t k = at; k > 0 && c->a[c->order[k - 1]] == a; k--)
+            c->flags[c->order[k - 1]] |= NARC_SLOT_STALE;
+        for (size_t k = at + 1; k < c->result.count && c->a[c->order[k]] == a; k++)
+            c->flags[c->order[k]] |= NARC_SLOT_STALE;
+    }
+}
+
 void narc_plan_step(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
@@ -194,6 +218,8 @@ void narc_plan_step(const narc_contact_step *s) {
     for (size_t k = 0; k < s->step->bodies->count; k++)
         if (v.changed[k] & NARC_RESHAPED)
             c->room[k] = find_room(s, (uint32_t)k);
+    if (s->has_ground && !s->list->kept)
+        note_lost_ground(s);
     if (!s->has_ground) {
         for (size_t k = 0; k < count;)
             if (kept && !(v.changed[v.a[k]] | v.changed[v.b[k]]))

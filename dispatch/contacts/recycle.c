@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * recycle.c - rows that are kept while their bodies have hardly moved against each other, and follow them: the same
- * features touch, the normal turns with A, and each point lies where the places of both bodies that touched are now.
+ * recycle.c - rows that are kept while their bodies have hardly moved against each other, and follow them: what is kept,
+ * and who asks the kernel (kernels/sat/recycle.c).
  */
 #include "column.h"
 #include "contacts.h"
+#include "dispatch.h"
 #include "store.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct vector {
     float x, y;
 } vector;
 
-static vector rotate(vector q, vector v) { return (vector){q.x * v.x - q.y * v.y, q.y * v.x + q.x * v.y}; }
 static vector unrotate(vector q, vector v) { return (vector){q.x * v.x + q.y * v.y, q.x * v.y - q.y * v.x}; }
 static vector add(vector a, float s, vector b) { return (vector){a.x + s * b.x, a.y + s * b.y}; }
-static float dot(vector a, vector b) { return a.x * b.x + a.y * b.y; }
 
 /* Two bodies: their rotations, of length 1, and B's position from A's. */
 typedef struct placed_pair {
@@ -68,75 +68,108 @@ static row_view view_row(const narc_contacts *c, const void *row) {
 
 void narc_keep_row(const narc_contact_step *s, uint32_t a, uint32_t b, const void *row, narc_kept_row *kept) {
     const row_view r = view_row(s->contacts, row);
-    kept->lever = -1;
     if (r.count == 0 || !(s->step->recycling > 0))
         return;
     const placed_pair pair = place_pair(s->step->bodies, a, b);
     const bool rolls = r.count == 1 && !(isinf(r.radius_a) && isinf(r.radius_b));
     const float diameter_a = find_diameter(s, a), diameter_b = find_diameter(s, b);
     const vector relative = unrotate(pair.a, pair.b), normal = unrotate(pair.a, r.normal);
-    kept->cosine = relative.x;
-    kept->sine = relative.y;
-    kept->normal_x = normal.x;
-    kept->normal_y = normal.y;
-    kept->radius_a = rolls && !isinf(r.radius_a) ? r.radius_a : 0;
-    kept->radius_b = rolls && !isinf(r.radius_b) ? r.radius_b : 0;
+    *kept = (narc_kept_row){.rotation = {relative.x, relative.y},
+                            .normal = {normal.x, normal.y},
+                            .radius_a = rolls && !isinf(r.radius_a) ? r.radius_a : 0,
+                            .radius_b = rolls && !isinf(r.radius_b) ? r.radius_b : 0,
+                            .lever = diameter_a < diameter_b ? diameter_a : diameter_b};
     for (unsigned i = 0; i < r.count; i++) {
         const float half = 0.5f * r.separation[i];
         const vector at_a = unrotate(pair.a, add(r.point[i], -half - kept->radius_a, r.normal));
-        const vector from_b = add(r.point[i], -1, pair.way),
-                     at_b = unrotate(pair.b, add(from_b, half + kept->radius_b, r.normal));
-        kept->a_x[i] = at_a.x;
-        kept->a_y[i] = at_a.y;
-        kept->b_x[i] = at_b.x;
-        kept->b_y[i] = at_b.y;
+        const vector from_b = add(r.point[i], -1, pair.way);
+        const vector at_b = unrotate(pair.b, add(from_b, half + kept->radius_b, r.normal));
+        memcpy(kept->point[i], (const float[]){at_a.x, at_a.y, at_b.x, at_b.y}, sizeof kept->point[i]);
     }
     kept->apart = r.separation[0] + kept->radius_a + kept->radius_b;
-    kept->lever = diameter_a < diameter_b ? diameter_a : diameter_b;
 }
 
-/* From A's kept place to B's, in world axes. */
-static vector find_span(const placed_pair *pair, const narc_kept_row *kept, unsigned i) {
-    const vector a = rotate(pair->a, (vector){kept->a_x[i], kept->a_y[i]});
-    return add(add(pair->way, 1, rotate(pair->b, (vector){kept->b_x[i], kept->b_y[i]})), -1, a);
-}
-
-bool narc_may_follow(const narc_contact_step *s, uint32_t a, uint32_t b, const narc_kept_row *kept) {
-    if (!(kept->lever >= 0))
-        return false;
-    const placed_pair pair = place_pair(s->step->bodies, a, b);
-    const vector relative = unrotate(pair.a, pair.b), normal = {kept->normal_x, kept->normal_y};
-    const vector moved = add(unrotate(pair.a, find_span(&pair, kept, 0)), -kept->apart, normal);
-    const vector turned = {relative.x - kept->cosine, relative.y - kept->sine};
-    return sqrtf(dot(moved, moved)) + kept->lever * sqrtf(dot(turned, turned)) < s->step->recycling;
-}
-
-void narc_follow_row(const narc_contact_step *s, uint32_t a, uint32_t b, const narc_kept_row *kept, void *row) {
-    const placed_pair pair = place_pair(s->step->bodies, a, b);
-    const vector normal = rotate(pair.a, (vector){kept->normal_x, kept->normal_y});
-    const unsigned count = view_row(s->contacts, row).count;
-    vector point[2] = {{0, 0}, {0, 0}};
-    float separation[2] = {0, 0};
-    for (unsigned i = 0; i < count; i++) {
-        separation[i] = dot(find_span(&pair, kept, i), normal) - kept->radius_a - kept->radius_b;
-        const vector at_a = rotate(pair.a, (vector){kept->a_x[i], kept->a_y[i]});
-        point[i] = add(at_a, kept->radius_a + 0.5f * separation[i], normal);
+bool narc_may_follow(const narc_contact_step *s, const uint32_t *pair, const uint32_t *item, size_t count,
+                     const narc_kept_row *kept) {
+    enum { SOME = 64 };
+    const narc_contacts *const c = s->contacts;
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k < count; k += SOME) {
+        uint32_t left[SOME];
+        const size_t n = count - k < SOME ? count - k : SOME;
+        const narc_query query = {.selection = {pair + k, sizeof *pair}, .selection_count = n};
+        const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+        narc_batch batch;
+        if (!kernels || narc_begin_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, NULL) != NARC_OK)
+            return false;
+        batch.row_size = c->row_size;
+        if (kernels->recycle(&batch, 0, n, item + k, kept, s->step->recycling, NULL, left) > 0)
+            return false;
     }
-    if (s->contacts->contact_rows) {
-        narc_contact *const r = row;
-        r->separation = separation[0];
-        r->normal_x = normal.x;
-        r->normal_y = normal.y;
-        r->point_x = point[0].x;
-        r->point_y = point[0].y;
+    return true;
+}
+
+typedef struct follow_job {
+    const narc_contact_step *step;
+    const narc_batch *batch;
+    const narc_kernel_table *kernels;
+} follow_job;
+
+/* Behind the pairs that are left of a part there is one that is none. */
+static void follow_part(void *argument, size_t part, size_t first, size_t end) {
+    const follow_job *const job = argument;
+    const narc_contacts *const c = job->step->contacts;
+    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_size};
+    (void)part;
+    const size_t left = job->kernels->recycle(job->batch, first, end - first, NULL, c->kept, job->step->step->recycling,
+                                              &rows, c->left + first);
+    if (left < end - first)
+        c->left[first + left] = UINT32_MAX;
+}
+
+/* The further rows of a pair of ground, which may follow, as it was found out before. */
+static void follow_more(const narc_contact_step *s, const narc_pairs *pairs, const narc_kernel_table *kernels,
+                        uint32_t slot) {
+    narc_contacts *const c = s->contacts;
+    const narc_rows rows = {.base = c->more.rows, .stride = (ptrdiff_t)c->row_size};
+    const narc_more_rows more = c->more_of[slot];
+    const narc_query query = {.selection = {&slot, 0}, .selection_count = 1};
+    narc_batch batch;
+    if (narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, NULL) != NARC_OK)
         return;
+    batch.row_size = c->row_size;
+    for (uint32_t i = more.first; i < more.first + more.count; i++) {
+        uint32_t left;
+        kernels->recycle(&batch, 0, 1, &i, c->more.kept, s->step->recycling, &rows, &left);
     }
-    narc_manifold *const r = row;
-    r->normal_x = normal.x;
-    r->normal_y = normal.y;
-    for (unsigned i = 0; i < count; i++) {
-        r->point[i].x = point[i].x;
-        r->point[i].y = point[i].y;
-        r->point[i].separation = separation[i];
+}
+
+narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs) {
+    narc_contacts *const c = s->contacts;
+    const size_t count = c->candidate_count;
+    const narc_query query = {.selection = {c->candidates, sizeof *c->candidates}, .selection_count = count};
+    narc_batch batch;
+    if (count == 0)
+        return NARC_OK;
+    narc_status status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
+    follow_job job = {s, &batch, narc_kernels(&status, s->error)};
+    if (status != NARC_OK)
+        return status;
+    batch.row_size = c->row_size;
+    narc_run_ranges(s->step->workers, count, NARC_SLOT_PART, follow_part, &job);
+    for (size_t first = 0; first < count; first += NARC_SLOT_PART) {
+        const uint32_t *left = c->left + first, *const end = c->left + count;
+        for (size_t k = first; k < first + NARC_SLOT_PART && k < count; k++) {
+            const uint32_t slot = c->candidates[k];
+            if (left < end && *left == slot) {
+                c->asked[c->asked_count++] = slot;
+                left++;
+                continue;
+            }
+            narc_mark_slot(c, slot, NARC_FOLLOWED);
+            if (c->more_of[slot].count > 0)
+                follow_more(s, pairs, job.kernels, slot);
+        }
     }
+    return NARC_OK;
 }

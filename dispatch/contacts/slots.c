@@ -13,6 +13,8 @@
 /* A quarter more than is needed, so that a scene that grows slowly does not allocate at every step. */
 static size_t with_room(size_t needed) { return needed + (needed / 4 < SIZE_MAX - needed ? needed / 4 : 0) + 256; }
 
+enum { MOST_ARRAYS = 16 };
+
 /* One array of several that grow together. */
 typedef struct array {
     void **memory;
@@ -22,8 +24,7 @@ typedef struct array {
 /* Makes all arrays longer, what is in them stays: all of them or none. */
 static narc_status grow(const narc_allocator *allocator, const array *arrays, size_t array_count, size_t *capacity,
                         size_t needed) {
-    enum { MOST = 16 };
-    void *fresh[MOST];
+    void *fresh[MOST_ARRAYS];
     size_t made = 0;
     if (needed <= *capacity)
         return NARC_OK;
@@ -84,6 +85,7 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->work, sizeof *c->work),
                               ARRAY(c->asked, sizeof *c->asked),
                               ARRAY(c->known, sizeof *c->known),
+                              ARRAY(c->candidates, sizeof *c->candidates),
                               ARRAY(c->left, sizeof *c->left),
                               ARRAY(c->sensors_asked, sizeof *c->sensors_asked),
                               ARRAY(c->ground_asked, sizeof *c->ground_asked),
@@ -92,8 +94,10 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->sensors, sizeof *c->sensors),
                               ARRAY(c->bits, 1),
                               ARRAY(c->began, sizeof *c->began)};
+    _Static_assert(COUNT_OF(of_slots) <= MOST_ARRAYS && COUNT_OF(of_pairs) <= MOST_ARRAYS, "too many");
     const array of_bodies[] = {ARRAY(c->room, sizeof *c->room)};
-    narc_status status = grow(&c->allocator, of_slots, COUNT_OF(of_slots), &c->slot_capacity, slots);
+    /* One more than slots: what is listed without a branch may write behind the last one. */
+    narc_status status = grow(&c->allocator, of_slots, COUNT_OF(of_slots), &c->slot_capacity, slots + 1);
     if (status == NARC_OK)
         status = grow(&c->allocator, of_pairs, COUNT_OF(of_pairs), &c->order_capacity, pairs);
     if (status == NARC_OK)
@@ -163,14 +167,14 @@ static void release(narc_contacts *c, void *memory) {
 }
 
 void narc_free_slots(narc_contacts *c) {
-    void *const memory[] = {c->entries,    c->ends,           c->known,          c->left,           c->a,
-                            c->b,          c->state,          c->flags,          c->hints,          c->free,
-                            c->margins,    c->rows,           c->user,           c->kept,           c->more_of,
-                            c->order,      c->next_order,     c->work,           c->asked,          c->sensors_asked,
-                            c->marked,     c->parted,         c->ground_asked,   c->touching,       c->sensors,
-                            c->bits,       c->ground_margins, c->began,          c->ended,          c->room,
-                            c->more.rows,  c->more.kept,      c->next_more.rows, c->next_more.kept, c->ground.rows,
-                            c->ground.kept};
+    void *const memory[] = {
+        c->candidates, c->entries,   c->ends,          c->known,          c->left,           c->a,
+        c->b,          c->state,     c->flags,         c->hints,          c->free,           c->margins,
+        c->rows,       c->user,      c->kept,          c->more_of,        c->order,          c->next_order,
+        c->work,       c->asked,     c->sensors_asked, c->marked,         c->parted,         c->ground_asked,
+        c->touching,   c->sensors,   c->bits,          c->ground_margins, c->began,          c->ended,
+        c->room,       c->more.rows, c->more.kept,     c->next_more.rows, c->next_more.kept, c->ground.rows,
+        c->ground.kept};
     for (size_t k = 0; k < COUNT_OF(memory); k++)
         release(c, memory[k]);
 }

@@ -29,18 +29,6 @@ static void clear_row(narc_contacts *c, uint32_t slot) {
     narc_set_touching(c, slot, false);
 }
 
-static void follow(const narc_contact_step *s, uint32_t slot) {
-    narc_contacts *const c = s->contacts;
-    const uint32_t a = c->a[slot], b = c->b[slot];
-    const narc_more_rows more = c->more_of[slot];
-    if (!(c->state[slot] & NARC_TOUCHING))
-        return;
-    narc_follow_row(s, a, b, &c->kept[slot], narc_row_at(c, c->rows, slot));
-    for (uint32_t i = more.first; i < more.first + more.count; i++)
-        narc_follow_row(s, a, b, &c->more.kept[i], narc_row_at(c, c->more.rows, i));
-    narc_mark_slot(c, slot, NARC_FOLLOWED);
-}
-
 /* Does what is planned, but for pairs of ground that are asked. Here and below what loops use lies in variables of their own,
  * as whatever is written in bytes might be any of it. */
 static void do_work(const narc_contact_step *s) {
@@ -50,27 +38,30 @@ static void do_work(const narc_contact_step *s) {
     const uint8_t *const marks = s->list->marks, *const state = c->state;
     uint8_t *const flags = c->flags;
     uint32_t *const asked = c->asked, *const known = c->known;
-    const bool margins = s->step->ahead.base;
+    const bool margins = s->step->ahead.base, more = c->more.count > 0;
     const size_t count = c->work_count;
     size_t asked_count = 0, known_count = 0;
-    c->sensor_count = 0;
+    c->sensor_count = c->candidate_count = 0;
     for (size_t i = 0; i < count; i++) {
         const uint32_t k = work[i].pair, what = work[i].what & NARC_WHAT, slot = order[k];
         const unsigned own = marks[k] & NARC_SENSOR ? NARC_SLOT_SENSOR : 0,
                        rest = what == NARC_REST ? NARC_SLOT_STALE : 0;
-        const unsigned stays = work[i].what & NARC_OTHER_SHAPE ? NARC_SLOT_CROSSED | NARC_SLOT_KEPT
-                                                               : 0xff & ~(NARC_SLOT_STALE | NARC_SLOT_SENSOR);
+        const unsigned goes =
+            NARC_SLOT_STALE | NARC_SLOT_SENSOR | (what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT);
+        const unsigned stays = work[i].what & NARC_OTHER_SHAPE ? NARC_SLOT_CROSSED : 0xff & ~goes;
         const unsigned now = (flags[slot] & stays) | own | rest;
         flags[slot] = (uint8_t)now;
         asked[asked_count] = known[known_count] = slot; /* as chance has it: without a branch */
         asked_count += (what == NARC_ASK) & !(now & NARC_SLOT_ENTRY);
         known_count += (what == NARC_ASK) & ((now & NARC_SLOT_ENTRY) != 0);
-        if (margins && what == NARC_ASK)
+        if (margins && (what == NARC_ASK || what == NARC_FOLLOW))
             c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
+        if (more && what == NARC_ASK) /* it may have been ground */
+            c->more_of[slot].count = 0;
         if (what == NARC_APART && state[slot] & NARC_TOUCHING)
             clear_row(c, slot);
-        else if (what == NARC_FOLLOW)
-            follow(s, slot);
+        else if (what == NARC_FOLLOW && state[slot] & NARC_TOUCHING)
+            c->candidates[c->candidate_count++] = slot;
         else if (what == NARC_ASK_SENSOR)
             c->sensors_asked[c->sensor_count++] = slot;
     }
@@ -159,6 +150,7 @@ static bool is_asked_differently(const narc_contacts *c, const narc_step *step) 
            !step->run.base != !last->run.base;
 }
 
+/* Checks what nothing else does before something is changed. */
 static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes, const narc_step *step,
                               const narc_step_result **out_result, narc_error *error) {
     if (!c || !shapes || !step || !out_result || !step->bodies)
@@ -176,10 +168,15 @@ static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes,
         if (status != NARC_OK)
             return status;
     }
+    if (!step->moved.base && step->moved_count > 0)
+        return narc_fail_missing(error, "step.moved");
     const narc_query query = {
         .margin = step->margin, .second_margin = step->second_margin, .flat_angle = step->flat_angle};
     const narc_status status = narc_check_numbers(&query, "step", error);
-    return status == NARC_OK ? narc_check_reserved(step->reserved, 4, "step", error) : status;
+    if (status != NARC_OK)
+        return status;
+    return narc_check_reserved(step->reserved, 4, "step", error) == NARC_OK ? narc_check_set(step->bodies, error)
+                                                                            : NARC_ERROR_ARGUMENT;
 }
 
 /* Pairs, room, rows of ground: what may fail. */
@@ -195,7 +192,7 @@ static narc_status prepare(narc_contact_step *s) {
                                        .filter = step->filter,
                                        .workers = step->workers};
     const narc_moved_bodies listed = {step->moved, step->moved_count, step->moved.base || step->moved.stride,
-                                      step->ahead};
+                                      step->ahead, step->run};
     narc_status status =
         narc_update_moved_pairs(c->broad, s->shapes, step->bodies, &options, &listed, &s->list, s->error);
     if (status != NARC_OK)
@@ -222,7 +219,9 @@ static narc_status carry_out(const narc_contact_step *s) {
     narc_take_slots(c, s->list);
     const narc_pairs pairs = narc_view_slots(c);
     do_work(s);
-    narc_status status = narc_ask_contacts(s, &pairs);
+    narc_status status = narc_follow_rows(s, &pairs);
+    if (status == NARC_OK)
+        status = narc_ask_contacts(s, &pairs);
     if (status == NARC_OK)
         status = ask_sensors(s, &pairs);
     if (status != NARC_OK)
@@ -248,12 +247,11 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     narc_status status = check_step(contacts, shapes, step, out_result, error);
     if (status != NARC_OK)
         return status;
-    narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0};
+    narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0 || step->run.base};
     contacts->again = is_asked_differently(contacts, step);
     status = prepare(&s);
     if (status != NARC_OK) {
-        if (s.list && !s.list->kept)
-            narc_take_back_pairs(contacts->broad);
+        narc_take_back_pairs(contacts->broad, s.list && !s.list->kept);
         return status;
     }
     status = carry_out(&s);

@@ -27,6 +27,7 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
+#include "sat/kept.inl"
 #include "simd/simd.h"
 
 enum { ENTRY_WORDS = sizeof(narc_entry) / sizeof(float) };
@@ -46,19 +47,6 @@ enum {
 };
 
 enum { END_WORDS = sizeof(narc_entry_ends) / sizeof(float) };
-
-/* The items of an array for the pairs in a vector, `words` of four bytes each. `in_line`: they follow each other. */
-INLINE void load_items(const void *items, int words, const int32_t *number, bool in_line, vf *word) {
-    static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const ptrdiff_t size = words * (ptrdiff_t)sizeof(float);
-    const float *const first = (const float *)items + (ptrdiff_t)(uint32_t)*number * words;
-    UNROLL
-    for (int w = 0; w < words; w += 4)
-        if (LIKELY(in_line))
-            v_rows(first + w, size, lane, word + w);
-        else
-            v_rows((const float *)items + w, size, number, word + w);
-}
 
 /* A normal as it was turned inwards, times some number. The upper half takes the lower one for a fraction. */
 INLINE vec2 get_normal(const vf word[ENTRY_WORDS], int normal) {
@@ -146,30 +134,6 @@ INLINE void write_followed(const struct followed *f, const vf word[ENTRY_WORDS],
     v_put_rows(place, offsetof(narc_contact, point_x), rest);
     for (int lane = 0; lane < V_WIDTH; lane++)
         memcpy(place[lane], &number[lane], sizeof number[lane]);
-}
-
-/* The pairs of a block, without their shapes. */
-INLINE void load_bodies_of(const struct sources *given, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column a = given->pairs.a, b = given->pairs.b;
-    const bool selected = given->selection.base != NULL;
-    if (LIKELY(!selected && count == BLOCK && a.stride == sizeof *a.base && b.stride == sizeof *b.base && a.base &&
-               b.base)) {
-        UNROLL
-        for (int k = 0; k < BLOCK; k += V_WIDTH) {
-            vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
-            vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
-            vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
-        }
-        return;
-    }
-    const int end = (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH; /* lanes behind the last pair repeat it */
-    for (int k = 0; k < end; k++) {
-        const size_t at = first + (size_t)(k < count ? k : count - 1);
-        const size_t number = selected ? narc_index_at(given->selection, at) : at;
-        out->number[k] = (int32_t)(uint32_t)number;
-        out->a[k] = (int32_t)(uint32_t)(a.base ? narc_index_at(a, number) : number);
-        out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
-    }
 }
 
 INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,

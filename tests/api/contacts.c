@@ -12,6 +12,7 @@
 #include "chains.h"
 #include "expect.h"
 #include "families.h"
+#include "guard.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "narc_chains.h"
@@ -192,6 +193,27 @@ static void move_world(struct world *w) {
         for (size_t k = w->count - 1; k < w->count + w->ground - 1; k++)
             copy_body(w, k, k + 1);
         w->count--;
+    }
+    if (w->ground > 0 && random_below(random, 3) == 0) { /* ground is others', or elsewhere, and back again */
+        const size_t k = w->count + random_below(random, w->ground);
+        switch (random_below(random, 5)) {
+        case 0:
+            w->kind[k] ^= NARC_SENSOR;
+            break;
+        case 1:
+            w->mask[k] = ~w->mask[k];
+            break;
+        case 2:
+            w->body[k].y += w->body[k].y < -50 ? 100 : -100;
+            break;
+        case 3:
+            w->run[k] = w->run[k] == NARC_NO_RUN ? w->run[w->count] : NARC_NO_RUN;
+            break;
+        default:
+            w->body[k].shape = (uint32_t)random_below(random, SHAPES);
+            break;
+        }
+        note_moved(w, k);
     }
     if (random_below(random, 25) == 0) {
         const uint32_t shape = (uint32_t)random_below(random, SHAPES);
@@ -416,6 +438,7 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
         check_pairs(w, &step, r);
         check_rows(w, &step, r);
         check_events(w, r, &memory);
+        assert_true(r->asked_count <= r->count);
         step.workers = &workers;
         expect_ok(narc_update_contacts(shared, w->store, &step, &other, &error), &error);
         check_same(r, other);
@@ -580,6 +603,117 @@ TEST(goes_on_without_memory) {
     assert_true(failures > test_trials(40));
 }
 
+/* Bodies of one shape by their places, with ids from 1 on. */
+struct few {
+    narc_shapes *store;
+    narc_body body[600];
+    uint64_t id[600];
+    uint8_t kind[600];
+    narc_bodies bodies;
+    narc_pair_filter filter;
+    narc_step step;
+    narc_contacts *contacts;
+};
+
+static struct few *make_few(struct shape shape, size_t count, const narc_allocator *allocator) {
+    struct few *const few = calloc(1, sizeof *few);
+    assert_non_null(few);
+    few->store = empty_store();
+    store_shape(few->store, shape);
+    for (size_t k = 0; k < count; k++) {
+        few->body[k] = (narc_body){.x = (double)(k / 2) * 10 + 0.9 * (double)(k % 2), .cosine = 1, .scale = 1};
+        few->id[k] = k + 1;
+    }
+    few->bodies = narc_view_bodies(few->body, count);
+    few->filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind)};
+    few->step = (narc_step){
+        .bodies = &few->bodies, .margin = 0.02f, .skin = 1, .id = NARC_ARRAY(few->id), .filter = &few->filter};
+    few->contacts = make_contacts(NARC_MANIFOLD_ROWS, allocator);
+    return few;
+}
+
+static const narc_step_result *step_few(struct few *few) {
+    const narc_step_result *r;
+    narc_error error;
+    expect_ok(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), &error);
+    return r;
+}
+
+static void destroy_few(struct few *few) {
+    narc_destroy_contacts(few->contacts);
+    narc_destroy_shapes(few->store);
+    free(few);
+}
+
+/* All slots that there is room for are asked, and new. */
+TEST(slots_have_room) {
+    struct few *const few = make_few(circle_of(0.5), 600, &guard_allocator);
+    few->bodies.count = 8;
+    assert_int_equal(step_few(few)->count, 4);
+    for (size_t count = 500; count <= 600; count += 2) {
+        few->bodies.count = count;
+        for (size_t k = 0; k < count; k++)
+            few->body[k].y += 1e-4;
+        assert_int_equal(step_few(few)->count, count / 2);
+    }
+    destroy_few(few);
+}
+
+/* Two that sleep change their order: the row is that of (a, b) all the same. */
+TEST(rows_at_rest_are_turned) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    few->body[0].x = 50;
+    few->body[1].x = 0;
+    few->body[2].x = 0.9;
+    const narc_step_result *r = step_few(few);
+    assert_true(r->manifolds[r->order[0]].normal_x > 0.9f);
+    few->kind[1] = few->kind[2] = NARC_ASLEEP;
+    step_few(few);
+    few->body[0] = few->body[2]; /* the first goes, and the last one takes its place */
+    few->id[0] = few->id[2];
+    few->kind[0] = NARC_ASLEEP;
+    few->bodies.count = 2;
+    r = step_few(few);
+    assert_int_equal(r->state[r->order[0]] & (NARC_TURNED | NARC_TOUCHING), NARC_TURNED | NARC_TOUCHING);
+    assert_true(r->manifolds[r->order[0]].normal_x < -0.9f);
+    assert_int_equal(r->began_count + r->ended_count, 0);
+    destroy_few(few);
+}
+
+/* A step that failed has not been: the list of what moved is that since the step before it. */
+TEST(goes_on_from_the_last_good_step) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    const uint32_t none = 0;
+    const narc_step_result *r = step_few(few);
+    narc_error error;
+    assert_int_equal(r->touching_count, 1);
+    few->body[1].x = 1.1; /* apart */
+    few->id[2] = 1;
+    assert_int_equal(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_ARGUMENT);
+    few->body[1].x = 0.9;
+    few->id[2] = 3;
+    few->step.moved = (narc_index_column){&none, sizeof none};
+    r = step_few(few);
+    assert_int_equal(r->touching_count, 1);
+    assert_int_equal(r->ended_count, 0);
+    destroy_few(few);
+}
+
+/* What was kept of a row goes with it, whatever recycling is meanwhile. */
+TEST(kept_rows_are_those_of_now) {
+    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    const double places[] = {0.7, 0.9, 2, 2, 0.7, 0.7005};
+    for (size_t k = 0; k < 6; k++) {
+        for (size_t i = 0; i < 2; i++) {
+            few->body[i].cosine = few->body[i].sine = 0.70710678f;
+            few->body[i].x = few->body[i].y = i == 0 ? 0 : places[k];
+        }
+        few->step.recycling = k == 1 || k == 2 ? 0 : 0.01f;
+        assert_int_equal(step_few(few)->touching_count, places[k] < 0.8);
+    }
+    destroy_few(few);
+}
+
 static void expect_refused(narc_contacts *contacts, const narc_shapes *store, const narc_step *step, narc_status status,
                            const char *words) {
     const narc_step_result *r;
@@ -616,6 +750,10 @@ TEST(says_what_is_wrong) {
     step.reserved[1] = w;
     expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.reserved[1]");
     step.reserved[1] = NULL;
+    step.moved_count = 1;
+    expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.moved is NULL");
+    step.moved_count = 0;
+    narc_forget_contacts(contacts);
     expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
     step.moved = NARC_ARRAY(moved);
     step.moved_count = 2;

@@ -85,7 +85,7 @@ static struct scene make_boxes(struct test_random *random, enum sizes sizes, enu
         if (random_below(random, 3) == 0)
             add_hard_pairs(random, &scene, (enum hard_placement)random_below(random, HARD_PLACES), a, b);
         for (int k = 0; k < 8; k++)
-            scene_add_placed(random, &scene, exact[random_below(random, 10)], a, b);
+            scene_add_placed(random, &scene, exact[random_below(random, sizeof exact / sizeof *exact)], a, b);
     }
     for (size_t k = 0; k < scene.pair_count; k++) {
         if (mixed && random_below(random, 40) == 0)

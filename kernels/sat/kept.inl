@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * kept.inl - what is kept of pairs, and their bodies, without their shapes.
+ */
+#ifndef NARC_SAT_KEPT_INL
+#define NARC_SAT_KEPT_INL
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/bodies.inl"
+#include "base/call.inl"
+#include "base/pair_setup.inl"
+#include "column.h"
+#include "simd/simd.h"
+
+/* The items of an array for the pairs in a vector, `words` of four bytes each. `in_line`: they follow each other. */
+INLINE void load_items(const void *items, int words, const int32_t *number, bool in_line, vf *word) {
+    static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const ptrdiff_t size = words * (ptrdiff_t)sizeof(float);
+    const float *const first = (const float *)items + (ptrdiff_t)(uint32_t)*number * words;
+    UNROLL
+    for (int w = 0; w < words; w += 4)
+        if (LIKELY(in_line))
+            v_rows(first + w, size, lane, word + w);
+        else
+            v_rows((const float *)items + w, size, number, word + w);
+}
+
+/* The pairs of a block, without their shapes. */
+INLINE void load_bodies_of(const struct sources *given, size_t first, int count, struct pair_indices *out) {
+    const narc_index_column a = given->pairs.a, b = given->pairs.b;
+    const bool selected = given->selection.base != NULL;
+    if (LIKELY(!selected && count == BLOCK && a.stride == sizeof *a.base && b.stride == sizeof *b.base && a.base &&
+               b.base)) {
+        UNROLL
+        for (int k = 0; k < BLOCK; k += V_WIDTH) {
+            vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
+            vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
+            vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
+        }
+        return;
+    }
+    const int end = (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH; /* lanes behind the last pair repeat it */
+    for (int k = 0; k < end; k++) {
+        const size_t at = first + (size_t)(k < count ? k : count - 1);
+        const size_t number = selected ? narc_index_at(given->selection, at) : at;
+        out->number[k] = (int32_t)(uint32_t)number;
+        out->a[k] = (int32_t)(uint32_t)(a.base ? narc_index_at(a, number) : number);
+        out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
+    }
+}
+
+#endif
