@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// engine.cpp - a C++ engine's loop by narc.hpp: its own structures through columns, its own threads, pairs that are kept
+// engine.cpp - a C++ engine's loop by narc.hpp: its own structures through columns, its own threads, contacts that stay
 // from step to step, and a solver that starts with the impulses of the last one. world.c is a larger world, in C.
 //   c++ -std=c++17 -pthread engine.cpp -o engine $(pkg-config --cflags --libs narc)
 #include <narc.hpp>
@@ -39,10 +39,9 @@ struct Point {
     float normal_impulse, tangent_impulse;
     Vec anchor_a, anchor_b;
 };
-struct Pair { // of the list; it goes with the pair to the next list
-    uint32_t hint;
-    narc_manifold manifold; // narc writes it here; count 0: they are apart
+struct Pair { // narc keeps it as long as its bodies are near each other; zeros at first
     Entity *a, *b;
+    const narc_manifold *manifold;
     Vec normal;
     Point points[2];
 };
@@ -77,7 +76,7 @@ void drive(const Pair &c, const Point &p, Vec direction, float speed, float leas
 // Friction 0.6; a gap may close within the step, and of an overlap of more than 5 mm a fifth goes.
 void solve(Pair &c, uint32_t i, float time) {
     Point &p = c.points[i];
-    const float limit = 0.6f * p.normal_impulse, separation = c.manifold.point[i].separation;
+    const float limit = 0.6f * p.normal_impulse, separation = c.manifold->point[i].separation;
     drive(c, p, quarter_turn(c.normal), 0, -limit, limit, p.tangent_impulse);
     const float change = separation > 0 ? separation : 0.2f * std::min(0.0f, separation + 0.005f);
     drive(c, p, c.normal, -change / time, 0, INFINITY, p.normal_impulse);
@@ -104,12 +103,13 @@ class World {
         find_contacts();
         for (Entity &entity : entities)
             entity.velocity -= Vec(0, entity.inverse_mass == 0 ? 0 : 9.81f * time);
-        for (size_t k = 0; k < list->pairs.count; k++)
-            start(k);
+        const narc::span<const uint32_t> touching(result->touching, result->touching_count);
+        for (const uint32_t slot : touching)
+            start(slot);
         for (int round = 0; round < 12; round++)
-            for (Pair &pair : pairs)
-                for (uint32_t i = 0; i < pair.manifold.count; i++)
-                    solve(pair, i, time);
+            for (const uint32_t slot : touching)
+                for (uint32_t i = 0; i < result->manifolds[slot].count; i++)
+                    solve(pair_of(slot), i, time);
         for (Entity &entity : entities) {
             const Vec r = Vec(entity.rotation.cosine, entity.rotation.sine) * Vec(1, time * entity.spin);
             entity.rotation = {r.real() / std::abs(r), r.imag() / std::abs(r)};
@@ -122,39 +122,35 @@ class World {
     void find_contacts() {
         const narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
         const narc_workers workers = narc::workers_of(2, run_tasks);
-        narc::pair_options options;
-        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).workers(workers);
-        list = broad.update(shapes, bodies, options).value();
-        if (!list->kept) { // what is known goes to where the pairs are now, and zeros to new ones
-            std::vector<Pair> next(list->pairs.count);
-            narc_gather(list->previous, next.size(), sizeof(Pair), pairs.data(), next.data());
-            pairs.swap(next);
+        auto step = narc::step().margin(0.02f).skin(0.05f).id(narc::column(entities, &Entity::id)).workers(workers);
+        result = contacts.update(shapes, bodies, step).value();
+        for (size_t k = 0; k < result->ended_count; k++) {
+            const narc_touch_event &ended = result->ended[k];
+            pair_of(ended.slot) = {}; // who is apart keeps nothing
+            if (ended.parted)
+                std::printf("%d and %d part\n", static_cast<int>(ended.id_a), static_cast<int>(ended.id_b));
         }
-        for (size_t k = 0; k < list->lost_count; k++)
-            std::printf("%d and %d part\n", static_cast<int>(list->lost[k].id_a), static_cast<int>(list->lost[k].id_b));
-        size_t skipped = 0;
-        narc::query query;
-        query.margin(margin).hints(narc::hints(pairs, &Pair::hint)).dense().workers(workers).skipped(skipped);
-        narc::find_manifolds(shapes, bodies, list->pairs, query, pairs, &Pair::manifold).value();
-        if (list->skipped + skipped > 0)
+        if (result->skipped > 0)
             narc::validate(shapes, bodies).value(); // throws: names the broken body
     }
+    Pair &pair_of(uint32_t slot) { return static_cast<Pair *>(result->user)[slot]; }
 
     // A point starts with the impulses of the point of the last step where the same features touched; but not where the
     // pair's bodies stand in the other order than then.
-    void start(size_t k) {
-        Pair &c = pairs[k];
-        const narc_manifold &m = c.manifold;
+    void start(uint32_t slot) {
+        Pair &c = pair_of(slot);
+        const narc_manifold &m = result->manifolds[slot];
         const Point last[2] = {c.points[0], c.points[1]};
-        c.a = &entities[list->pairs.a.base[k]];
-        c.b = &entities[list->pairs.b.base[k]];
+        c.a = &entities[result->pairs.a.base[slot]];
+        c.b = &entities[result->pairs.b.base[slot]];
+        c.manifold = &m;
         c.normal = {m.normal_x, m.normal_y};
         const Vec to_a(static_cast<float>(c.a->position.x - c.b->position.x),
                        static_cast<float>(c.a->position.y - c.b->position.y));
         for (uint32_t i = 0; i < 2; i++) {
             Point &p = c.points[i];
             const Point &same = last[last[0].feature == m.point[i].feature ? 0 : 1];
-            const bool warm = same.feature == m.point[i].feature && !(list->marks[k] & NARC_FLIPPED);
+            const bool warm = same.feature == m.point[i].feature && !(result->state[slot] & NARC_TURNED);
             p = warm && i < m.count ? same : Point{};
             p.feature = m.point[i].feature;
             p.anchor_a = {m.point[i].x, m.point[i].y}; // narc's points count from A's position
@@ -163,11 +159,9 @@ class World {
         }
     }
 
-    static constexpr float margin = 0.02f;
     narc::shapes shapes;
-    narc::broad_phase broad;
-    const narc_pair_list *list = nullptr; // the broad phase's, until the next step
-    std::vector<Pair> pairs;              // of this list
+    narc::contacts contacts = narc::contacts::make(NARC_MANIFOLD_ROWS, sizeof(Pair)).value();
+    const narc_step_result *result = nullptr; // the contacts', until the next step
     uint64_t last_id = 0;
 };
 

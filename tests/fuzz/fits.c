@@ -28,7 +28,7 @@ static struct outline take_outline(struct bytes *from) {
     return outline;
 }
 
-static void check_fit(struct bytes *from, const struct outline *outline) {
+static void check_result(struct bytes *from, const struct outline *outline) {
     const narc_fit_request request = {.arc_count = 1 + take_below(from, 5),
                                       .family = (narc_fit_family)take_below(from, 4),
                                       .goal = (narc_fit_goal)take_below(from, 5),
@@ -63,7 +63,7 @@ static void check_chains(const struct outline *outline, double tolerance) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct bytes from = {data, size};
     struct outline outline = take_outline(&from);
-    check_fit(&from, &outline);
+    check_result(&from, &outline);
     check_chains(&outline, pow(10, -(double)take_below(&from, 6)));
     free_outline(&outline);
     return 0;
