@@ -69,8 +69,8 @@ static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) 
     return c->asked_count - before;
 }
 
-/* Makes entries of the pairs from `first` on that were asked: of those that are left of the known ones, and of smooth ones
- * that are asked for the second time, as a pair that goes soon is not worth it. */
+/* Makes entries of pairs that were asked: of smooth ones that are asked for the second time, as a pair that goes soon is not
+ * worth it, and of those that their entries left, which stand behind the first `plain_count`. */
 static void make_entries(const narc_contact_step *s, const narc_batch *batch, size_t plain_count) {
     narc_contacts *const c = s->contacts;
     size_t count = 0;
@@ -116,7 +116,7 @@ static void mark_answered(narc_contacts *c, const uint32_t *slots, size_t count)
     c->crossed_count += crossed;
 }
 
-/* Rows that were asked for are kept to follow their bodies. */
+/* Rows with an edge that were asked for are kept to follow their bodies. */
 static void keep_rows(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     for (size_t i = 0; i < c->asked_count; i++) {

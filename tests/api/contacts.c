@@ -531,15 +531,30 @@ TEST(rows_follow_their_bodies) {
 
 static size_t allowed; /* allocations until one fails; SIZE_MAX: none does */
 
+/* The size in front, and behind the memory what nobody may write. */
+enum { IN_FRONT = 16, BEHIND = 64 };
+
 static void *allocate(size_t size, void *context) {
     (void)context;
-    return allowed == SIZE_MAX || allowed-- > 0 ? malloc(size) : NULL;
+    char *const memory = allowed == SIZE_MAX || allowed-- > 0 ? malloc(IN_FRONT + size + BEHIND) : NULL;
+    if (!memory)
+        return NULL;
+    memcpy(memory, &size, sizeof size);
+    memset(memory + IN_FRONT + size, GUARD_JUNK, BEHIND);
+    return memory + IN_FRONT;
 }
 
-static void release(void *memory, void *context) {
+static void release(void *given, void *context) {
+    char *const memory = (char *)given - IN_FRONT;
+    size_t size;
     (void)context;
+    memcpy(&size, memory, sizeof size);
+    for (size_t k = 0; k < BEHIND; k++)
+        assert_int_equal(memory[IN_FRONT + size + k], (char)GUARD_JUNK);
     free(memory);
 }
+
+static const narc_allocator watched = {.allocate = allocate, .release = release};
 
 /* What a result shows, in one number. */
 static uint64_t hash_result(const narc_step_result *r) {
@@ -557,7 +572,6 @@ static uint64_t hash_result(const narc_step_result *r) {
 
 /* Memory ends anywhere in any step: the last result is whole, and the next call goes on from there. */
 TEST(goes_on_without_memory) {
-    const narc_allocator allocator = {.allocate = allocate, .release = release};
     struct test_random random = test_random_named("memory of contacts");
     size_t failures = 0;
     for (size_t trial = 0; trial < test_trials(40); trial++) {
@@ -566,7 +580,7 @@ TEST(goes_on_without_memory) {
         narc_contacts *contacts;
         narc_error error;
         allowed = SIZE_MAX;
-        contacts = make_contacts(NARC_MANIFOLD_ROWS, &allocator);
+        contacts = make_contacts(NARC_MANIFOLD_ROWS, &watched);
         for (size_t k = 0; k < 12; k++) {
             const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground);
             const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind)};
@@ -647,7 +661,8 @@ static void destroy_few(struct few *few) {
 
 /* All slots that there is room for are asked, and new. */
 TEST(slots_have_room) {
-    struct few *const few = make_few(circle_of(0.5), 600, &guard_allocator);
+    allowed = SIZE_MAX;
+    struct few *const few = make_few(circle_of(0.5), 600, &watched);
     few->bodies.count = 8;
     assert_int_equal(step_few(few)->count, 4);
     for (size_t count = 500; count <= 600; count += 2) {
@@ -699,6 +714,114 @@ TEST(goes_on_from_the_last_good_step) {
     destroy_few(few);
 }
 
+/* The same bodies in an object that knows nothing of them: as much touches, as deep. */
+static void check_with_fresh(struct few *few) {
+    narc_contacts *const kept = few->contacts;
+    const narc_step_result *const r = step_few(few);
+    few->contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    const narc_step_result *const fresh = step_few(few);
+    assert_int_equal(r->count, fresh->count);
+    assert_int_equal(r->touching_count, fresh->touching_count);
+    assert_int_equal(r->more_count, fresh->more_count);
+    for (size_t k = 0; k < r->touching_count; k++)
+        check_row(&r->manifolds[r->touching[k]], fresh->manifolds[fresh->touching[k]], r->touching[k]);
+    narc_destroy_contacts(few->contacts);
+    few->contacts = kept;
+}
+
+/* Two change their numbers, and each stands where the other one stood. */
+TEST(bodies_are_known_by_their_ids) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    few->body[1].x = 0.05;
+    few->body[2].x = 0.9;
+    check_with_fresh(few);
+    few->id[0] = 2;
+    few->id[1] = 1;
+    check_with_fresh(few);
+    destroy_few(few);
+}
+
+/* Entries of a chain as static bodies behind body 0, without what is between. */
+static size_t lay_entries(struct few *few, const narc_arc *arcs, size_t count, double weld, uint32_t *run) {
+    static narc_chain_entry entries[256];
+    const narc_chain_options options = {.weld = weld};
+    size_t found = 0;
+    narc_error error;
+    expect_ok(narc_add_chain(few->store, arcs, count, &options, entries, 256, &found, &error), &error);
+    run[0] = NARC_NO_RUN;
+    for (size_t k = 0; k < found; k++) {
+        few->body[1 + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
+        few->kind[1 + k] = NARC_STATIC;
+        few->id[1 + k] = 2 + k;
+        run[1 + k] = entries[k].run;
+    }
+    few->bodies.count = 1 + found;
+    return found;
+}
+
+/* A ball lies where two entries meet, and one row is merged away. The piece that has the other goes, or is no ground any
+ * more: what was merged away is told. */
+TEST(ground_that_goes_leaves_what_it_was_merged_with) {
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    for (int way = 0; way < 10; way++) {
+        struct few *const few = make_few(circle_of(0.5), 2, NULL);
+        static uint32_t run[600];
+        static uint64_t mask[600];
+        const uint32_t small = store_shape(few->store, circle_of(0.01));
+        const size_t count = lay_entries(few, line, 2, 0.5, run), gone = 4 + (size_t)way / 5;
+        memset(mask, 0xff, sizeof mask);
+        few->step.run = NARC_ARRAY(run);
+        few->filter.mask = NARC_ARRAY(mask);
+        few->step.skin = 0.05f;
+        few->body[0] = (narc_body){(few->body[4].x + few->body[5].x) / 2, 0.5, 1, 0, 1, 0};
+        check_with_fresh(few);
+        assert_int_equal(step_few(few)->touching_count, 1);
+        switch (way % 5) {
+        case 0:
+            mask[gone] = 0;
+            break;
+        case 1:
+            few->kind[gone] |= NARC_SENSOR;
+            break;
+        case 2:
+            few->body[gone].shape = small;
+            run[gone] = NARC_NO_RUN;
+            break;
+        case 3: /* and the last one takes its place */
+            few->body[gone] = few->body[count];
+            few->id[gone] = count + 1;
+            few->bodies.count--;
+            break;
+        default:
+            few->body[gone].y = -50;
+            break;
+        }
+        check_with_fresh(few);
+        assert_int_equal(step_few(few)->touching_count, 1);
+        destroy_few(few);
+    }
+}
+
+/* A box touches a bowl in two places, and then the bowl is a circle. */
+TEST(further_rows_go_with_their_ground) {
+    struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
+    const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
+    static uint32_t run[600];
+    const uint32_t circle = store_shape(few->store, circle_of(1));
+    const size_t count = lay_entries(few, &bowl, 1, 0, run);
+    few->step.run = NARC_ARRAY(run);
+    few->body[0] = (narc_body){0, -0.77, 1, 0, 1, 0};
+    check_with_fresh(few);
+    assert_true(step_few(few)->more_count > 0);
+    for (size_t k = 1; k <= count; k++) {
+        few->body[k].shape = circle;
+        run[k] = NARC_NO_RUN;
+    }
+    check_with_fresh(few);
+    assert_int_equal(step_few(few)->more_count, 0);
+    destroy_few(few);
+}
+
 /* What was kept of a row goes with it, whatever recycling is meanwhile. */
 TEST(kept_rows_are_those_of_now) {
     struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
@@ -710,6 +833,30 @@ TEST(kept_rows_are_those_of_now) {
         }
         few->step.recycling = k == 1 || k == 2 ? 0 : 0.01f;
         assert_int_equal(step_few(few)->touching_count, places[k] < 0.8);
+    }
+    destroy_few(few);
+}
+
+/* A box turns about the first point of its contact: that stays, and the second one does not. */
+TEST(a_turn_is_a_way) {
+    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    few->body[0].x = few->body[1].x = 0;
+    few->body[1].y = 0.995;
+    few->step.recycling = 0.01f;
+    const narc_manifold row = step_few(few)->manifolds[0];
+    assert_int_equal(row.count, 2);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double angle = 0.015 * sign, x = (double)row.point[0].x, y = (double)row.point[0].y;
+        few->body[1] = (narc_body){x + cos(angle) * -x - sin(angle) * (0.995 - y),
+                                   y + sin(angle) * -x + cos(angle) * (0.995 - y),
+                                   (float)cos(angle),
+                                   (float)sin(angle),
+                                   1,
+                                   0};
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->state[0] & (NARC_ASKED | NARC_FOLLOWED), NARC_ASKED);
+        few->body[1] = (narc_body){0, 0.995, 1, 0, 1, 0};
+        step_few(few);
     }
     destroy_few(few);
 }
