@@ -803,7 +803,7 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
 }
 
 /* A box touches a bowl in two places, and then the bowl is a circle. */
-TEST(further_rows_go_with_their_ground) {
+TEST(second_rows_go_with_their_ground) {
     struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
     const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
     static uint32_t run[600];
