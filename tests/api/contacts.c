@@ -861,6 +861,36 @@ TEST(a_turn_is_a_way) {
     destroy_few(few);
 }
 
+/* Enough for several parts of each kind: asked plainly, by entries, and rows that follow. */
+TEST(workers_share_a_step) {
+    struct few *const few = make_few(circle_of(0.5), 600, NULL);
+    struct test_random random = test_random_named("shared steps");
+    const narc_workers workers = narc_openmp_workers(3);
+    narc_contacts *const alone = few->contacts, *const shared = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    const uint32_t box = store_shape(few->store, box_of(0.9, 0.9, 0));
+    size_t pairs = 0;
+    for (size_t k = 0; k < 600; k++)
+        few->body[k] = (narc_body){0.45 * (double)(k % 30), 0.45 * (double)(k / 30), 1, 0, 1, k % 2 ? box : 0};
+    few->step.skin = 0.02f;
+    for (size_t step = 0; step < 12; step++) {
+        few->step.recycling = step < 6 ? 0 : 0.01f;
+        few->contacts = alone;
+        few->step.workers = NULL;
+        const narc_step_result *const r = step_few(few);
+        few->contacts = shared;
+        few->step.workers = &workers;
+        check_same(r, step_few(few));
+        pairs = r->count;
+        for (size_t k = 0; k < 600; k++) {
+            few->body[k].x += random_between(&random, -1e-3, 1e-3);
+            few->body[k].y += random_between(&random, -1e-3, 1e-3);
+        }
+    }
+    assert_true(pairs > 4 * 1024);
+    narc_destroy_contacts(alone);
+    destroy_few(few);
+}
+
 static void expect_refused(narc_contacts *contacts, const narc_shapes *store, const narc_step *step, narc_status status,
                            const char *words) {
     const narc_step_result *r;
