@@ -38,16 +38,19 @@ extern "C" {
 /* Pairs and what is known of them. One object serves one call at a time. */
 typedef struct narc_contacts narc_contacts;
 
-/* What slots hold: the rows of narc_find_manifolds(), or those of narc_find_contacts(). */
-enum { NARC_MANIFOLD_ROWS = 0, NARC_CONTACT_ROWS = 1 };
+/* What slots hold: the rows of narc_find_manifolds(), or those of narc_find_contacts(); and where: in arrays of their own, or
+ * within the caller's bytes. */
+enum { NARC_MANIFOLD_ROWS = 0, NARC_CONTACT_ROWS = 1, NARC_ROWS_IN_USER = 2 };
 
 /* What is 0 or NULL is left out.
- *   rows        NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS
+ *   rows        NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and NARC_ROWS_IN_USER
  *   user_size   bytes that each slot has for the caller: all 0 in a new slot, aligned as malloc() aligns the first
+ *   row_offset  with NARC_ROWS_IN_USER: where the row lies in these bytes, such as a member of an engine's contact, so that
+ *               this is all that a solver reads. Both sizes are multiples of 4. Else 0
  *   allocator   NULL: malloc and free */
 typedef struct narc_contacts_settings {
     uint32_t rows;
-    size_t user_size;
+    size_t user_size, row_offset;
     const narc_allocator *allocator;
     void *reserved[4]; /* NULL */
 } narc_contacts_settings;
@@ -62,6 +65,12 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
 /* A step; what is 0 or NULL is left out.
  *   bodies              at most 2^32 - 2. Those of ground (entries of chains) behind all that may meet them
  *   margin, second_margin, flat_angle, front_only   as in narc_query, the margin at least 0 and finite
+ *   pairs               the pairs that there are, if a broad phase of the caller's finds them: of bodies, in any order, each
+ *                       once, without shifts; those that the filter does not let are left out. NULL: all pairs of bodies
+ *                       that are closer than the margin, and perhaps others, none further apart than margin + 3 * skin and
+ *                       the motion when their boxes were made
+ *   same_pairs          not 0: these are the pairs of the last step that did not fail, and are not looked at. (Bodies that
+ *                       have other numbers make others of them)
  *   skin                at least 0: bodies may move by this until pairs are looked for again. A larger one makes that
  *                       rarer, and more pairs
  *   recycling           at least 0, a length. 0: rows are, to the last bit, what narc_find_manifolds() (or contacts)
@@ -90,6 +99,8 @@ typedef struct narc_step {
     float margin, second_margin, flat_angle;
     uint32_t front_only;
     float skin, recycling;
+    const narc_pairs *pairs;
+    uint32_t same_pairs;
     narc_float_column motion_x, motion_y, reach, ahead;
     narc_word_column id;
     narc_index_column run;
@@ -126,7 +137,8 @@ enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_
  *   pairs         by slot: its bodies a < b, plain arrays. Only slots that are listed in `order` are pairs
  *   order         the slots of all pairs, in the order of a and then b
  *   state         by slot, see above
- *   manifolds     by slot, or `contacts`: rows, with count 0 where nothing touches; their `pair` is the slot
+ *   manifolds     by slot, or `contacts`: rows, with count 0 where nothing touches; their `pair` is the slot. NULL where rows
+ *                 lie in `user`
  *   more          further rows of pairs with concave arcs, `more_count` of them in the order of pairs, of the same type
  *   user          by slot: user_size bytes each, the caller's to write
  *   touching      slots with a row of which one body moves (narc_pair_filter): what a solver goes through
@@ -159,9 +171,44 @@ typedef struct narc_step_result {
 NARC_API narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *shapes, const narc_step *step,
                                           const narc_step_result **out_result, narc_error *error);
 
+/* The slots of all pairs of a body, by its number in the last step, in the order of pairs; valid until the next call but this
+ * one. The first call after a step takes a walk through all pairs. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_INDEX,
+ * NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_find_body_slots(narc_contacts *contacts, uint32_t body, const uint32_t **out_slots,
+                                          size_t *out_count, narc_error *error);
+
+/* Takes bodies out, by their ids (without ids, their numbers): their pairs part in the next step, and a body that has such an
+ * id there is another one, of which nothing is known. So an id may serve again at once, and a body that was moved to another
+ * place may lose its history. Unknown ids count for nothing. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_MEMORY: nothing
+ * is taken out. */
+NARC_API narc_status narc_forget_bodies(narc_contacts *contacts, const uint64_t *ids, size_t count, narc_error *error);
+
 /* Forgets all pairs, and keeps the memory: for another level. All pairs of the next step are new, and none has ended. NULL:
- * nothing happens. Not in narc_small.wasm, as all of this. */
+ * nothing happens. */
 NARC_API void narc_forget_contacts(narc_contacts *contacts);
+
+/* Contacts as bytes, all of them with the caller's, for games that go back some steps and play them again: whatever steps
+ * follow after they are loaded, each bit is that of the steps that followed when they were saved. The bytes are the same for
+ * the same calls, on every instruction set and for any workers; they serve this version of the library, on machines with the
+ * same order of bytes. */
+
+/* How many bytes narc_save_contacts() writes: some 280 for each pair, and the caller's; some 120 for each body. */
+NARC_API size_t narc_count_contact_bytes(const narc_contacts *contacts);
+
+/* Writes to the caller's `out_bytes`, of which there are `size`. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_CAPACITY (size
+ * is less than narc_count_contact_bytes()); nothing is written then. */
+NARC_API narc_status narc_save_contacts(const narc_contacts *contacts, void *out_bytes, size_t size, narc_error *error);
+
+/* Makes contacts what they were when the `size` bytes were saved, from an object with the same settings.
+ *   shapes      a store that holds what it held then; what it says otherwise is found out when a pair is asked again
+ *   out_result  that of the last step before; NULL: nobody asks
+ * The bytes may lie anywhere and may come from anyone: whatever is in them is checked before anything is changed, so far that
+ * no later call reads or writes where it must not. NARC_ERROR_FORMAT: other bytes, another version, or damage;
+ * NARC_ERROR_ARGUMENT: NULL, other settings; NARC_ERROR_MEMORY. On an error contacts are as they were. */
+NARC_API narc_status narc_load_contacts(narc_contacts *contacts, const narc_shapes *shapes, const void *bytes,
+                                        size_t size, const narc_step_result **out_result, narc_error *error);
+
+/* Nothing of this header is in narc_small.wasm. */
 
 #ifdef __cplusplus
 }

@@ -213,22 +213,17 @@ typedef struct narc_box {
 
 /* Kinds of bodies, bits that may be combined; a body without them moves. What they mean for the pairs of two bodies:
  *
- *                                 listed   tested for contacts (narc_pair_list.contacts, .sensors)
+ *                                 a pair   tested
  *     moving and any              yes      yes
  *     asleep and asleep           yes      no: nothing changes between them
  *     asleep and static           yes      no
  *     static and static           never
  *     sensor and sensor           never
- *     sensor and any other        as above; its tests are listed in .sensors instead of .contacts
+ *     sensor and any other        as above; whether they overlap
  *
- * Which pairs are listed does not depend on sleep. So a pair keeps its place and what the caller knows of it while its
+ * Which pairs there are does not depend on sleep. So a pair keeps its place and what the caller knows of it while its
  * bodies sleep, and one that falls asleep or wakes begins and ends nothing. */
-enum {
-    NARC_STATIC = 1,
-    NARC_ASLEEP = 2,
-    NARC_SENSOR = 4,
-    NARC_FLIPPED = 128 /* a mark of pairs alone: its bodies stand in the other order than in the last list */
-};
+enum { NARC_STATIC = 1, NARC_ASLEEP = 2, NARC_SENSOR = 4 };
 
 /* Which boxes may form a pair. Every column may be left out (base NULL); a NULL filter lets all boxes.
  *   kind             see the table above; left out: all move
@@ -243,34 +238,8 @@ typedef struct narc_pair_filter {
     void *reserved[2]; /* NULL */
 } narc_pair_filter;
 
-/* A pair of the last list that is not in this one. */
-typedef struct narc_lost_pair {
-    uint32_t pair;       /* its index in the last list */
-    uint32_t a, b;       /* its bodies as they were numbered there */
-    uint32_t marks;      /* kinds of both as they were then */
-    uint64_t id_a, id_b; /* their ids; those numbers where there were none */
-} narc_lost_pair;
-
-/* The pairs of a step and how they differ from the last list's; see narc_update_pairs(). All arrays belong to the broad
- * phase. */
-typedef struct narc_pair_list {
-    narc_pairs pairs;         /* a < b, in the order of a and then b */
-    const uint32_t *previous; /* for each pair: its index in the last list, or NARC_NO_MATCH if it is new */
-    const uint8_t *marks;     /* for each pair: the kinds of both bodies together, and NARC_FLIPPED */
-    const uint32_t *contacts; /* the pairs to test for contacts, rising: one body moves, none is a sensor */
-    size_t contact_count;
-    const uint32_t *sensors; /* the pairs to test for overlap: one body moves, one is a sensor */
-    size_t sensor_count;
-    const uint32_t *added; /* the pairs that are new, rising: begin events */
-    size_t added_count;
-    const narc_lost_pair *lost; /* in the order of the last list: end events */
-    size_t lost_count;
-    size_t skipped; /* bodies without a box, in no pair: broken ones */
-    bool kept;      /* these are the last list's pairs: previous[k] is k, none is new, none is lost */
-} narc_pair_list;
-
-/* What finding and matching pairs needs: memory, which grows to what the largest step wants and stays, so that after
- * some steps nothing is allocated; and the pairs that narc_update_pairs() keeps. One object serves one call at a time. */
+/* What finding pairs needs: memory, which grows to what the largest step wants and stays, so that after some steps nothing is
+ * allocated. One object serves one call at a time. */
 typedef struct narc_broad_phase narc_broad_phase;
 
 /* One without memory yet. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY, NARC_ERROR_ARGUMENT. */

@@ -156,7 +156,7 @@ narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
 }
 
 narc_status narc_reserve_pairs(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
-    enum { BYTES = 5 * sizeof(uint32_t) + 2 };
+    enum { BYTES = 4 * sizeof(uint32_t) + 2 };
     if (list->pair_memory && count <= list->pair_capacity)
         return NARC_OK;
     const size_t n = with_room(count, 1024);
@@ -165,8 +165,7 @@ narc_status narc_reserve_pairs(narc_broad_phase *broad, narc_kept_list *list, si
     list->a = list->pair_memory;
     list->b = list->a + n;
     list->previous = list->b + n;
-    list->selected = list->previous + n;
-    list->added = list->selected + n;
+    list->added = list->previous + n;
     list->marks = (uint8_t *)(list->added + n);
     list->matched = list->marks + n;
     list->pair_capacity = n;
@@ -182,7 +181,8 @@ narc_status narc_reserve_lost(narc_broad_phase *broad, narc_kept_list *list, siz
 
 narc_status narc_reserve_ids(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
     void *memory = list->ids;
-    const narc_status status = reserve(broad, &memory, &list->id_capacity, count, 1024, sizeof *list->ids);
+    const narc_status status = reserve(broad, &memory, &list->id_capacity, count, 1024, sizeof *list->ids + 1);
     list->ids = memory;
+    list->gone = memory ? (uint8_t *)(list->ids + list->id_capacity) : NULL;
     return status;
 }

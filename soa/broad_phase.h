@@ -102,23 +102,51 @@ typedef struct narc_pair_block {
 typedef struct narc_body_filter {
     uint64_t category, mask;
     uint32_t group;
-    uint8_t kind;
+    uint8_t kind, unused[3]; /* 0 */
 } narc_body_filter;
 
 enum { NARC_KINDS = NARC_STATIC | NARC_ASLEEP | NARC_SENSOR };
 
+/* Beside kinds, a mark of pairs: the bodies stand in the other order than in the last list. */
+enum { NARC_FLIPPED = 128 };
+
+/* No pair of the old list, or no body. */
+#define NARC_NO_MATCH UINT32_MAX
+
+/* A pair of the last list that is not in this one. */
+typedef struct narc_lost_pair {
+    uint32_t pair;       /* its index in the last list */
+    uint32_t a, b;       /* its bodies as they were numbered there */
+    uint32_t marks;      /* kinds of both as they were then */
+    uint64_t id_a, id_b; /* their ids; those numbers where there were none */
+} narc_lost_pair;
+
+/* The pairs of a step and how they differ from the last list's. All arrays belong to the broad phase. */
+typedef struct narc_pair_list {
+    narc_pairs pairs;         /* a < b, in the order of a and then b */
+    const uint32_t *previous; /* for each pair: its index in the last list, or NARC_NO_MATCH if it is new */
+    const uint8_t *marks;     /* for each pair: the kinds of both bodies together, and NARC_FLIPPED */
+    const uint32_t *added; /* the pairs that are new, rising */
+    size_t added_count;
+    const narc_lost_pair *lost; /* in the order of the last list */
+    size_t lost_count;
+    size_t skipped; /* bodies without a box, in no pair: broken ones */
+    bool kept;      /* these are the last list's pairs: previous[k] is k, none is new, none is lost */
+} narc_pair_list;
+
 /* A list of pairs that narc_update_pairs() made, and whose pairs they are. */
 typedef struct narc_kept_list {
-    narc_pair_list list; /* as the caller sees it */
+    narc_pair_list list; /* as others see it */
     void *pair_memory;
     size_t pair_capacity, lost_capacity, id_capacity;
     /* for each pair */
-    uint32_t *a, *b, *previous, *selected, *added;
+    uint32_t *a, *b, *previous, *added;
     uint8_t *marks;
     uint8_t *matched; /* 1: the next list has it */
     narc_lost_pair *lost;
     uint64_t *ids; /* of each body, if has_ids; else they are their numbers */
-    bool has_ids;
+    uint8_t *gone; /* beside ids; 1: it was taken out since */
+    bool has_ids, has_gone;
     size_t body_count;
 } narc_kept_list;
 
@@ -128,7 +156,8 @@ struct narc_broad_phase {
     /* what narc_update_pairs() keeps */
     narc_kept_list lists[2]; /* the last one, and memory for the next */
     int last;
-    bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters` */
+    bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters`, or the given ones */
+    bool is_given;        /* its pairs were the caller's */
     bool is_sorted;       /* what is sorted below are the kept boxes, but for unsorted ones */
     bool has_filter;      /* `kinds` and `filters` are in use */
     bool has_sets;        /* `filters` may say other than that all bodies may form pairs */

@@ -47,10 +47,9 @@ narc_box narc_widen_box(narc_box box, float by) {
     return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
 }
 
-/* With so much room, and a reach of its own; empty if that is broken. */
-static narc_box add_room(narc_box box, float room, float own) {
-    const bool fine = narc_is_box(&box) && own >= 0 && own <= FLT_MAX;
-    return fine ? narc_widen_box(narc_widen_box(box, room), own) : narc_empty_box();
+/* With a reach of its own; empty if that is broken. */
+static narc_box add_reach(narc_box box, float reach) {
+    return narc_is_box(&box) && reach >= 0 && reach <= FLT_MAX ? narc_widen_box(box, reach) : narc_empty_box();
 }
 
 /* ------------------------------------------------------------------------------------------------ what has moved */
@@ -170,7 +169,7 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
         skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
     for (size_t i = 0; i < count && (job->reach.base || job->ahead.base); i++) {
         const float ahead = narc_float_or(job->ahead, list[i], 0), reach = narc_float_or(job->reach, list[i], 0);
-        job->out_boxes[list[i]] = add_room(job->out_boxes[list[i]], 0, ahead >= 0 && ahead <= FLT_MAX ? reach : -1);
+        job->out_boxes[list[i]] = add_reach(job->out_boxes[list[i]], ahead >= 0 && ahead <= FLT_MAX ? reach : -1);
     }
     if (skipped > 0)
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
@@ -213,11 +212,6 @@ narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bod
 
 /* ------------------------------------------------------------------------------------------------ boxes of a step */
 
-void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes) {
-    for (size_t k = 0; k < count; k++)
-        out_boxes[k] = add_room(boxes[k], room, narc_float_or(reach, k, 0));
-}
-
 void narc_forget_poses(narc_broad_phase *broad) {
     broad->known.count = 0;
     if (broad->body_capacity > 0)
@@ -225,10 +219,10 @@ void narc_forget_poses(narc_broad_phase *broad) {
 }
 
 /* Are the listed bodies, and their shapes, there? */
-static narc_status check_moved(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column moved,
-                               size_t count, narc_error *error) {
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t body = narc_index_at(moved, i);
+static narc_status check_moved(const narc_shapes *shapes, const narc_step *step, narc_error *error) {
+    const narc_bodies *const bodies = step->bodies;
+    for (size_t i = 0; i < step->moved_count; i++) {
+        const uint32_t body = narc_index_at(step->moved, i);
         size_t one = 1;
         if (body >= bodies->count)
             return narc_fail(error, NARC_ERROR_INDEX, i, body, "step.moved[%zu] is body %lu, but there are %zu bodies",
@@ -240,43 +234,37 @@ static narc_status check_moved(const narc_shapes *shapes, const narc_bodies *bod
     return NARC_OK;
 }
 
-static bool has_motions(const narc_pair_options *options, const narc_moved_bodies *moved) {
-    return options->motion_x.base || options->motion_y.base || options->reach.base ||
-           (moved && (moved->ahead.base || moved->run.base));
+static bool has_motions(const narc_step *step) {
+    return step->motion_x.base || step->motion_y.base || step->reach.base || step->ahead.base || step->run.base;
 }
 
-bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                          const narc_pair_options *options, const narc_moved_bodies *moved) {
+bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step) {
     const narc_known_poses *const known = &broad->known;
-    return known->precision == bodies->x.precision && known->shapes == shapes && known->history == shapes->history &&
-           known->margin == options->margin && known->skin == options->skin &&
-           known->has_motions == has_motions(options, moved);
+    return known->precision == step->bodies->x.precision && known->shapes == shapes &&
+           known->history == shapes->history && known->margin == step->margin && known->skin == step->skin &&
+           known->has_motions == has_motions(step);
 }
 
-narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, const narc_moved_bodies *moved,
-                                    narc_error *error) {
-    const narc_box_options box_options = {.margin = options->margin * 0.5f,
-                                          .motion_x = options->motion_x,
-                                          .motion_y = options->motion_y,
-                                          .workers = options->workers};
+narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
+                                    bool listed, narc_error *error) {
+    const narc_bodies *const bodies = step->bodies;
+    const narc_box_options box_options = {.margin = step->margin * 0.5f,
+                                          .motion_x = step->motion_x,
+                                          .motion_y = step->motion_y,
+                                          .workers = step->workers};
     narc_known_poses *const known = &broad->known;
-    const bool listed = moved && moved->listed;
-    if (!narc_are_poses_known(broad, shapes, bodies, options, moved))
+    if (!narc_are_poses_known(broad, shapes, step))
         narc_forget_poses(broad);
-    known->has_motions = has_motions(options, moved);
-    box_job job = {.known = known,
-                   .reach = options->reach,
-                   .ahead = moved ? moved->ahead : (narc_float_column){NULL, 0},
-                   .run = moved ? moved->run : (narc_index_column){NULL, 0},
-                   .out_boxes = broad->boxes_now};
-    size_t count = listed ? moved->count : 0;
+    known->has_motions = has_motions(step);
+    box_job job = {
+        .known = known, .reach = step->reach, .ahead = step->ahead, .run = step->run, .out_boxes = broad->boxes_now};
+    size_t count = listed ? step->moved_count : 0;
     narc_status status = NARC_OK;
     if (listed) {
-        job.moved = moved->body;
-        status = check_moved(shapes, bodies, moved->body, count, error);
+        job.moved = step->moved;
+        status = check_moved(shapes, step, error);
     } else
-        status = narc_check_bodies(shapes, bodies, 0, &count, options->workers, error);
+        status = narc_check_bodies(shapes, bodies, 0, &count, step->workers, error);
     if (status == NARC_OK)
         status = compute_boxes(shapes, bodies, &box_options, count, &job, error);
     if (status != NARC_OK)
@@ -285,7 +273,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     known->precision = bodies->x.precision;
     known->shapes = shapes;
     known->history = shapes->history;
-    known->margin = options->margin;
-    known->skin = options->skin;
+    known->margin = step->margin;
+    known->skin = step->skin;
     return NARC_OK;
 }

@@ -313,6 +313,36 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
     return NARC_OK;
 }
 
+narc_status narc_hold_pairs(narc_broad_phase *broad, const narc_pairs *pairs, size_t count,
+                            const narc_pair_filter *filter, size_t *out_count, narc_error *error) {
+    const size_t blocks = pairs->count / NARC_PAIR_BLOCK + 1;
+    if (narc_reserve_boxes(broad, count) != NARC_OK || narc_reserve_blocks(broad, blocks) != NARC_OK)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)pairs->count, "not enough memory for %zu pairs",
+                         pairs->count);
+    broad->is_sorted = false;
+    atomic_store_explicit(&broad->block_count, blocks, memory_order_relaxed);
+    *out_count = 0;
+    for (size_t block = 0; block < blocks; block++) {
+        const size_t first = block * NARC_PAIR_BLOCK, left = pairs->count - first;
+        narc_found_pairs held = {.a = broad->pair_a + first, .b = broad->pair_b + first};
+        for (; held.count < left && held.count < NARC_PAIR_BLOCK; held.count++) {
+            const size_t k = first + held.count;
+            const uint32_t a = narc_index_at(pairs->a, k), b = narc_index_at(pairs->b, k), high = a > b ? a : b;
+            if (high >= count)
+                return narc_fail(error, NARC_ERROR_INDEX, k, high, "pair %zu: body %lu, but there are %zu bodies", k,
+                                 (unsigned long)high, count);
+            if (a == b)
+                return narc_fail(error, NARC_ERROR_ARGUMENT, k, a, "pair %zu: both are body %lu", k, (unsigned long)a);
+            held.a[held.count] = a;
+            held.b[held.count] = b;
+        }
+        held.count = narc_filter_pairs(filter, held.a, held.b, 0, held.count);
+        broad->blocks[block] = describe_block(&held, 2);
+        *out_count += held.count;
+    }
+    return NARC_OK;
+}
+
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
                                   const narc_workers *workers, size_t found, uint32_t *out_a, uint32_t *out_b,
                                   narc_error *error) {

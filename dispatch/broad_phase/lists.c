@@ -144,40 +144,8 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
-/* Sensors are listed from the end of the memory for all pairs, and then turned round. */
-static void mark_pairs_by_kinds(const uint8_t *kinds, narc_kept_list *made) {
-    const unsigned rest = NARC_STATIC | NARC_ASLEEP;
-    const size_t count = made->list.pairs.count;
-    uint32_t *const selected = made->selected;
-    size_t contacts = 0, sensors = 0;
-    for (size_t k = 0; k < count; k++) {
-        const unsigned a = kinds[made->a[k]], b = kinds[made->b[k]];
-        const bool tested = !(a & rest && b & rest), sensor = (a | b) & NARC_SENSOR;
-        made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | a | b);
-        selected[contacts] = (uint32_t)k;
-        contacts += tested && !sensor;
-        if (tested && sensor)
-            selected[count - ++sensors] = (uint32_t)k;
-    }
-    uint32_t *const first = selected + count - sensors;
-    for (size_t k = 0; k < sensors / 2; k++) {
-        const uint32_t moved = first[k];
-        first[k] = first[sensors - 1 - k];
-        first[sensors - 1 - k] = moved;
-    }
-    made->list.contact_count = contacts;
-    made->list.sensor_count = sensors;
-}
-
 void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
-    narc_pair_list *const list = &made->list;
-    list->contact_count = list->sensor_count = 0;
-    if (broad->has_filter) {
-        mark_pairs_by_kinds(broad->kinds, made);
-    } else { /* all move, and none is a sensor */
-        list_numbers(made->selected, 0, (uint32_t)list->pairs.count);
-        list->contact_count = list->pairs.count;
-    }
-    list->contacts = made->selected;
-    list->sensors = made->selected + list->pairs.count - list->sensor_count;
+    const uint8_t *const kinds = broad->kinds;
+    for (size_t k = 0; k < made->list.pairs.count && broad->has_filter; k++)
+        made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | kinds[made->a[k]] | kinds[made->b[k]]);
 }

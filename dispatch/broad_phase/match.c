@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * match.c - narc_match_pairs() and narc_gather(): what of the last step belongs to the pairs of this one.
+ * match.c - narc_match_pairs(): which pair of an old list each of a new one was.
  *
  * Two lists in order are walked side by side. Otherwise the old pairs go into buckets by a hash, which mostly have one
  * or two. Many pairs may have one hash, of lists that were made for it all of them; a bucket with more than a few is in
@@ -8,7 +8,6 @@
  */
 #include "column.h"
 #include "dispatch.h"
-#include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
 
@@ -141,18 +140,7 @@ static narc_status make_buckets(narc_broad_phase *broad, const narc_pairs *pairs
     return NARC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ the calls */
-
-static narc_status check_pairs(const narc_pairs *pairs, const char *name, narc_error *error) {
-    if (!pairs)
-        return narc_fail_missing(error, name);
-    if (pairs->count > UINT32_MAX - 1)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%s: %zu pairs, at most %lu", name,
-                         pairs->count, (unsigned long)(UINT32_MAX - 1));
-    if (pairs->count > 0 && (!pairs->a.base || !pairs->b.base))
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s.%c is NULL", name, pairs->a.base ? 'b' : 'a');
-    return narc_check_reserved(pairs->reserved, 2, name, error);
-}
+/* ------------------------------------------------------------------------------------------------ the walk */
 
 typedef struct matching {
     buckets old;
@@ -177,31 +165,11 @@ void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pair
 }
 
 narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
-                             const narc_workers *workers, uint32_t *out_match, narc_error *error) {
+                             const narc_workers *workers, uint32_t *out_match) {
     matching m = {{.pairs = old_pairs}, new_pairs, out_match};
-    narc_status status = check_pairs(old_pairs, "old_pairs", error);
-    if (status == NARC_OK)
-        status = check_pairs(new_pairs, "new_pairs", error);
-    if (status != NARC_OK)
-        return status;
-    if (!broad || (new_pairs->count > 0 && !out_match))
-        return narc_fail_missing(error, broad ? "out_match" : "broad");
     if ((!is_in_order(old_pairs, workers) || !is_in_order(new_pairs, workers)) &&
         make_buckets(broad, old_pairs, &m.old) != NARC_OK)
-        return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
-                         old_pairs->count);
+        return NARC_ERROR_MEMORY;
     narc_run_ranges(workers, new_pairs->count, PART, match_part, &m);
     return NARC_OK;
-}
-
-void narc_gather(const uint32_t *match, size_t count, size_t size, const void *items, void *out_items) {
-    for (size_t k = 0; k < count; k++) {
-        char *const to = (char *)out_items + k * size;
-        if (match[k] == NARC_NO_MATCH)
-            memset(to, 0, size);
-        else if (size == sizeof(uint32_t)) /* the usual size, without a call */
-            memcpy(to, (const char *)items + match[k] * sizeof(uint32_t), sizeof(uint32_t));
-        else
-            memcpy(to, (const char *)items + match[k] * size, size);
-    }
 }

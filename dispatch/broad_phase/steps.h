@@ -8,6 +8,7 @@
 #include "broad_phase.h"
 #include "column.h"
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 #include "narc_workers.h"
 
 #include <float.h>
@@ -84,32 +85,34 @@ static inline narc_box narc_empty_box(void) { return (narc_box){INFINITY, INFINI
 /* A box that is larger on each side by at least `by`, hardly more, and finite. */
 narc_box narc_widen_box(narc_box box, float by);
 
-/* The boxes with so much room, and each body's own reach. A body whose reach is broken has none. */
-void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes);
-
-/* The only bodies that may be others than in the last call: by pose, motion, filter, id; each once. */
-typedef struct narc_moved_bodies {
-    narc_index_column body;
-    size_t count;
-    bool listed;             /* else all may be others */
-    narc_float_column ahead; /* of narc_step: who has another is reshaped */
-    narc_index_column run;   /* the same */
-} narc_moved_bodies;
-
-/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, and without a look at them if they
- * are not listed; `moved` NULL: all may have moved. Errors as narc_compute_boxes() has them. */
-narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, const narc_moved_bodies *moved,
-                                    narc_error *error);
+/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, and without a look at them if those that
+ * have are `listed`. Errors as narc_compute_boxes() has them. */
+narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
+                                    bool listed, narc_error *error);
 
 /* Does what is known of all poses still count? */
-bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                          const narc_pair_options *options, const narc_moved_bodies *moved);
+bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step);
 
-/* narc_update_pairs(), where bodies that moved may be listed; NULL: all may have. */
-narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, const narc_moved_bodies *given,
-                                    const narc_pair_list **out_list, narc_error *error);
+/* The pairs of bodies that are closer than the step's margin, and perhaps others, none further apart than margin + 3 * skin
+ * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made; or the caller's own pairs.
+ *   A list has all pairs of KEPT BOXES that overlap and may form a pair. When a body has left its kept box, or has
+ * another filter, it and all bodies with less than half of the skin, or more than one and a half, left on a side get new
+ * ones, larger than they are now by the skin. All bodies do if there are more or fewer than in the last call, or others
+ * by their ids, with the first filter, after narc_forget_pairs(), and perhaps after a call that failed.
+ *   step      its lengths and reserved pointers are checked
+ *   out_list  see narc_pair_list. A broken body (narc_bodies; also one whose motion or reach is NaN, infinite, or below 0 as
+ *             a reach) is in no pair that was found, and counted in `skipped`
+ * The list depends on the bodies of this call and of those before. For the same calls it is the same, bit by bit, for any
+ * number of threads and whichever way it was made.
+ *   Time: a look at each body, and narc_compute_boxes() of those whose position, rotation, scale or shape differs from
+ * the last call's (of all where the store of shapes has changed). With a new list also a walk over all pairs, and a search
+ * for those of the bodies with new boxes; if these are more than one in 16, or others by their ids, the time of
+ * narc_find_pairs() and narc_match_pairs().
+ *   Memory: some 240 bytes for each body, 260 with ids, and some 55 for each pair, and a quarter of it for growth; kept
+ * from step to step.
+ *   On an error the last list is as it was and valid, and the next call goes on from there. */
+narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
+                              const narc_pair_list **out_list, narc_error *error);
 
 /* What follows, or came before, the last call failed: the next one makes a list from nothing that is kept, and compares it
  * with the last list, or, if that was `made` in the last call, with the one before. */
@@ -117,6 +120,20 @@ void narc_take_back_pairs(narc_broad_phase *broad, bool made);
 
 /* Knows no pose: all bodies may have moved. */
 void narc_forget_poses(narc_broad_phase *broad);
+
+/* Takes bodies with these ids out of the last list, which has their pairs still: the next one has lost them, and a body with
+ * such an id is new. NARC_ERROR_MEMORY: none is taken out. */
+narc_status narc_forget_ids(narc_broad_phase *broad, const uint64_t *ids, size_t count, narc_error *error);
+
+/* Forgets the list, and keeps the memory: all pairs of the next list are new, and none is lost. */
+void narc_forget_pairs(narc_broad_phase *broad);
+
+/* For each pair of a new list: its index in an old list, or NARC_NO_MATCH. Pairs (a, b) and (b, a) are different. Both
+ * lists may be in any order; two lists in the order of (a, b) are matched without memory, in one walk. Others take up to 15
+ * bytes for each old pair and time that grows with n log n at most, whatever the pairs are. If a pair stands several times
+ * in the old list, the first counts. At most 2^32 - 2 pairs each. NARC_ERROR_MEMORY. */
+narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
+                             const narc_workers *workers, uint32_t *out_match);
 
 /* The first of places from .. count - 1 with a flag, or `count`. */
 static inline size_t narc_find_flag(const uint8_t *flags, size_t from, size_t count) {
@@ -132,7 +149,12 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error);
 
-/* The same for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they
+/* Holds given pairs that the filter lets as if they had been found, of `count` bodies. NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX
+ * (`error` names the pair), NARC_ERROR_MEMORY. */
+narc_status narc_hold_pairs(narc_broad_phase *broad, const narc_pairs *pairs, size_t count,
+                            const narc_pair_filter *filter, size_t *out_count, narc_error *error);
+
+/* The same as narc_sweep_boxes() for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they
  * were when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all
  * pairs, which are then to be found. */
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,

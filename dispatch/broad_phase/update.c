@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * update.c - narc_update_pairs(): pairs that are kept while no body has left its skin, and found and matched otherwise.
+ * update.c - narc_update_pairs(): pairs that are kept while no body has left its skin, and found and matched otherwise; or
+ * pairs that the caller gives, which are matched alike.
  *
  * Whatever may fail comes before the last list is touched: the next list is made in memory of its own, and takes its
  * place when it is whole.
@@ -18,9 +19,8 @@ enum { BODY_PART = 4096 };
 
 typedef struct update {
     narc_broad_phase *broad;
-    const narc_box *boxes; /* of the bodies, without the skin */
-    size_t count;
-    const narc_pair_options *options;
+    size_t count; /* of bodies */
+    const narc_step *step;
     narc_error *error;
 } update;
 
@@ -49,7 +49,7 @@ static bool is_near(const narc_box *box, const narc_box *kept, float half) {
 }
 
 static narc_pair_filter filter_in_use(const update *u) {
-    return u->options->filter ? *u->options->filter : (narc_pair_filter){.kind = {0}};
+    return u->step->filter ? *u->step->filter : (narc_pair_filter){.kind = {0}};
 }
 
 static bool has_sets(const update *u) {
@@ -104,13 +104,13 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
     const narc_pair_filter filter = filter_in_use(u); /* a copy, which nothing that is written could change */
-    const float half = u->options->skin / 2;
+    const float half = u->step->skin / 2;
     bool left = false, rest = false;
     size_t fresh_count = 0, k = first;
     (void)part;
     memset(broad->fresh + first, 0, end - first);
     for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
-        const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
+        const narc_box *const box = &u->broad->boxes_now[k], *const kept = &broad->kept_boxes[k];
         const bool moved = broad->known.moved[k];
         bool out = false;
         if (all->use_kinds) {
@@ -136,39 +136,45 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
         atomic_fetch_or_explicit(&all->found, (left ? LEFT : 0u) | (rest ? REST : 0u), memory_order_relaxed);
 }
 
+/* Are the pairs others than the last list's, whatever bodies do now: given ones, or found ones and no longer given, or were
+ * bodies taken out? */
+static bool are_other_pairs(const update *u) {
+    const narc_broad_phase *const broad = u->broad;
+    return broad->lists[broad->last].has_gone || broad->is_given != (u->step->pairs != NULL) ||
+           (u->step->pairs && !u->step->same_pairs);
+}
+
 static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
-    const bool filter = u->options->filter, had_filter = u->broad->has_filter;
+    const bool filter = u->step->filter, had_filter = u->broad->has_filter;
     changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), 0, 0};
-    if (!u->broad->is_current || (filter && !had_filter))
+    if (!u->broad->is_current || (filter && !had_filter) || are_other_pairs(u))
         return WHOLE;
-    narc_run_ranges(u->options->workers, u->count, BODY_PART, look_at_some, &all);
+    narc_run_ranges(u->step->workers, u->count, BODY_PART, look_at_some, &all);
     *out_fresh_count = atomic_load_explicit(&all.fresh_count, memory_order_relaxed);
     return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
 
 static uint64_t id_of(const update *u, size_t body) {
-    return u->options->id.base ? narc_word_at(u->options->id, body) : body;
+    return u->step->id.base ? narc_word_at(u->step->id, body) : body;
 }
 
 /* Can a look at the listed bodies stand for one at all, as the others are those of the last list? */
-static bool may_trust(const update *u, const narc_shapes *shapes, const narc_bodies *bodies,
-                      const narc_moved_bodies *moved) {
+static bool may_trust(const update *u, const narc_shapes *shapes) {
     const narc_broad_phase *const broad = u->broad;
     const narc_kept_list *const last = &broad->lists[broad->last];
-    return broad->is_current && u->count == last->body_count && u->count == broad->known.count &&
-           narc_are_poses_known(broad, shapes, bodies, u->options, moved) &&
-           !broad->has_filter == !u->options->filter && broad->has_sets == has_sets(u) &&
-           !last->has_ids == !u->options->id.base;
+    return broad->is_current && u->count == last->body_count && u->count == broad->known.count && !are_other_pairs(u) &&
+           narc_are_poses_known(broad, shapes, u->step) && !broad->has_filter == !u->step->filter &&
+           broad->has_sets == has_sets(u) && !last->has_ids == !u->step->id.base;
 }
 
 /* What listed bodies ask for: nothing, REST, or a look at all, WHOLE. */
-static unsigned look_at_listed(const update *u, const narc_moved_bodies *listed) {
+static unsigned look_at_listed(const update *u) {
     const narc_broad_phase *const broad = u->broad;
     const narc_kept_list *const last = &broad->lists[broad->last];
     unsigned found = 0;
-    for (size_t i = 0; i < listed->count; i++) {
-        const size_t k = narc_index_at(listed->body, i);
-        const narc_box *const box = &u->boxes[k];
+    for (size_t i = 0; i < u->step->moved_count; i++) {
+        const size_t k = narc_index_at(u->step->moved, i);
+        const narc_box *const box = &u->broad->boxes_now[k];
         if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
             (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k)))
             return WHOLE;
@@ -187,8 +193,8 @@ static unsigned look_at_listed(const update *u, const narc_moved_bodies *listed)
 /* Are body k and body k of the last list the same, for all of both? */
 static bool are_same(const update *u) {
     const narc_kept_list *const last = &u->broad->lists[u->broad->last];
-    bool same = u->count == last->body_count;
-    if (u->options->id.base || last->has_ids)
+    bool same = u->count == last->body_count && !last->has_gone;
+    if (u->step->id.base || last->has_ids)
         for (size_t k = 0; same && k < u->count; k++)
             same = id_of(u, k) == (last->has_ids ? last->ids[k] : k);
     return same;
@@ -236,6 +242,8 @@ static narc_status number_bodies(const update *u, narc_kept_list *list) {
         return fail_memory(u, list->body_count, "bodies");
     for (size_t k = 0; k < list->body_count; k++)
         list->ids[k] = k;
+    if (list->body_count > 0)
+        memset(list->gone, 0, list->body_count);
     list->has_ids = true;
     return NARC_OK;
 }
@@ -245,25 +253,32 @@ static narc_status number_bodies(const update *u, narc_kept_list *list) {
 static narc_status find_last_indices(const update *u, narc_kept_list *last, narc_kept_list *made, bool same) {
     narc_broad_phase *const broad = u->broad;
     made->body_count = u->count;
-    made->has_ids = u->options->id.base || last->has_ids;
+    made->has_ids = u->step->id.base || last->has_ids;
+    made->has_gone = false;
     if (!made->has_ids)
         return NARC_OK; /* body k is body k */
     if (narc_reserve_ids(broad, made, u->count) != NARC_OK)
         return fail_memory(u, u->count, "bodies");
     for (size_t k = 0; k < u->count; k++)
         made->ids[k] = id_of(u, k);
+    if (u->count > 0)
+        memset(made->gone, 0, u->count);
     if (same)
         return NARC_OK;
     narc_status status = number_bodies(u, last);
     const narc_pairs before = view_ids(last), now = view_ids(made);
     if (status == NARC_OK)
-        status = narc_match_pairs(broad, &before, &now, u->options->workers, broad->last_index, u->error);
+        status = narc_match_pairs(broad, &before, &now, u->step->workers, broad->last_index) == NARC_OK
+                     ? NARC_OK
+                     : fail_memory(u, u->count, "bodies");
     if (status != NARC_OK)
         return status;
     if (last->body_count > 0)
         memset(broad->taken, 0, last->body_count);
     for (size_t k = 0; k < u->count; k++) {
-        const uint32_t index = broad->last_index[k];
+        uint32_t *const last_index = &broad->last_index[k], index = *last_index;
+        if (index != NARC_NO_MATCH && last->gone[index])
+            *last_index = index = NARC_NO_MATCH;
         if (index != k) /* its pose was compared with another body's */
             broad->known.changed[k] = NARC_ALL_CHANGED;
         if (index != NARC_NO_MATCH && broad->taken[index]++)
@@ -278,21 +293,25 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
 /* Gives fresh bodies boxes with the skin, as the new list knows them, and all bodies their filters. Returns how many
  * have no box, if it was so many in the last list. */
 static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
+    static const narc_box everything = {-INFINITY, -INFINITY, INFINITY, INFINITY}; /* none leaves it */
     narc_broad_phase *const broad = u->broad;
     const bool whole = found & WHOLE;
     if (whole) {
         memset(broad->fresh, 1, u->count);
         skipped = 0;
     }
-    broad->has_filter = u->options->filter;
+    broad->has_filter = u->step->filter;
     broad->has_sets = has_sets(u);
+    broad->is_given = u->step->pairs;
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
         broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
-        const bool has = narc_is_box(&u->boxes[k]);
+        const bool has = narc_is_box(&u->broad->boxes_now[k]);
         skipped += !has;
         skipped -= !whole && !has_kept_box(broad, k);
-        broad->kept_boxes[k] = has ? narc_widen_box(u->boxes[k], u->options->skin) : narc_empty_box();
+        broad->kept_boxes[k] = !has              ? narc_empty_box()
+                               : broad->is_given ? everything
+                                                 : narc_widen_box(broad->boxes_now[k], u->step->skin);
         broad->known.moved[k] = 0;
         if (broad->has_filter) {
             broad->filters[k] = filter_of(u, k);
@@ -319,18 +338,32 @@ static narc_status begin_list(const update *u, narc_kept_list *last, narc_kept_l
     return NARC_OK;
 }
 
-/* Finds all pairs, and what they were. */
+/* Of the pairs that the caller gives none stands twice. */
+static narc_status check_each_once(const update *u, const narc_kept_list *made) {
+    for (size_t k = 1; k < made->list.pairs.count; k++)
+        if (made->a[k] == made->a[k - 1] && made->b[k] == made->b[k - 1])
+            return narc_fail(u->error, NARC_ERROR_ARGUMENT, made->a[k], made->b[k],
+                             "step.pairs has bodies %lu and %lu twice", (unsigned long)made->a[k],
+                             (unsigned long)made->b[k]);
+    return NARC_OK;
+}
+
+/* Finds all pairs, or takes the given ones, and what they were. */
 static narc_status find_all(const update *u, bool same, narc_kept_list *last, narc_kept_list *made, size_t skipped,
                             size_t *out_lost) {
     narc_broad_phase *const broad = u->broad;
-    const narc_pair_filter *const filter = u->options->filter;
-    const narc_workers *const workers = u->options->workers;
+    const narc_pair_filter *const filter = u->step->filter;
+    const narc_workers *const workers = u->step->workers;
     size_t found = 0;
-    narc_status status = narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, workers, &found, u->error);
+    narc_status status = u->step->pairs
+                             ? narc_hold_pairs(broad, u->step->pairs, u->count, filter, &found, u->error)
+                             : narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, workers, &found, u->error);
     if (status == NARC_OK)
         status = begin_list(u, last, made, found, skipped);
     if (status == NARC_OK)
         status = narc_list_found_pairs(broad, u->count, filter, workers, found, made->a, made->b, u->error);
+    if (status == NARC_OK && u->step->pairs)
+        status = check_each_once(u, made);
     if (status != NARC_OK)
         return status;
     if (!same && made->has_ids)
@@ -350,7 +383,7 @@ static narc_status merge_lists(const update *u, narc_kept_list *last, narc_kept_
     uint32_t *const a = broad->match_memory, *const b = found ? a + found : a; /* of nothing it may be NULL */
     narc_status status = begin_list(u, last, made, last->list.pairs.count + found, skipped);
     if (status == NARC_OK)
-        status = narc_list_found_pairs(broad, u->count, u->options->filter, u->options->workers, found, a, b, u->error);
+        status = narc_list_found_pairs(broad, u->count, u->step->filter, u->step->workers, found, a, b, u->error);
     if (status == NARC_OK)
         *out_lost = narc_merge_pairs(broad->fresh, last, made, a, b, found);
     return status;
@@ -360,7 +393,7 @@ static narc_status merge_lists(const update *u, narc_kept_list *last, narc_kept_
 static narc_status make_list(const update *u, bool same, unsigned found, size_t fresh_count, narc_kept_list *last,
                              narc_kept_list *made) {
     narc_broad_phase *const broad = u->broad;
-    const bool sorted = !(found & WHOLE) && broad->is_sorted;
+    const bool sorted = !(found & WHOLE) && broad->is_sorted && !u->step->pairs;
     size_t lost_count = 0, fresh_pairs = 0;
     narc_status status = find_last_indices(u, last, made, same);
     if (status != NARC_OK)
@@ -368,7 +401,7 @@ static narc_status make_list(const update *u, bool same, unsigned found, size_t 
     broad->is_current = false; /* as long as the kept boxes are not the last list's */
     const size_t skipped = keep_bodies(u, found, last->list.skipped);
     if (sorted &&
-        narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, u->options->workers,
+        narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->step->filter, u->step->workers,
                          &fresh_pairs) &&
         fresh_pairs < UINT32_MAX - last->list.pairs.count)
         status = merge_lists(u, last, made, skipped, fresh_pairs, &lost_count);
@@ -383,9 +416,9 @@ static narc_status make_list(const update *u, bool same, unsigned found, size_t 
     return NARC_OK;
 }
 
-static narc_status finish(const update *u, const narc_moved_bodies *moved, const narc_pair_list **out_list) {
+static narc_status finish(const update *u, bool listed, const narc_pair_list **out_list) {
     narc_broad_phase *const broad = u->broad;
-    const unsigned asked = moved && moved->listed ? look_at_listed(u, moved) : WHOLE;
+    const unsigned asked = listed ? look_at_listed(u) : WHOLE;
     if (!(asked & WHOLE)) {
         keep_list(u, asked & REST);
         *out_list = &broad->lists[broad->last].list;
@@ -401,59 +434,44 @@ static narc_status finish(const update *u, const narc_moved_bodies *moved, const
         if (status != NARC_OK)
             return status;
         broad->last = next;
-        broad->is_current = broad->is_sorted = broad->renewed = broad->marked = true;
+        broad->is_current = broad->renewed = broad->marked = true;
+        broad->is_sorted = !broad->is_given;
     } else
         keep_list(u, found & REST);
     *out_list = &broad->lists[broad->last].list;
     return NARC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ the calls */
+/* ------------------------------------------------------------------------------------------------ the call */
 
-/* Checks what both calls share, and makes room for the bodies. */
-static narc_status begin(const update *u, const narc_pair_list **out_list) {
-    if (!u->broad || !out_list)
-        return narc_fail_missing(u->error, u->broad ? "out_list" : "broad");
-    narc_status status = narc_check_length(u->options->margin, "options", "margin", u->error);
-    if (status == NARC_OK)
-        status = narc_check_length(u->options->skin, "options", "skin", u->error);
-    if (status == NARC_OK)
-        status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
-    if (status == NARC_OK && u->options->filter)
-        status = narc_check_reserved(u->options->filter->reserved, 2, "filter", u->error);
-    if (status == NARC_OK)
-        status = narc_check_count(u->count, UINT32_MAX - 1, "bodies", u->error);
-    if (status != NARC_OK)
-        return status;
-    const size_t last_count = u->broad->lists[u->broad->last].body_count;
-    return narc_reserve_bodies(u->broad, u->count > last_count ? u->count : last_count) == NARC_OK
-               ? NARC_OK
-               : fail_memory(u, u->count, "bodies");
+static narc_status check_own_pairs(const update *u) {
+    const narc_pairs *const pairs = u->step->pairs;
+    if (pairs->count > 0 && (!pairs->a.base || !pairs->b.base))
+        return narc_fail_missing(u->error, pairs->a.base ? "step.pairs.b" : "step.pairs.a");
+    if (pairs->other_bodies || pairs->shift_x.base || pairs->shift_y.base)
+        return narc_fail(u->error, NARC_ERROR_ARGUMENT, 0, 0,
+                         "step.pairs with %s: contacts are of one set, as it stands",
+                         pairs->other_bodies ? "other_bodies" : "shifts");
+    narc_status status = narc_check_reserved(pairs->reserved, 2, "step.pairs", u->error);
+    return status == NARC_OK ? narc_check_count(pairs->count, UINT32_MAX - 1, "pairs", u->error) : status;
 }
 
-static const narc_pair_options defaults = {.margin = 0};
-
-narc_status narc_update_moved_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                    const narc_pair_options *options, const narc_moved_bodies *given,
-                                    const narc_pair_list **out_list, narc_error *error) {
-    if (!shapes || !bodies)
-        return narc_fail_missing(error, shapes ? "bodies" : "shapes");
-    update u = {broad, NULL, bodies->count, options ? options : &defaults, error};
-    narc_status status = begin(&u, out_list);
+narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
+                              const narc_pair_list **out_list, narc_error *error) {
+    const size_t count = step->bodies->count, last_count = broad->lists[broad->last].body_count;
+    const update u = {broad, count, step, error};
+    narc_status status = narc_check_count(count, UINT32_MAX - 1, "bodies", error);
+    if (status == NARC_OK && step->filter)
+        status = narc_check_reserved(step->filter->reserved, 2, "filter", error);
+    if (status == NARC_OK && step->pairs)
+        status = check_own_pairs(&u);
+    if (status == NARC_OK && narc_reserve_bodies(broad, count > last_count ? count : last_count) != NARC_OK)
+        status = fail_memory(&u, count, "bodies");
     if (status != NARC_OK)
         return status;
-    narc_moved_bodies moved = given ? *given : (narc_moved_bodies){.listed = false};
-    moved.listed = moved.listed && may_trust(&u, shapes, bodies, &moved);
-    status = narc_compute_step_boxes(broad, shapes, bodies, u.options, &moved, error);
-    if (status != NARC_OK)
-        return status;
-    u.boxes = broad->boxes_now;
-    return finish(&u, &moved, out_list);
-}
-
-narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                              const narc_pair_options *options, const narc_pair_list **out_list, narc_error *error) {
-    return narc_update_moved_pairs(broad, shapes, bodies, options, NULL, out_list, error);
+    const bool listed = (step->moved.base || step->moved.stride) && may_trust(&u, shapes);
+    status = narc_compute_step_boxes(broad, shapes, step, listed, error);
+    return status == NARC_OK ? finish(&u, listed, out_list) : status;
 }
 
 void narc_take_back_pairs(narc_broad_phase *broad, bool made) {
@@ -463,30 +481,20 @@ void narc_take_back_pairs(narc_broad_phase *broad, bool made) {
         memset(broad->known.changed, NARC_ALL_CHANGED, broad->body_capacity);
 }
 
-narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                                  const narc_pair_options *options, const narc_pair_list **out_list,
-                                  narc_error *error) {
-    update u = {broad, boxes, count, options ? options : &defaults, error};
-    const narc_status status = begin(&u, out_list);
-    if (status != NARC_OK)
-        return status;
-    if (count > 0 && !boxes)
-        return narc_fail_missing(error, "boxes");
-    if (u.options->motion_x.base || u.options->motion_y.base)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.motion with boxes, which hold their motion");
-    narc_forget_poses(broad);
-    if (u.options->margin > 0 || u.options->reach.base) {
-        narc_add_room(boxes, count, u.options->margin * 0.5f, u.options->reach, broad->boxes_now);
-        u.boxes = broad->boxes_now;
-    }
-    return finish(&u, NULL, out_list);
+narc_status narc_forget_ids(narc_broad_phase *broad, const uint64_t *ids, size_t count, narc_error *error) {
+    const update u = {.broad = broad, .error = error};
+    narc_kept_list *const last = &broad->lists[broad->last];
+    narc_status status = number_bodies(&u, last);
+    for (size_t k = 0; k < count && status == NARC_OK; k++)
+        for (size_t body = 0; body < last->body_count; body++)
+            if (last->ids[body] == ids[k])
+                last->gone[body] = last->has_gone = true;
+    return status;
 }
 
 void narc_forget_pairs(narc_broad_phase *broad) {
-    if (!broad)
-        return;
     narc_kept_list *const last = &broad->lists[broad->last];
     last->list = (narc_pair_list){.kept = false};
     last->body_count = 0;
-    last->has_ids = broad->is_current = false;
+    last->has_ids = last->has_gone = broad->is_current = false;
 }

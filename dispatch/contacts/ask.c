@@ -31,6 +31,7 @@ narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, 
     const narc_bodies *const bodies = s->step->bodies;
     narc_query query = make_query(s, slots ? c->margins : c->ground_margins, selection, count);
     query.dense = slots;
+    query.row_stride = slots ? (ptrdiff_t)c->row_stride : 0;
     query.hints = (narc_hint_column){slots ? c->hints : NULL, sizeof *c->hints};
     return c->contact_rows ? narc_find_contacts(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error)
                            : narc_find_manifolds(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error);
@@ -48,7 +49,7 @@ typedef struct known_job {
 static void follow_part(void *argument, size_t part, size_t first, size_t end) {
     const known_job *const job = argument;
     const narc_contacts *const c = job->contacts;
-    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_size};
+    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_stride};
     (void)part;
     const size_t left = job->kernels->follow(job->batch, first, end - first, c->entries,
                                              c->contact_rows ? NULL : c->ends, &rows, c->left + first);
@@ -87,7 +88,7 @@ static void make_entries(const narc_contact_step *s, const narc_batch *batch, si
         count += smooth;
     }
     if (count > 0)
-        narc_make_entries(batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_size, c->entries,
+        narc_make_entries(batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_stride, c->entries,
                           c->contact_rows ? NULL : c->ends);
 }
 
@@ -95,7 +96,7 @@ static void make_entries(const narc_contact_step *s, const narc_batch *batch, si
 
 /* Some slots have been answered: what touches now? */
 static void mark_answered(narc_contacts *c, const uint32_t *slots, size_t count) {
-    const size_t row_size = c->row_size;
+    const size_t row_stride = c->row_stride;
     const bool contact_rows = c->contact_rows;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
@@ -104,7 +105,7 @@ static void mark_answered(narc_contacts *c, const uint32_t *slots, size_t count)
     for (size_t i = 0; i < count; i++) {
         const uint32_t slot = slots[i];
         const unsigned was = state[slot];
-        const unsigned now = narc_count_points(contact_rows, rows + slot * row_size) > 0 ? NARC_TOUCHING : 0;
+        const unsigned now = narc_count_points(contact_rows, rows + slot * row_stride) > 0 ? NARC_TOUCHING : 0;
         const unsigned crosses = (was ^ now) & NARC_TOUCHING;
         marked[marked_count] = slot;
         marked_count += !(was & ~(unsigned)NARC_TOUCHING);
@@ -125,7 +126,7 @@ static void keep_rows(const narc_contact_step *s) {
         c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
         if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, a, b))
             continue;
-        narc_keep_row(s, a, b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
+        narc_keep_row(s, a, b, narc_slot_row(c, slot), &c->kept[slot]);
         c->flags[slot] |= NARC_SLOT_KEPT;
     }
 }

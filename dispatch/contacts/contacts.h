@@ -8,6 +8,7 @@
  *     ask.c      rows of pairs that are asked; entries.c makes what answers smooth ones again
  *     ground.c   bodies on pieces of chains, whose rows are asked for and merged together
  *     recycle.c  rows that follow their bodies
+ *     save.c     all of it as bytes
  */
 #ifndef NARC_CONTACTS_INTERNAL_H
 #define NARC_CONTACTS_INTERNAL_H
@@ -15,6 +16,8 @@
 #include "broad_phase.h"
 #include "kernels.h"
 #include "narc_contacts.h"
+
+#include <string.h>
 
 /* What one slot is, beside its state: bits. */
 enum {
@@ -54,21 +57,52 @@ typedef struct narc_row_array {
     size_t count, capacity;
 } narc_row_array;
 
+/* Which arrays grow together, to hold one item for each of something. */
+typedef enum narc_growth {
+    NARC_OF_SLOTS,
+    NARC_OF_PAIRS,
+    NARC_OF_ENDS, /* of pairs that ended */
+    NARC_OF_BODIES,
+    NARC_OF_MORE,
+    NARC_OF_NEXT_MORE,
+    NARC_OF_GROUND,
+    NARC_OF_PARTNERS,    /* two for each pair */
+    NARC_OF_PARTNER_ENDS /* one more than bodies */
+} narc_growth;
+
+/* An array of a narc_contacts. */
+typedef struct narc_array {
+    narc_growth growth;
+    void **memory;
+    size_t size;   /* of an item; 0: there is none */
+    size_t *count; /* how many items a step leaves to the next; NULL: none */
+} narc_array;
+
+enum { NARC_ARRAYS = 39 };
+
+/* How a step asks. */
+typedef struct narc_asked {
+    float margin, second_margin, flat_angle, recycling;
+    uint32_t front_only;
+    uint8_t has_ahead, has_run, unused[2]; /* 0 */
+} narc_asked;
+
 struct narc_contacts {
     narc_allocator allocator;
-    bool contact_rows;
-    size_t row_size, user_size;
+    bool contact_rows, rows_in_user;
+    size_t row_size, row_stride, row_offset, user_size;
     narc_broad_phase *broad;
     narc_step_result result;
-    narc_step last_step; /* its numbers alone count */
-    bool again;          /* all pairs are to be asked: they are asked differently */
+    narc_asked last;
+    bool again; /* all pairs are to be asked: they are asked differently */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
     uint32_t *hints, *free, *marked, *parted; /* `free` and so on: lists of slots */
     float *margins;                           /* that it was asked with */
-    void *rows, *user;
+    void *own_rows, *user;                    /* own_rows: NULL if rows lie in `user` */
+    void *rows;                               /* where they lie, `row_stride` bytes each */
     narc_kept_row *kept;
     narc_entry *entries;
     narc_entry_ends *ends; /* of manifolds */
@@ -93,6 +127,10 @@ struct narc_contacts {
     float *room; /* of each body: what its separations may be off by */
 
     narc_row_array more, next_more, ground; /* `ground`: as they were answered */
+
+    bool partners_listed; /* since the last step */
+    size_t partner_capacity, partner_end_capacity;
+    uint32_t *partners, *partner_ends; /* slots of each body: partners[partner_ends[k]] .. [partner_ends[k + 1]] */
 };
 
 /* What a step works with. */
@@ -116,8 +154,14 @@ static inline narc_pairs narc_view_slots(const narc_contacts *c) {
  * was. */
 narc_status narc_reserve_slots(narc_contacts *contacts, const narc_pair_list *list, size_t bodies);
 
-/* Room for so many rows in an array; those there are stay. */
-narc_status narc_reserve_row_array(narc_contacts *contacts, narc_row_array *rows, size_t count);
+/* All arrays; returns NARC_ARRAYS. */
+size_t narc_list_arrays(narc_contacts *contacts, narc_array out[NARC_ARRAYS]);
+
+/* Room for so many items in arrays that grow together; those there are stay. NARC_ERROR_MEMORY: in none. */
+narc_status narc_reserve_arrays(narc_contacts *contacts, narc_growth growth, size_t *capacity, size_t count);
+
+/* Lets the result show the arrays as they lie now. */
+void narc_show_arrays(narc_contacts *contacts);
 
 /* Gives each pair of a new list its slot, and those that are gone back at the next call. */
 void narc_take_slots(narc_contacts *contacts, const narc_pair_list *list);
@@ -145,7 +189,16 @@ static inline uint32_t narc_count_points(bool contact_rows, const void *row) {
     return contact_rows ? ((const narc_contact *)row)->count : ((const narc_manifold *)row)->count;
 }
 
+/* Row k of an array, and that of a slot. */
 static inline void *narc_row_at(const narc_contacts *c, void *rows, size_t k) { return (char *)rows + k * c->row_size; }
+static inline void *narc_slot_row(const narc_contacts *c, size_t slot) {
+    return (char *)c->rows + slot * c->row_stride;
+}
+
+static inline void narc_clear_row(const narc_contacts *c, uint32_t slot) {
+    memset(narc_slot_row(c, slot), 0, c->row_size);
+    memcpy(narc_slot_row(c, slot), &slot, sizeof slot); /* the row's `pair` */
+}
 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
 

@@ -27,16 +27,16 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
             c->ground_asked[c->ground_count++] = k;
         }
     if (c->ground_count > 0)
-        status = narc_reserve_row_array(c, &c->ground, 2 * c->ground_count);
+        status = narc_reserve_arrays(c, NARC_OF_GROUND, &c->ground.capacity, 2 * c->ground_count);
     while (status == NARC_OK && c->ground_count > 0) {
         status = narc_ask_pairs(s, pairs, c->ground_asked, c->ground_count, false, c->ground.rows, c->ground.capacity,
                                 &c->ground.count);
         if (status != NARC_ERROR_CAPACITY)
             break;
-        status = narc_reserve_row_array(c, &c->ground, c->ground.count);
+        status = narc_reserve_arrays(c, NARC_OF_GROUND, &c->ground.capacity, c->ground.count);
     }
     if (status == NARC_OK)
-        status = narc_reserve_row_array(c, &c->next_more, c->more.count + c->ground.count);
+        status = narc_reserve_arrays(c, NARC_OF_NEXT_MORE, &c->next_more.capacity, c->more.count + c->ground.count);
     if (status == NARC_OK && s->step->run.base)
         c->ground.count = c->contact_rows ? narc_merge_contacts(pairs, s->step->run, c->ground.rows, c->ground.count)
                                           : narc_merge_manifolds(pairs, s->step->run, c->ground.rows, c->ground.count);
@@ -68,12 +68,10 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
     size_t end = at;
     while (end < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, end)) == k)
         end++;
-    char *const row = narc_row_at(c, c->rows, slot);
-    memset(row, 0, c->row_size);
-    memcpy(row, &slot, sizeof slot);
+    narc_clear_row(c, slot);
     c->flags[slot] = (uint8_t)((c->flags[slot] & ~NARC_SLOT_KEPT) | (end > at ? NARC_SLOT_KEPT : 0));
     if (end > at)
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at), row, &c->kept[slot]);
+        put_row(s, slot, narc_row_at(c, c->ground.rows, at), narc_slot_row(c, slot), &c->kept[slot]);
     const size_t more = end > at ? end - at - 1 : 0;
     c->more_of[slot] = (narc_more_rows){(uint32_t)c->next_more.count, (uint32_t)more};
     for (size_t i = 0; i < more; i++) {

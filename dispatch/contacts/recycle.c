@@ -119,7 +119,7 @@ typedef struct follow_job {
 static void follow_part(void *argument, size_t part, size_t first, size_t end) {
     const follow_job *const job = argument;
     const narc_contacts *const c = job->step->contacts;
-    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_size};
+    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_stride};
     (void)part;
     const size_t left = job->kernels->recycle(job->batch, first, end - first, NULL, c->kept, job->step->step->recycling,
                                               &rows, c->left + first);

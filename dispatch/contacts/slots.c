@@ -6,6 +6,8 @@
  * their last row and bytes can be read until then.
  */
 #include "contacts.h"
+#include "dispatch.h"
+#include "error.h"
 #include "memory.h"
 
 #include <string.h>
@@ -13,121 +15,137 @@
 /* A quarter more than is needed, so that a scene that grows slowly does not allocate at every step. */
 static size_t with_room(size_t needed) { return needed + (needed / 4 < SIZE_MAX - needed ? needed / 4 : 0) + 256; }
 
-enum { MOST_ARRAYS = 16 };
-
-/* One array of several that grow together. */
-typedef struct array {
-    void **memory;
-    size_t size;
-} array;
-
-/* Makes all arrays longer, what is in them stays: all of them or none. */
-static narc_status grow(const narc_allocator *allocator, const array *arrays, size_t array_count, size_t *capacity,
-                        size_t needed) {
-    void *fresh[MOST_ARRAYS];
-    size_t made = 0;
+/* Makes room for `needed` items in all arrays that grow together, what is in them stays: in all or in none. */
+static narc_status grow(const narc_contacts *c, const narc_array *arrays, size_t array_count, narc_growth growth,
+                        size_t *capacity, size_t needed) {
+    void *fresh[NARC_ARRAYS] = {NULL};
+    const size_t n = with_room(needed);
+    bool whole = true;
     if (needed <= *capacity)
         return NARC_OK;
-    const size_t n = with_room(needed);
-    for (; made < array_count; made++) {
-        const size_t size = arrays[made].size ? arrays[made].size : 1;
-        fresh[made] = n > SIZE_MAX / size ? NULL : allocator->allocate(n * size, allocator->context);
-        if (!fresh[made])
-            break;
-    }
-    if (made < array_count) {
-        while (made-- > 0)
-            allocator->release(fresh[made], allocator->context);
-        return NARC_ERROR_MEMORY;
-    }
-    for (size_t k = 0; k < array_count; k++) {
-        const size_t old = *capacity * arrays[k].size;
-        if (*arrays[k].memory) {
-            memcpy(fresh[k], *arrays[k].memory, old);
-            allocator->release(*arrays[k].memory, allocator->context);
+    for (size_t k = 0; k < array_count && whole; k++)
+        if (arrays[k].growth == growth && arrays[k].size > 0) {
+            fresh[k] =
+                n > SIZE_MAX / arrays[k].size ? NULL : c->allocator.allocate(n * arrays[k].size, c->allocator.context);
+            whole = fresh[k] != NULL;
         }
-        memset((char *)fresh[k] + old, 0, n * arrays[k].size - old);
-        *arrays[k].memory = fresh[k];
+    for (size_t k = 0; k < array_count; k++) {
+        const narc_array *const array = &arrays[k];
+        const size_t old = *capacity * array->size;
+        if (!fresh[k])
+            continue;
+        if (!whole) {
+            c->allocator.release(fresh[k], c->allocator.context);
+            continue;
+        }
+        if (*array->memory) {
+            memcpy(fresh[k], *array->memory, old);
+            c->allocator.release(*array->memory, c->allocator.context);
+        }
+        memset((char *)fresh[k] + old, 0, n * array->size - old);
+        *array->memory = fresh[k];
     }
+    if (!whole)
+        return NARC_ERROR_MEMORY;
     *capacity = n;
     return NARC_OK;
 }
 
-#define ARRAY(pointer, size)                                                                                           \
-    { (void **)(void *)&(pointer), size }
-#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
+size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
+    narc_step_result *const r = &c->result;
+    size_t *const none = NULL;
+    const size_t row_size = c->rows_in_user ? 0 : c->row_size;
+#define ARRAY(growth, pointer, size, count)                                                                            \
+    { growth, (void **)(void *)&(pointer), size, count }
+    const narc_array arrays[] = {ARRAY(NARC_OF_SLOTS, c->a, sizeof *c->a, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->b, sizeof *c->b, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->state, 1, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->flags, 1, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->hints, sizeof *c->hints, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->margins, sizeof *c->margins, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->own_rows, row_size, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->user, c->user_size, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->kept, sizeof *c->kept, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->entries, sizeof *c->entries, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->ends, c->contact_rows ? 0 : sizeof *c->ends, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->more_of, sizeof *c->more_of, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->free, sizeof *c->free, &c->free_count),
+                                 ARRAY(NARC_OF_SLOTS, c->parted, sizeof *c->parted, &c->parted_count),
+                                 ARRAY(NARC_OF_SLOTS, c->marked, sizeof *c->marked, &c->marked_count),
+                                 ARRAY(NARC_OF_PAIRS, c->order, sizeof *c->order, &r->count),
+                                 ARRAY(NARC_OF_PAIRS, c->touching, sizeof *c->touching, &r->touching_count),
+                                 ARRAY(NARC_OF_PAIRS, c->sensors, sizeof *c->sensors, &r->sensor_count),
+                                 ARRAY(NARC_OF_PAIRS, c->began, sizeof *c->began, &r->began_count),
+                                 ARRAY(NARC_OF_ENDS, c->ended, sizeof *c->ended, &r->ended_count),
+                                 ARRAY(NARC_OF_BODIES, c->room, sizeof *c->room, none),
+                                 ARRAY(NARC_OF_MORE, c->more.rows, c->row_size, &c->more.count),
+                                 ARRAY(NARC_OF_MORE, c->more.kept, sizeof *c->more.kept, &c->more.count),
+                                 ARRAY(NARC_OF_NEXT_MORE, c->next_more.rows, c->row_size, none),
+                                 ARRAY(NARC_OF_NEXT_MORE, c->next_more.kept, sizeof *c->next_more.kept, none),
+                                 ARRAY(NARC_OF_GROUND, c->ground.rows, c->row_size, none),
+                                 ARRAY(NARC_OF_GROUND, c->ground.kept, sizeof *c->ground.kept, none),
+                                 ARRAY(NARC_OF_PAIRS, c->next_order, sizeof *c->next_order, none),
+                                 ARRAY(NARC_OF_PAIRS, c->work, sizeof *c->work, none),
+                                 ARRAY(NARC_OF_PAIRS, c->asked, sizeof *c->asked, none),
+                                 ARRAY(NARC_OF_PAIRS, c->known, sizeof *c->known, none),
+                                 ARRAY(NARC_OF_PAIRS, c->candidates, sizeof *c->candidates, none),
+                                 ARRAY(NARC_OF_PAIRS, c->left, sizeof *c->left, none),
+                                 ARRAY(NARC_OF_PAIRS, c->sensors_asked, sizeof *c->sensors_asked, none),
+                                 ARRAY(NARC_OF_PAIRS, c->ground_asked, sizeof *c->ground_asked, none),
+                                 ARRAY(NARC_OF_PAIRS, c->ground_margins, sizeof *c->ground_margins, none),
+                                 ARRAY(NARC_OF_PAIRS, c->bits, 1, none),
+                                 ARRAY(NARC_OF_PARTNERS, c->partners, sizeof *c->partners, none),
+                                 ARRAY(NARC_OF_PARTNER_ENDS, c->partner_ends, sizeof *c->partner_ends, none)};
+#undef ARRAY
+    _Static_assert(sizeof arrays / sizeof *arrays == NARC_ARRAYS, "their number");
+    memcpy(out, arrays, sizeof arrays);
+    return NARC_ARRAYS;
+}
 
-narc_status narc_reserve_row_array(narc_contacts *c, narc_row_array *rows, size_t count) {
-    const array arrays[] = {ARRAY(rows->rows, c->row_size), ARRAY(rows->kept, sizeof *rows->kept)};
-    return grow(&c->allocator, arrays, COUNT_OF(arrays), &rows->capacity, count);
+narc_status narc_reserve_arrays(narc_contacts *c, narc_growth growth, size_t *capacity, size_t count) {
+    narc_array arrays[NARC_ARRAYS];
+    if (count <= *capacity)
+        return NARC_OK;
+    return grow(c, arrays, narc_list_arrays(c, arrays), growth, capacity, count);
+}
+
+void narc_show_arrays(narc_contacts *c) {
+    narc_step_result *const r = &c->result;
+    void *const rows = c->rows_in_user ? NULL : c->own_rows;
+    c->rows = c->rows_in_user ? (char *)c->user + c->row_offset : c->own_rows;
+    r->pairs = narc_view_slots(c);
+    r->order = c->order;
+    r->state = c->state;
+    r->manifolds = c->contact_rows ? NULL : rows;
+    r->contacts = c->contact_rows ? rows : NULL;
+    r->user = c->user;
+    r->touching = c->touching;
+    r->sensors = c->sensors;
+    r->began = c->began;
+    r->ended = c->ended;
 }
 
 narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, size_t bodies) {
     const size_t free_count = c->free_count + c->parted_count, fresh = list->kept ? 0 : list->added_count;
     const size_t slots = c->slot_count + (fresh > free_count ? fresh - free_count : 0), pairs = list->pairs.count;
-    const array of_slots[] = {ARRAY(c->a, sizeof *c->a),
-                              ARRAY(c->b, sizeof *c->b),
-                              ARRAY(c->state, 1),
-                              ARRAY(c->flags, 1),
-                              ARRAY(c->hints, sizeof *c->hints),
-                              ARRAY(c->free, sizeof *c->free),
-                              ARRAY(c->margins, sizeof *c->margins),
-                              ARRAY(c->rows, c->row_size),
-                              ARRAY(c->user, c->user_size),
-                              ARRAY(c->kept, sizeof *c->kept),
-                              ARRAY(c->entries, sizeof *c->entries),
-                              ARRAY(c->ends, c->contact_rows ? 0 : sizeof *c->ends),
-                              ARRAY(c->more_of, sizeof *c->more_of),
-                              ARRAY(c->marked, sizeof *c->marked),
-                              ARRAY(c->parted, sizeof *c->parted)};
-    const array of_pairs[] = {ARRAY(c->order, sizeof *c->order),
-                              ARRAY(c->next_order, sizeof *c->next_order),
-                              ARRAY(c->work, sizeof *c->work),
-                              ARRAY(c->asked, sizeof *c->asked),
-                              ARRAY(c->known, sizeof *c->known),
-                              ARRAY(c->candidates, sizeof *c->candidates),
-                              ARRAY(c->left, sizeof *c->left),
-                              ARRAY(c->sensors_asked, sizeof *c->sensors_asked),
-                              ARRAY(c->ground_asked, sizeof *c->ground_asked),
-                              ARRAY(c->ground_margins, sizeof *c->ground_margins),
-                              ARRAY(c->touching, sizeof *c->touching),
-                              ARRAY(c->sensors, sizeof *c->sensors),
-                              ARRAY(c->bits, 1),
-                              ARRAY(c->began, sizeof *c->began)};
-    _Static_assert(COUNT_OF(of_slots) <= MOST_ARRAYS && COUNT_OF(of_pairs) <= MOST_ARRAYS, "too many");
-    const array of_bodies[] = {ARRAY(c->room, sizeof *c->room)};
     /* One more than slots: what is listed without a branch may write behind the last one. */
-    narc_status status = grow(&c->allocator, of_slots, COUNT_OF(of_slots), &c->slot_capacity, slots + 1);
+    narc_status status = narc_reserve_arrays(c, NARC_OF_SLOTS, &c->slot_capacity, slots + 1);
     if (status == NARC_OK)
-        status = grow(&c->allocator, of_pairs, COUNT_OF(of_pairs), &c->order_capacity, pairs);
+        status = narc_reserve_arrays(c, NARC_OF_PAIRS, &c->order_capacity, pairs);
     if (status == NARC_OK)
-        status = grow(&c->allocator, of_bodies, COUNT_OF(of_bodies), &c->body_capacity, bodies);
-    if (status == NARC_OK) { /* what ended: at most all pairs that are, and all that were */
-        const array of_ends[] = {ARRAY(c->ended, sizeof *c->ended)};
-        status = grow(&c->allocator, of_ends, COUNT_OF(of_ends), &c->end_capacity, pairs + list->lost_count);
-    }
-    /* the result of the last step shows arrays that moved */
-    c->result.pairs = narc_view_slots(c);
-    c->result.order = c->order;
-    c->result.state = c->state;
-    c->result.manifolds = c->contact_rows ? NULL : c->rows;
-    c->result.contacts = c->contact_rows ? c->rows : NULL;
-    c->result.user = c->user;
-    c->result.touching = c->touching;
-    c->result.sensors = c->sensors;
-    c->result.began = c->began;
-    c->result.ended = c->ended;
+        status = narc_reserve_arrays(c, NARC_OF_BODIES, &c->body_capacity, bodies);
+    if (status == NARC_OK) /* what ended: at most all pairs that are, and all that were */
+        status = narc_reserve_arrays(c, NARC_OF_ENDS, &c->end_capacity, pairs + list->lost_count);
+    narc_show_arrays(c); /* the result of the last step shows arrays that moved */
     return status;
 }
 
 /* A slot for a new pair: a free one, or one that was never in use. There is room. */
 static uint32_t open_slot(narc_contacts *c) {
     const uint32_t slot = c->free_count > 0 ? c->free[--c->free_count] : (uint32_t)c->slot_count++;
-    char *const row = narc_row_at(c, c->rows, slot);
-    memset(row, 0, c->row_size);
-    memcpy(row, &slot, sizeof slot); /* the row's `pair` */
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
+    narc_clear_row(c, slot);
     c->hints[slot] = 0;
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;
@@ -161,20 +179,59 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
     c->order = made;
 }
 
-static void release(narc_contacts *c, void *memory) {
-    if (memory)
-        c->allocator.release(memory, c->allocator.context);
+void narc_free_slots(narc_contacts *c) {
+    narc_array arrays[NARC_ARRAYS];
+    const size_t count = narc_list_arrays(c, arrays);
+    for (size_t k = 0; k < count; k++)
+        if (*arrays[k].memory)
+            c->allocator.release(*arrays[k].memory, c->allocator.context);
 }
 
-void narc_free_slots(narc_contacts *c) {
-    void *const memory[] = {
-        c->candidates, c->entries,   c->ends,          c->known,          c->left,           c->a,
-        c->b,          c->state,     c->flags,         c->hints,          c->free,           c->margins,
-        c->rows,       c->user,      c->kept,          c->more_of,        c->order,          c->next_order,
-        c->work,       c->asked,     c->sensors_asked, c->marked,         c->parted,         c->ground_asked,
-        c->touching,   c->sensors,   c->bits,          c->ground_margins, c->began,          c->ended,
-        c->room,       c->more.rows, c->more.kept,     c->next_more.rows, c->next_more.kept, c->ground.rows,
-        c->ground.kept};
-    for (size_t k = 0; k < COUNT_OF(memory); k++)
-        release(c, memory[k]);
+/* ------------------------------------------------------------------------------------------------ a body's slots */
+
+/* Slots by body, by counting: each stands with both of its bodies, in the order of pairs. */
+static void list_partners(narc_contacts *c, size_t bodies) {
+    const size_t count = c->result.count;
+    uint32_t *const ends = c->partner_ends;
+    uint32_t sum = 0;
+    memset(ends, 0, (bodies + 1) * sizeof *ends);
+    for (size_t k = 0; k < count; k++) {
+        ends[c->a[c->order[k]] + 1]++;
+        ends[c->b[c->order[k]] + 1]++;
+    }
+    for (size_t k = 1; k <= bodies; k++) {
+        const uint32_t first = sum;
+        sum += ends[k];
+        ends[k] = first; /* where the next slot of body k - 1 goes, and its end when all are there */
+    }
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t slot = c->order[k];
+        c->partners[ends[c->a[slot] + 1]++] = slot;
+        c->partners[ends[c->b[slot] + 1]++] = slot;
+    }
+    c->partners_listed = true;
+}
+
+narc_status narc_find_body_slots(narc_contacts *c, uint32_t body, const uint32_t **out_slots, size_t *out_count,
+                                 narc_error *error) {
+    if (!c || !out_slots || !out_count)
+        return narc_fail_missing(error, !c ? "contacts" : !out_slots ? "out_slots" : "out_count");
+    const size_t bodies = c->broad->lists[c->broad->last].body_count;
+    if (body >= bodies)
+        return narc_fail(error, NARC_ERROR_INDEX, 0, body, "body %lu, but the last step had %zu bodies",
+                         (unsigned long)body, bodies);
+    if (!c->partners_listed) {
+        narc_status status = c->result.count > UINT32_MAX / 2 ? NARC_ERROR_MEMORY : NARC_OK;
+        if (status == NARC_OK)
+            status = narc_reserve_arrays(c, NARC_OF_PARTNERS, &c->partner_capacity, 2 * c->result.count);
+        if (status == NARC_OK)
+            status = narc_reserve_arrays(c, NARC_OF_PARTNER_ENDS, &c->partner_end_capacity, bodies + 1);
+        if (status != NARC_OK)
+            return narc_fail(error, status, 0, (double)c->result.count, "not enough memory for the slots of %zu bodies",
+                             bodies);
+        list_partners(c, bodies);
+    }
+    *out_slots = c->partners + c->partner_ends[body];
+    *out_count = c->partner_ends[body + 1] - c->partner_ends[body];
+    return NARC_OK;
 }

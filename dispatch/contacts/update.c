@@ -18,12 +18,10 @@
 
 /* No row is left. */
 static void clear_row(narc_contacts *c, uint32_t slot) {
-    char *const row = narc_row_at(c, c->rows, slot);
     c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-    if (narc_count_points(c->contact_rows, row) > 0 || c->more_of[slot].count > 0) {
+    if (narc_count_points(c->contact_rows, narc_slot_row(c, slot)) > 0 || c->more_of[slot].count > 0) {
         narc_mark_slot(c, slot, NARC_ASKED);
-        memset(row, 0, c->row_size);
-        memcpy(row, &slot, sizeof slot);
+        narc_clear_row(c, slot);
         c->more_of[slot].count = 0;
     }
     narc_set_touching(c, slot, false);
@@ -141,13 +139,10 @@ static void make_lists(const narc_contact_step *s) {
 
 /* ------------------------------------------------------------------------------------------------ the step */
 
-/* Are rows of pairs that have not moved another answer now? */
-static bool is_asked_differently(const narc_contacts *c, const narc_step *step) {
-    const narc_step *const last = &c->last_step;
-    return step->margin != last->margin || step->second_margin != last->second_margin ||
-           step->flat_angle != last->flat_angle || step->front_only != last->front_only ||
-           step->recycling != last->recycling || !step->ahead.base != !last->ahead.base ||
-           !step->run.base != !last->run.base;
+/* Rows of pairs that have not moved are another answer if this is another. */
+static narc_asked describe_asking(const narc_step *step) {
+    return (narc_asked){step->margin,     step->second_margin,      step->flat_angle,       step->recycling,
+                        step->front_only, step->ahead.base != NULL, step->run.base != NULL, {0}};
 }
 
 /* Checks what nothing else does before something is changed. */
@@ -183,18 +178,7 @@ static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes,
 static narc_status prepare(narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const narc_step *const step = s->step;
-    const narc_pair_options options = {.margin = step->margin,
-                                       .skin = step->skin,
-                                       .motion_x = step->motion_x,
-                                       .motion_y = step->motion_y,
-                                       .reach = step->reach,
-                                       .id = step->id,
-                                       .filter = step->filter,
-                                       .workers = step->workers};
-    const narc_moved_bodies listed = {step->moved, step->moved_count, step->moved.base || step->moved.stride,
-                                      step->ahead, step->run};
-    narc_status status =
-        narc_update_moved_pairs(c->broad, s->shapes, step->bodies, &options, &listed, &s->list, s->error);
+    narc_status status = narc_update_pairs(c->broad, s->shapes, step, &s->list, s->error);
     if (status != NARC_OK)
         return status;
     if (narc_reserve_slots(c, s->list, step->bodies->count) != NARC_OK)
@@ -248,7 +232,9 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     if (status != NARC_OK)
         return status;
     narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0 || step->run.base};
-    contacts->again = is_asked_differently(contacts, step);
+    const narc_asked asked = describe_asking(step);
+    contacts->again = memcmp(&asked, &contacts->last, sizeof asked) != 0;
+    contacts->partners_listed = false;
     status = prepare(&s);
     if (status != NARC_OK) {
         narc_take_back_pairs(contacts->broad, s.list && !s.list->kept);
@@ -259,7 +245,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
         return status;
     if (step->bodies->count > 0)
         memset(contacts->broad->known.changed, 0, step->bodies->count);
-    contacts->last_step = *step;
+    contacts->last = asked;
     *out_result = &contacts->result;
     return NARC_OK;
 }
@@ -273,9 +259,19 @@ narc_status narc_create_contacts(const narc_contacts_settings *settings, narc_co
     const narc_allocator chosen = narc_choose_allocator(o->allocator);
     if (!out_contacts)
         return narc_fail_missing(error, "out_contacts");
-    if (o->rows > NARC_CONTACT_ROWS)
+    const bool contact_rows = o->rows & NARC_CONTACT_ROWS, in_user = o->rows & NARC_ROWS_IN_USER;
+    const size_t row_size = contact_rows ? sizeof(narc_contact) : sizeof(narc_manifold);
+    if (o->rows > (NARC_CONTACT_ROWS | NARC_ROWS_IN_USER))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, o->rows, "settings.rows is %lu, not one of both kinds",
                          (unsigned long)o->rows);
+    if (in_user && (o->user_size % 4 || o->row_offset % 4 || o->user_size < row_size ||
+                    o->row_offset > o->user_size - row_size || o->user_size > PTRDIFF_MAX))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)o->row_offset,
+                         "settings.user_size is %zu: no room for rows of %zu bytes at %zu, in multiples of 4",
+                         o->user_size, row_size, o->row_offset);
+    if (!in_user && o->row_offset)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)o->row_offset,
+                         "settings.row_offset is %zu, without NARC_ROWS_IN_USER", o->row_offset);
     narc_status status = narc_check_reserved(o->reserved, 4, "settings", error);
     if (status != NARC_OK)
         return status;
@@ -285,8 +281,11 @@ narc_status narc_create_contacts(const narc_contacts_settings *settings, narc_co
     if (!c)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)sizeof *c, "not enough memory for contacts");
     *c = (narc_contacts){.allocator = chosen,
-                         .contact_rows = o->rows == NARC_CONTACT_ROWS,
-                         .row_size = o->rows == NARC_CONTACT_ROWS ? sizeof(narc_contact) : sizeof(narc_manifold),
+                         .contact_rows = contact_rows,
+                         .rows_in_user = in_user,
+                         .row_size = row_size,
+                         .row_stride = in_user ? o->user_size : row_size,
+                         .row_offset = o->row_offset,
                          .user_size = o->user_size};
     status = narc_create_broad_phase(o->allocator, &c->broad);
     if (status != NARC_OK) {
@@ -310,8 +309,15 @@ void narc_forget_contacts(narc_contacts *c) {
         return;
     narc_forget_pairs(c->broad);
     narc_forget_poses(c->broad);
+    c->partners_listed = false;
     c->slot_count = c->free_count = c->parted_count = c->marked_count = c->crossed_count = c->more.count = 0;
     c->result.count = c->result.touching_count = c->result.sensor_count = c->result.began_count =
         c->result.ended_count = 0;
     c->result.more_count = 0;
+}
+
+narc_status narc_forget_bodies(narc_contacts *c, const uint64_t *ids, size_t count, narc_error *error) {
+    if (!c || (count > 0 && !ids))
+        return narc_fail_missing(error, c ? "ids" : "contacts");
+    return narc_forget_ids(c->broad, ids, count, error);
 }
