@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "column.h"
-#include "narc_chains.h"
+#include "merge.h"
 
 #define SAME_RUN_NORMAL  1e-4f
 #define SAME_SEAM_NORMAL 1e-3f

@@ -16,7 +16,7 @@
 //                                         narc::exception, or ends the program where exceptions are switched off
 //       narc::span                        the caller's array: a container with data() and size(), an array, a pointer
 //                                         and a size. Like columns, it must not outlive what it looks at
-//       narc::query, narc::pair_options   and other options: the structures of C with functions that set their fields
+//       narc::query, narc::step           and other options: the structures of C with functions that set their fields
 //
 //   No call allocates what C would not, but for rows in a std::vector, which is made longer where it is too short and
 //   never shorter: the span that is returned tells how many there are.
@@ -25,13 +25,12 @@
 //
 //     struct Entity { b2Vec2 position; b2Rot rotation; uint32_t shape; };       (the engine's own)
 //     narc::shapes shapes;
-//     narc::broad_phase broad;
-//     std::vector<narc_manifold> rows;
+//     narc::contacts contacts = narc::contacts::make(NARC_MANIFOLD_ROWS, sizeof(Impulses)).value();
 //     uint32_t crate = shapes.add(narc::box(1, 1, 0.05)).value();
 //     narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
-//     const narc_pair_list *list = broad.update(shapes, bodies, narc::pair_options().skin(0.05f)).value();
-//     for (narc_manifold &m : narc::find_manifolds(shapes, bodies, list->pairs, narc::query().margin(0.02f), rows).value())
-//         build_contact(m, list->previous[m.pair]);
+//     const narc_step_result *r = contacts.update(shapes, bodies, narc::step().margin(0.02f).skin(0.05f)).value();
+//     for (size_t k = 0; k < r->touching_count; k++)
+//         solve(r->manifolds[r->touching[k]], static_cast<Impulses *>(r->user)[r->touching[k]]);
 #ifndef NARC_HPP
 #define NARC_HPP
 
@@ -436,31 +435,35 @@ result<void> find_overlaps(const narc_shapes *shapes, const narc_bodies &bodies,
     return detail::ask<void>(narc_find_overlaps, shapes, &bodies, &pairs, &query, room.data());
 }
 
-// ------------------------------------------------------------------------------------------------ pairs of a step
+// ------------------------------------------------------------------------------------------------ boxes and pairs
 
-struct pair_options : detail::options<pair_options, narc_pair_options> {
-    pair_options &margin(float value) noexcept { return set(&narc_pair_options::margin, value); }
-    pair_options &skin(float value) noexcept { return set(&narc_pair_options::skin, value); }
-    pair_options &motion(narc_float_column x, narc_float_column y) noexcept {
-        return set(&narc_pair_options::motion_x, x).set(&narc_pair_options::motion_y, y);
-    }
-    pair_options &reach(narc_float_column value) noexcept { return set(&narc_pair_options::reach, value); }
-    pair_options &id(narc_word_column value) noexcept { return set(&narc_pair_options::id, value); }
-    pair_options &filter(const narc_pair_filter &value) noexcept { return set(&narc_pair_options::filter, &value); }
-    pair_options &filter(const narc_pair_filter &&) = delete;
-};
+// One box for each body.
+inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &bodies, span<narc_box> boxes,
+                                  const narc_box_options &options = {}) {
+    return boxes.size() < bodies.count ? result<void>(detail::too_short(bodies.count))
+                                       : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
+}
 
 class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_phase, narc_destroy_broad_phase> {
   public:
     using owner::owner;
-    // Its arrays stay until the next update.
-    result<const narc_pair_list *> update(const narc_shapes *shapes, const narc_bodies &bodies,
-                                          const narc_pair_options &options = pair_options()) {
-        return detail::ask<const narc_pair_list *>(narc_update_pairs, get(), shapes, &bodies, &options);
-    }
-    result<const narc_pair_list *> update(span<const narc_box> boxes,
-                                          const narc_pair_options &options = pair_options()) {
-        return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes.data(), boxes.size(), &options);
+    // How many pairs of boxes overlap: their numbers are the first items of a and b, which are made longer where they are
+    // too short.
+    result<size_t> find_pairs(span<const narc_box> boxes, std::vector<uint32_t> &a, std::vector<uint32_t> &b,
+                              const narc_pair_filter *filter = nullptr, const narc_workers *workers = nullptr) {
+        const auto ask = [&](size_t *out_count, narc_error *error) {
+            return narc_find_pairs(get(), boxes.data(), boxes.size(), filter, workers, a.data(), b.data(),
+                                   a.size() < b.size() ? a.size() : b.size(), out_count, error);
+        };
+        size_t count = 0;
+        narc_error error = {};
+        narc_status status = ask(&count, &error);
+        if (status == NARC_ERROR_CAPACITY) {
+            detail::make_room(a, count);
+            detail::make_room(b, count);
+            status = ask(&count, &error);
+        }
+        return status == NARC_OK ? result<size_t>(count) : result<size_t>(error);
     }
 };
 
@@ -482,6 +485,11 @@ struct step : detail::options<step, narc_step> {
     step &run(narc_index_column value) noexcept { return set(&narc_step::run, value); }
     step &filter(const narc_pair_filter &value) noexcept { return set(&narc_step::filter, &value); }
     step &filter(const narc_pair_filter &&) = delete;
+    // These are the pairs that there are; `same`: those of the last step.
+    step &pairs(const narc_pairs &value, bool same = false) noexcept {
+        return set(&narc_step::pairs, &value).set(&narc_step::same_pairs, same ? 1u : 0u);
+    }
+    step &pairs(const narc_pairs &&, bool = false) = delete;
     // Only these bodies may have moved; they stay where they are until the update.
     step &moved(span<const uint32_t> list) noexcept {
         return set(&narc_step::moved, column(list)).set(&narc_step::moved_count, list.size());
@@ -515,14 +523,30 @@ class contacts : public detail::owner<narc_contacts, detail::create_contacts, na
         whole.bodies = &bodies;
         return detail::ask<const narc_step_result *>(narc_update_contacts, get(), shapes, &whole);
     }
+    // The slots of a body's pairs, by its number in the last step.
+    result<span<const uint32_t>> slots_of(uint32_t body) {
+        const uint32_t *slots = nullptr;
+        size_t count = 0;
+        narc_error error = {};
+        return narc_find_body_slots(get(), body, &slots, &count, &error)
+                   ? result<span<const uint32_t>>(error)
+                   : result<span<const uint32_t>>(span<const uint32_t>(slots, count));
+    }
+    // Takes bodies out by their ids.
+    result<void> forget(span<const uint64_t> ids) {
+        return detail::ask<void>(narc_forget_bodies, get(), ids.data(), ids.size());
+    }
+    void forget() noexcept { narc_forget_contacts(get()); }
+    // As bytes, and back.
+    result<std::vector<char>> save() const {
+        std::vector<char> bytes(narc_count_contact_bytes(get()));
+        const auto saved = detail::ask<void>(narc_save_contacts, get(), bytes.data(), bytes.size());
+        return saved ? result<std::vector<char>>(std::move(bytes)) : result<std::vector<char>>(saved.error());
+    }
+    result<const narc_step_result *> load(const narc_shapes *shapes, span<const char> bytes) {
+        return detail::ask<const narc_step_result *>(narc_load_contacts, get(), shapes, bytes.data(), bytes.size());
+    }
 };
-
-// One box for each body.
-inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &bodies, span<narc_box> boxes,
-                                  const narc_box_options &options = {}) {
-    return boxes.size() < bodies.count ? result<void>(detail::too_short(bodies.count))
-                                       : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
-}
 
 // ------------------------------------------------------------------------------------------------ questions to a scene
 

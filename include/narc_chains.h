@@ -29,8 +29,8 @@
  *   than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as a gear in a ring, none
  *   is deeper than the smaller one's front is large, or an eighth of the larger one's. Rods and other bodies deeper than
  *   their inscribed circle is wide may lose contacts earlier: docs/terrain.md has the rule.
- *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
- *   narc_merge_contacts() or narc_merge_manifolds().
+ *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged
+ *   by narc_update_contacts() (narc_contacts.h), which is told their runs. Queries of a batch give each entry's own rows.
  *
  *   Of an entry's shape narc_shape_flags() has NARC_SHAPE_RUN or NARC_SHAPE_CONCAVE. narc_get_arcs() gives a concave arc
  *   as it is in a chain, and of a run all arcs of the closed shape: its front is what lies between edge 1 and edge
@@ -100,25 +100,6 @@ typedef struct narc_chain_entry {
 NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, size_t count,
                                     const narc_chain_options *options, narc_chain_entry *out_entries, size_t capacity,
                                     size_t *out_count, narc_error *error);
-
-/* Merges what several entries tell of one body: `count` rows of narc_find_contacts() or narc_find_manifolds(), in their
- * order, without gaps, in place; returns how many are left. Rows without a contact go.
- *   pairs   those of the query, whose bodies `a` are asked about. Bodies `b` are entries of chains, or others
- *   run     of each body `b`: its entry's run, of other bodies NARC_NO_RUN: their rows stay as they are; base NULL: as
- *           if all were NARC_NO_RUN
- * Looked at are rows of one body a that follow each other, as a broad phase lists them, each beside the 64 before it:
- *   - Of two rows of one run that have one normal (within 1e-4 rad) the points are joined: the two outermost stay,
- *     but for the higher one where the deepest lies between them, in the first one's row, which is compared again. (A contact has one point: that with the smaller separation.) Else the row with the greater
- *     separation stays, which is that of the whole run, unless what they touch is not convex: the sides of a run that
- *     turns by more than half a turn may face each other.
- *   - Of two rows with one normal (within 1e-3 rad) and the same points (within 2^-12 of their distance from the
- *     position of a; deep ones of one depth in the body's surface or the ground's) the one with more points stays, else
- *     that of a concave arc, or the first one, with the smaller separation of each point: a seam, told by both.
- *   - Where an edge of a body lies along a line that goes over into a concave arc, and ends on that, both rows are joined.
- *   - Of two rows below 0 of faces that look away from each other, the two sides of a thin solid, the deeper one goes.
- * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
-NARC_API size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count);
-NARC_API size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count);
 
 #ifdef __cplusplus
 }

@@ -86,7 +86,8 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *                       bodies the sum. Motion and reach must hold it. A body with a broken one is in no pair
  *   id                  what a body is known by, whatever its number; no two have the same. Left out: its number
  *   run                 of bodies that are entries of chains, their entry's run, and NARC_NO_RUN for all others: what
- *                       several entries tell of one body is merged, as narc_merge_manifolds() does
+ *                       several entries tell of one body is merged: one normal of a run is one row, and a seam that both
+ *                       entries tell of is told once (docs/terrain.md)
  *   filter              which bodies may form a pair; which are static, asleep, sensors
  *   moved               the numbers of all bodies that may have another pose, scale, shape, filter, id, run, motion, reach
  *                       or ahead than in the last step that did not fail, each once, `moved_count` of them; others are

@@ -5,7 +5,7 @@
  */
 #include "column.h"
 #include "contacts.h"
-#include "narc_chains.h"
+#include "merge.h"
 
 #include <string.h>
 
