@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * contact_cases.c - contacts that stay, in scenes of a few bodies: one for each fault that there was.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "families.h"
+#include "guard.h"
+#include "narc.h"
+#include "narc_chains.h"
+#include "step_world.h"
+
+/* Bodies of one shape by their places, with ids from 1 on. */
+struct few {
+    narc_shapes *store;
+    narc_body body[600];
+    uint64_t id[600];
+    uint8_t kind[600];
+    narc_bodies bodies;
+    narc_pair_filter filter;
+    narc_step step;
+    narc_contacts *contacts;
+};
+
+static struct few *make_few(struct shape shape, size_t count, const narc_allocator *allocator) {
+    struct few *const few = calloc(1, sizeof *few);
+    assert_non_null(few);
+    few->store = empty_store();
+    store_shape(few->store, shape);
+    for (size_t k = 0; k < count; k++) {
+        few->body[k] = (narc_body){.x = (double)(k / 2) * 10 + 0.9 * (double)(k % 2), .cosine = 1, .scale = 1};
+        few->id[k] = k + 1;
+    }
+    few->bodies = narc_view_bodies(few->body, count);
+    few->filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind)};
+    few->step = (narc_step){
+        .bodies = &few->bodies, .margin = 0.02f, .skin = 1, .id = NARC_ARRAY(few->id), .filter = &few->filter};
+    few->contacts = make_contacts(NARC_MANIFOLD_ROWS, allocator);
+    return few;
+}
+
+static const narc_step_result *step_few(struct few *few) {
+    const narc_step_result *r;
+    narc_error error;
+    expect_ok(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), &error);
+    return r;
+}
+
+static void destroy_few(struct few *few) {
+    narc_destroy_contacts(few->contacts);
+    narc_destroy_shapes(few->store);
+    free(few);
+}
+
+/* All slots that there is room for are asked, and new. */
+TEST(slots_have_room) {
+    allowed = SIZE_MAX;
+    struct few *const few = make_few(circle_of(0.5), 600, &watched);
+    few->bodies.count = 8;
+    assert_int_equal(step_few(few)->count, 4);
+    for (size_t count = 500; count <= 600; count += 2) {
+        few->bodies.count = count;
+        for (size_t k = 0; k < count; k++)
+            few->body[k].y += 1e-4;
+        assert_int_equal(step_few(few)->count, count / 2);
+    }
+    destroy_few(few);
+}
+
+/* Two that sleep change their order: the row is that of (a, b) all the same. */
+TEST(rows_at_rest_are_turned) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    few->body[0].x = 50;
+    few->body[1].x = 0;
+    few->body[2].x = 0.9;
+    const narc_step_result *r = step_few(few);
+    assert_true(r->manifolds[r->order[0]].normal_x > 0.9f);
+    few->kind[1] = few->kind[2] = NARC_ASLEEP;
+    step_few(few);
+    few->body[0] = few->body[2]; /* the first goes, and the last one takes its place */
+    few->id[0] = few->id[2];
+    few->kind[0] = NARC_ASLEEP;
+    few->bodies.count = 2;
+    r = step_few(few);
+    assert_int_equal(r->state[r->order[0]] & (NARC_TURNED | NARC_TOUCHING), NARC_TURNED | NARC_TOUCHING);
+    assert_true(r->manifolds[r->order[0]].normal_x < -0.9f);
+    assert_int_equal(r->began_count + r->ended_count, 0);
+    destroy_few(few);
+}
+
+/* A step that failed has not been: the list of what moved is that since the step before it. */
+TEST(goes_on_from_the_last_good_step) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    const uint32_t none = 0;
+    const narc_step_result *r = step_few(few);
+    narc_error error;
+    assert_int_equal(r->touching_count, 1);
+    few->body[1].x = 1.1; /* apart */
+    few->id[2] = 1;
+    assert_int_equal(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_ARGUMENT);
+    few->body[1].x = 0.9;
+    few->id[2] = 3;
+    few->step.moved = (narc_index_column){&none, sizeof none};
+    r = step_few(few);
+    assert_int_equal(r->touching_count, 1);
+    assert_int_equal(r->ended_count, 0);
+    destroy_few(few);
+}
+
+/* The same bodies in an object that knows nothing of them: as much touches, as deep. */
+static void check_with_fresh(struct few *few) {
+    narc_contacts *const kept = few->contacts;
+    const narc_step_result *const r = step_few(few);
+    few->contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    const narc_step_result *const fresh = step_few(few);
+    assert_int_equal(r->count, fresh->count);
+    assert_int_equal(r->touching_count, fresh->touching_count);
+    assert_int_equal(r->more_count, fresh->more_count);
+    for (size_t k = 0; k < r->touching_count; k++)
+        check_row(&r->manifolds[r->touching[k]], fresh->manifolds[fresh->touching[k]], r->touching[k]);
+    narc_destroy_contacts(few->contacts);
+    few->contacts = kept;
+}
+
+/* Two change their numbers, and each stands where the other one stood. */
+TEST(bodies_are_known_by_their_ids) {
+    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    few->body[1].x = 0.05;
+    few->body[2].x = 0.9;
+    check_with_fresh(few);
+    few->id[0] = 2;
+    few->id[1] = 1;
+    check_with_fresh(few);
+    destroy_few(few);
+}
+
+/* Entries of a chain as static bodies behind body 0, without what is between. */
+static size_t lay_entries(struct few *few, const narc_arc *arcs, size_t count, double weld, uint32_t *run) {
+    static narc_chain_entry entries[256];
+    const narc_chain_options options = {.weld = weld};
+    size_t found = 0;
+    narc_error error;
+    expect_ok(narc_add_chain(few->store, arcs, count, &options, entries, 256, &found, &error), &error);
+    run[0] = NARC_NO_RUN;
+    for (size_t k = 0; k < found; k++) {
+        few->body[1 + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
+        few->kind[1 + k] = NARC_STATIC;
+        few->id[1 + k] = 2 + k;
+        run[1 + k] = entries[k].run;
+    }
+    few->bodies.count = 1 + found;
+    return found;
+}
+
+/* A ball lies where two entries meet, and one row is merged away. The piece that has the other goes, or is no ground any
+ * more: what was merged away is told. */
+TEST(ground_that_goes_leaves_what_it_was_merged_with) {
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    for (int way = 0; way < 10; way++) {
+        struct few *const few = make_few(circle_of(0.5), 2, NULL);
+        static uint32_t run[600];
+        static uint64_t mask[600];
+        const uint32_t small = store_shape(few->store, circle_of(0.01));
+        const size_t count = lay_entries(few, line, 2, 0.5, run), gone = 4 + (size_t)way / 5;
+        memset(mask, 0xff, sizeof mask);
+        few->step.run = NARC_ARRAY(run);
+        few->filter.mask = NARC_ARRAY(mask);
+        few->step.skin = 0.05f;
+        few->body[0] = (narc_body){(few->body[4].x + few->body[5].x) / 2, 0.5, 1, 0, 1, 0};
+        check_with_fresh(few);
+        assert_int_equal(step_few(few)->touching_count, 1);
+        switch (way % 5) {
+        case 0:
+            mask[gone] = 0;
+            break;
+        case 1:
+            few->kind[gone] |= NARC_SENSOR;
+            break;
+        case 2:
+            few->body[gone].shape = small;
+            run[gone] = NARC_NO_RUN;
+            break;
+        case 3: /* and the last one takes its place */
+            few->body[gone] = few->body[count];
+            few->id[gone] = count + 1;
+            few->bodies.count--;
+            break;
+        default:
+            few->body[gone].y = -50;
+            break;
+        }
+        check_with_fresh(few);
+        assert_int_equal(step_few(few)->touching_count, 1);
+        destroy_few(few);
+    }
+}
+
+/* A box touches a bowl in two places, and then the bowl is a circle. */
+TEST(second_rows_go_with_their_ground) {
+    struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
+    const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
+    static uint32_t run[600];
+    const uint32_t circle = store_shape(few->store, circle_of(1));
+    const size_t count = lay_entries(few, &bowl, 1, 0, run);
+    few->step.run = NARC_ARRAY(run);
+    few->body[0] = (narc_body){0, -0.77, 1, 0, 1, 0};
+    check_with_fresh(few);
+    assert_true(step_few(few)->more_count > 0);
+    for (size_t k = 1; k <= count; k++) {
+        few->body[k].shape = circle;
+        run[k] = NARC_NO_RUN;
+    }
+    check_with_fresh(few);
+    assert_int_equal(step_few(few)->more_count, 0);
+    destroy_few(few);
+}
+
+/* What was kept of a row goes with it, whatever recycling is meanwhile. */
+TEST(kept_rows_are_those_of_now) {
+    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    const double places[] = {0.7, 0.9, 2, 2, 0.7, 0.7005};
+    for (size_t k = 0; k < 6; k++) {
+        for (size_t i = 0; i < 2; i++) {
+            few->body[i].cosine = few->body[i].sine = 0.70710678f;
+            few->body[i].x = few->body[i].y = i == 0 ? 0 : places[k];
+        }
+        few->step.recycling = k == 1 || k == 2 ? 0 : 0.01f;
+        assert_int_equal(step_few(few)->touching_count, places[k] < 0.8);
+    }
+    destroy_few(few);
+}
+
+/* A box turns about the first point of its contact: that stays, and the second one does not. */
+TEST(a_turn_is_a_way) {
+    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    few->body[0].x = few->body[1].x = 0;
+    few->body[1].y = 0.995;
+    few->step.recycling = 0.01f;
+    const narc_manifold row = step_few(few)->manifolds[0];
+    assert_int_equal(row.count, 2);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double angle = 0.015 * sign, x = (double)row.point[0].x, y = (double)row.point[0].y;
+        few->body[1] = (narc_body){x + cos(angle) * -x - sin(angle) * (0.995 - y),
+                                   y + sin(angle) * -x + cos(angle) * (0.995 - y),
+                                   (float)cos(angle),
+                                   (float)sin(angle),
+                                   1,
+                                   0};
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->state[0] & (NARC_ASKED | NARC_FOLLOWED), NARC_ASKED);
+        few->body[1] = (narc_body){0, 0.995, 1, 0, 1, 0};
+        step_few(few);
+    }
+    destroy_few(few);
+}
+
+/* Rows are as deep as they are to be, but for what recycling lets them be off by. */
+static void check_separations(const struct few *few, const narc_step_result *r) {
+    const narc_query query = {
+        .margin = INFINITY, .selection = {r->order, sizeof *r->order}, .selection_count = r->count};
+    narc_error error;
+    assert_true(r->pairs.count <= PAIRS);
+    expect_ok(narc_find_separations(few->store, &few->bodies, &r->pairs, &query, margins, &error), &error);
+    for (size_t k = 0; k < r->touching_count; k++) {
+        const narc_manifold *const row = &r->manifolds[r->touching[k]];
+        const float deepest =
+            row->count > 1 ? fminf(row->point[0].separation, row->point[1].separation) : row->point[0].separation;
+        assert_true(fabsf(deepest - margins[r->touching[k]]) <= few->step.recycling);
+    }
+}
+
+/* Enough for several parts of each kind: asked plainly, by entries, and rows that follow. */
+TEST(workers_share_a_step) {
+    struct few *const few = make_few(circle_of(0.5), 600, NULL);
+    struct test_random random = test_random_named("shared steps");
+    const narc_workers workers = narc_openmp_workers(3);
+    narc_contacts *const alone = few->contacts, *const shared = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    const uint32_t box = store_shape(few->store, box_of(0.9, 0.9, 0));
+    size_t pairs = 0;
+    for (size_t k = 0; k < 600; k++)
+        few->body[k] = (narc_body){0.45 * (double)(k % 30), 0.45 * (double)(k / 30), 1, 0, 1, k % 2 ? box : 0};
+    few->step.skin = 0.02f;
+    for (size_t step = 0; step < 12; step++) {
+        few->step.recycling = step < 6 ? 0 : 0.01f;
+        few->contacts = alone;
+        few->step.workers = NULL;
+        const narc_step_result *const r = step_few(few);
+        few->contacts = shared;
+        few->step.workers = &workers;
+        check_same(r, step_few(few));
+        check_separations(few, r);
+        pairs = r->count;
+        for (size_t k = 0; k < 600; k++) {
+            const double by = k % 7 == step % 7 ? 0.05 : 1e-3; /* some leave what was kept of them */
+            few->body[k].x += random_between(&random, -by, by);
+            few->body[k].y += random_between(&random, -by, by);
+        }
+    }
+    assert_true(pairs > 4 * 1024);
+    narc_destroy_contacts(alone);
+    destroy_few(few);
+}
+
+/* A body that is taken out and is there still is another one: what was known of its pairs is gone. */
+TEST(bodies_that_are_taken_out_are_others) {
+    for (int way = 0; way < 2; way++) {
+        struct few *const few = make_few(circle_of(0.5), 6, NULL);
+        const uint64_t gone[] = {way ? 3 : 2, 77};
+        narc_error error;
+        if (!way)
+            few->step.id.base = NULL; /* ids are numbers */
+        const narc_step_result *r = step_few(few);
+        struct mark *const marks = r->user;
+        for (size_t k = 0; k < r->count; k++)
+            marks[r->order[k]].low = 7 + k;
+        expect_ok(narc_forget_bodies(few->contacts, gone, 2, &error), &error);
+        r = step_few(few);
+        assert_int_equal(r->count, 3);
+        assert_int_equal(r->touching_count, 3);
+        assert_int_equal(r->ended_count, 1);
+        assert_int_equal(r->ended[0].parted, 1);
+        assert_int_equal(r->began_count, 1);
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t slot = r->order[k];
+            assert_int_equal(!!(r->state[slot] & NARC_NEW), k == 1);
+            assert_int_equal(((struct mark *)r->user)[slot].low, k == 1 ? 0 : 7 + k);
+        }
+        r = step_few(few);
+        assert_int_equal(r->began_count + r->ended_count + r->asked_count, 0);
+        destroy_few(few);
+    }
+}
+
+/* Pairs of the caller's that are none, and what was there before stays. */
+TEST(own_pairs_are_checked) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    uint32_t a[] = {0, 2, 4}, b[] = {1, 3, 5};
+    float shift[3] = {0};
+    narc_pairs pairs = {.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    narc_error error;
+    const narc_step_result *r = step_few(few);
+    const uint32_t slot = r->touching[1];
+    const struct {
+        narc_pairs pairs;
+        uint32_t *where, value;
+        narc_status status;
+        const char *words;
+    } bad[] = {{pairs, &a[1], 3, NARC_ERROR_ARGUMENT, "pair 1: both are body 3"},
+               {pairs, &b[2], 6, NARC_ERROR_INDEX, "pair 2: body 6, but there are 6 bodies"},
+               {pairs, &b[2], 0, NARC_OK, ""},
+               {{.count = 3, .b = pairs.b}, &a[0], 0, NARC_ERROR_ARGUMENT, "step.pairs.a"},
+               {{.count = 3, .a = pairs.a, .b = pairs.b, .shift_x = NARC_ARRAY(shift)},
+                &a[0],
+                0,
+                NARC_ERROR_ARGUMENT,
+                "step.pairs with shifts"},
+               {{.count = 3, .a = pairs.a, .b = {b, 0}}, &a[1], 0, NARC_ERROR_ARGUMENT, "bodies 0 and 1 twice"}};
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        const uint32_t was = *bad[k].where;
+        *bad[k].where = bad[k].value;
+        few->step.pairs = &bad[k].pairs;
+        const narc_status status = narc_update_contacts(few->contacts, few->store, &few->step, &r, &error);
+        if (bad[k].status != NARC_OK)
+            expect_error(status, bad[k].status, &error, bad[k].words);
+        else
+            assert_int_equal(r->ended_count, 1); /* of bodies 4 and 5, which are no pair now */
+        *bad[k].where = was;
+    }
+    few->step.pairs = &pairs;
+    r = step_few(few);
+    assert_int_equal(r->touching_count, 3);
+    assert_int_equal(r->touching[1], slot);
+    few->step.same_pairs = 1;
+    few->body[3].x += 50; /* which no box tells of */
+    r = step_few(few);
+    assert_int_equal(r->count, 3);
+    assert_int_equal(r->touching_count, 2);
+    few->step.pairs = NULL;
+    r = step_few(few);
+    assert_int_equal(r->count, 2);
+    destroy_few(few);
+}
+
+TEST_MAIN("contact cases")
