@@ -25,15 +25,21 @@ static narc_query make_query(const narc_contact_step *s, const float *margins, c
                         .workers = step->workers};
 }
 
+/* Of bodies that were looked at in this step it is known that their shapes are there. */
 narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
                            bool slots, void *rows, size_t capacity, size_t *out_count) {
     const narc_contacts *const c = s->contacts;
     const narc_bodies *const bodies = s->step->bodies;
+    const bool all = !s->step->moved.base;
     narc_query query = make_query(s, slots ? c->margins : c->ground_margins, selection, count);
+    narc_batch batch;
     query.dense = slots;
     query.hints = (narc_hint_column){slots ? c->hints : NULL, sizeof *c->hints};
-    return c->contact_rows ? narc_find_contacts(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error)
-                           : narc_find_manifolds(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error);
+    const narc_status status = all ? narc_fill_batch(s->shapes, bodies, pairs, &query, &batch, s->error)
+                                   : narc_begin_batch(s->shapes, bodies, pairs, &query, &batch, s->error);
+    return status != NARC_OK ? status
+           : c->contact_rows ? narc_answer_contacts(&batch, rows, capacity, out_count, s->error)
+                             : narc_answer_manifolds(&batch, rows, capacity, out_count, s->error);
 }
 
 /* ------------------------------------------------------------------------------------------------ entries */
@@ -69,65 +75,37 @@ static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) 
     return c->asked_count - before;
 }
 
-/* Makes entries of pairs that were asked: of smooth ones that are asked for the second time, as a pair that goes soon is not
- * worth it, and of those that their entries left, which stand behind the first `plain_count`. */
-static void make_entries(const narc_contact_step *s, const narc_batch *batch, size_t plain_count) {
-    narc_contacts *const c = s->contacts;
-    size_t count = 0;
-    for (size_t i = 0; i < c->asked_count; i++) {
-        const uint32_t slot = c->asked[i];
-        const unsigned flags = c->flags[slot];
-        const bool again = i < plain_count && (flags & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN)) == NARC_SLOT_SEEN;
-        c->flags[slot] |= NARC_SLOT_SEEN;
-        if (i < plain_count && !again)
-            continue;
-        const bool smooth = !again || narc_are_smooth(s, c->a[slot], c->b[slot]);
-        c->flags[slot] |= smooth ? NARC_SLOT_ENTRY : NARC_SLOT_PLAIN;
-        c->left[count] = slot;
-        count += smooth;
-    }
-    if (count > 0)
-        narc_make_entries(batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_size, c->entries,
-                          c->contact_rows ? NULL : c->ends);
-}
-
 /* ------------------------------------------------------------------------------------------------ rows */
 
-/* Some slots have been answered: what touches now? */
-static void mark_answered(narc_contacts *c, const uint32_t *slots, size_t count) {
+/* Some slots have been answered: what touches now? Lists those of smooth shapes that were asked before, as a pair that goes
+ * soon is not worth an entry, and those whose row may be kept. Returns how many the first are. */
+static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, size_t count, uint32_t *again,
+                           uint32_t *candidates) {
+    narc_contacts *const c = s->contacts;
     const size_t row_size = c->row_size;
     const bool contact_rows = c->contact_rows;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
-    uint32_t *const marked = c->marked;
-    size_t crossed = 0, marked_count = c->marked_count;
+    size_t crossed = 0, again_count = 0, candidate_count = 0;
     for (size_t i = 0; i < count; i++) {
         const uint32_t slot = slots[i];
-        const unsigned was = state[slot];
-        const unsigned now = narc_count_points(contact_rows, rows + slot * row_size) > 0 ? NARC_TOUCHING : 0;
-        const unsigned crosses = (was ^ now) & NARC_TOUCHING;
-        marked[marked_count] = slot;
-        marked_count += !(was & ~(unsigned)NARC_TOUCHING);
+        const unsigned was = state[slot], touches = narc_count_points(contact_rows, rows + slot * row_size) > 0;
+        const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
+        unsigned kind = flags[slot] & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY);
+        again[again_count] = candidates[candidate_count] = slot; /* as chance has it: without a branch */
+        again_count += kind == NARC_SLOT_SEEN;
+        if (!(kind & NARC_SLOT_SEEN) && !narc_are_smooth(s, c->a[slot], c->b[slot]))
+            kind = NARC_SLOT_PLAIN;
+        candidate_count += touches & ((kind & NARC_SLOT_PLAIN) != 0);
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        flags[slot] = (uint8_t)(flags[slot] ^ crosses * NARC_SLOT_CROSSED);
+        flags[slot] = (uint8_t)(((flags[slot] & ~(unsigned)NARC_SLOT_KEPT) ^ crosses * NARC_SLOT_CROSSED) | kind |
+                                NARC_SLOT_SEEN);
         crossed += crosses;
     }
-    c->marked_count = marked_count;
+    c->marked = c->marked || count > 0;
     c->crossed_count += crossed;
-}
-
-/* Rows with an edge that were asked for are kept to follow their bodies. */
-static void keep_rows(const narc_contact_step *s) {
-    narc_contacts *const c = s->contacts;
-    for (size_t i = 0; i < c->asked_count; i++) {
-        const uint32_t slot = c->asked[i];
-        const uint32_t a = c->a[slot], b = c->b[slot];
-        c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, a, b))
-            continue;
-        narc_keep_row(s, a, b, narc_row_at(c, c->rows, slot), &c->kept[slot]);
-        c->flags[slot] |= NARC_SLOT_KEPT;
-    }
+    c->candidate_count = candidate_count;
+    return again_count;
 }
 
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
@@ -139,7 +117,7 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     size_t found = 0, left = 0;
     if (plain_count + c->known_count == 0)
         return NARC_OK;
-    narc_status status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
+    narc_status status = narc_fill_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
     if (status != NARC_OK)
         return status;
     batch.row_size = c->row_size;
@@ -152,12 +130,20 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     const bool fails = left > c->known_count / FEW;
     c->waits = !fails ? 0 : c->waits == 0 ? 1 : c->waits < MOST_STEPS ? 2 * c->waits : MOST_STEPS;
     c->wait = fails ? c->waits : c->wait > 0 ? c->wait - 1 : 0;
+    note_answers(s, c->known, c->known_count, c->left, c->candidates);
+    size_t count = note_answers(s, c->asked, plain_count, c->left, c->candidates);
+    for (size_t i = plain_count; i < c->asked_count; i++)
+        c->left[count++] = c->asked[i];
+    for (size_t i = 0; i < count && c->wait == 0; i++)
+        c->flags[c->left[i]] |= NARC_SLOT_ENTRY;
     if (c->wait == 0)
-        make_entries(s, &batch, plain_count);
-    mark_answered(c, c->known, c->known_count);
-    mark_answered(c, c->asked, plain_count);
-    if (s->step->recycling > 0)
-        keep_rows(s);
+        narc_make_entries(&batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_size, c->entries,
+                          c->contact_rows ? NULL : c->ends);
+    for (size_t i = 0; i < c->candidate_count && s->step->recycling > 0; i++) {
+        const uint32_t slot = c->candidates[i];
+        narc_keep_row(s, c->a[slot], c->b[slot], narc_row_at(c, c->rows, slot), &c->kept[slot]);
+        c->flags[slot] |= NARC_SLOT_KEPT;
+    }
     c->asked_count = plain_count; /* the others are among the known ones */
     return NARC_OK;
 }

@@ -89,7 +89,7 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
 void narc_take_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     size_t at = 0, next = 0;
-    if (c->ground_count == 0 && (c->more.count == 0 || (s->list->kept && c->work_count == 0)))
+    if (c->ground_count == 0 && (c->more.count == 0 || !c->changed))
         return;
     c->next_more.count = 0;
     for (size_t k = 0; k < s->list->pairs.count; k++)

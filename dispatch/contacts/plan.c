@@ -16,8 +16,7 @@ static uint8_t kind_of(const narc_contact_step *s, uint32_t body) {
 }
 
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    enum { AT_REST = NARC_STATIC | NARC_ASLEEP };
-    return !(kind_of(s, a) & AT_REST && kind_of(s, b) & AT_REST);
+    return !(kind_of(s, a) & NARC_AT_REST && kind_of(s, b) & NARC_AT_REST);
 }
 
 static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t body) {
@@ -96,29 +95,22 @@ static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
     if (slot == UINT32_MAX || v->again)
         return true;
     const unsigned flags = v->flags[slot], marks = v->marks[k];
-    const bool sensor = marks & NARC_SENSOR, was_sensor = flags & NARC_SLOT_SENSOR;
-    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | (sensor ^ was_sensor);
+    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
 }
 
-static inline void add_work(narc_contacts *c, size_t k, unsigned what) {
-    c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, what};
+/* What is to be done with a pair that has no ground, and is stale or has changed. */
+static inline unsigned plan_pair(const narc_contact_step *s, const pair_view *v, size_t k, bool may_follow) {
+    const uint32_t a = v->a[k], b = v->b[k];
+    const unsigned marks = v->marks[k];
+    if (marks & NARC_AT_REST && !narc_is_tested(s, a, b) && !(marks & NARC_FLIPPED))
+        return NARC_REST; /* one that is turned has the other bodies' row */
+    if (marks & NARC_SENSOR)
+        return NARC_ASK_SENSOR;
+    return are_apart(v, a, b) ? NARC_APART : may_follow ? NARC_FOLLOW : NARC_ASK;
 }
 
-static inline void plan_pair(const narc_contact_step *s, const pair_view *v, size_t k) {
-    const uint32_t a = v->a[k], b = v->b[k], slot = slot_of(v, k);
-    const unsigned changed = v->changed[a] | v->changed[b];
-    const bool stale = is_stale(v, k, slot);
-    if (!stale && !changed)
-        return;
-    unsigned what = are_apart(v, a, b) ? NARC_APART : NARC_ASK; /* as chance has it: without a branch */
-    if (s->step->filter && !narc_is_tested(s, a, b) && !(v->marks[k] & NARC_FLIPPED))
-        what = NARC_REST; /* one that is turned has the other bodies' row */
-    else if (v->marks[k] & NARC_SENSOR)
-        what = NARC_ASK_SENSOR;
-    else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !(changed & NARC_RESHAPED) &&
-             v->flags[slot] & NARC_SLOT_KEPT)
-        what = NARC_FOLLOW;
-    add_work(s->contacts, k, what | (changed & NARC_RESHAPED ? NARC_OTHER_SHAPE : 0));
+static bool is_ground(const narc_contact_step *s, const pair_view *v, size_t k) {
+    return !(v->marks[k] & NARC_SENSOR) && narc_is_ground_pair(s, v->a[k], v->b[k]);
 }
 
 /* May all rows of pair k, of ground, follow? A pair without one may, too. */
@@ -127,9 +119,9 @@ static bool may_follow_ground(const narc_contact_step *s, uint32_t k, uint32_t s
     const narc_more_rows more = c->more_of[slot];
     if (!(c->state[slot] & NARC_TOUCHING))
         return true;
-    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, &k, &slot, 1, c->kept);
+    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, k, slot, c->kept);
     for (uint32_t i = more.first; may && i < more.first + more.count; i++)
-        may = narc_may_follow(s, &k, &i, 1, c->more.kept);
+        may = narc_may_follow(s, k, i, c->more.kept);
     return may;
 }
 
@@ -141,10 +133,9 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
-        if (!narc_is_ground_pair(s, a, b) || v->marks[k] & NARC_SENSOR) { /* it may have been */
-            const bool sensor = v->marks[k] & NARC_SENSOR;
-            const bool was_sensor = slot != UINT32_MAX && v->flags[slot] & NARC_SLOT_SENSOR;
-            const bool other = slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || sensor != was_sensor);
+        if (!is_ground(s, v, k)) { /* it may have been */
+            const bool other =
+                slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
             stale |= other;
             changed |= other;
             continue;
@@ -157,11 +148,9 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
         follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
     }
     const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
-    for (size_t k = first; k < end; k++)
-        if (!narc_is_ground_pair(s, a, v->b[k]) || v->marks[k] & NARC_SENSOR)
-            plan_pair(s, v, k);
-        else if (changed)
-            add_work(c, k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST);
+    for (size_t k = first; k < end && changed; k++)
+        if (is_ground(s, v, k))
+            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST};
 }
 
 /* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -207,35 +196,91 @@ static void note_lost_ground(const narc_contact_step *s) {
     }
 }
 
-void narc_plan_step(const narc_contact_step *s) {
+void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
     const size_t count = s->list->pairs.count;
-    const bool kept = is_list_kept(s);
     c->work_count = 0;
-    if (kept && !has_any_changed(v.changed, s->step->bodies->count))
-        return;
-    for (size_t k = 0; k < s->step->bodies->count; k++)
+    c->changed = !is_list_kept(s) || has_any_changed(v.changed, s->step->bodies->count);
+    for (size_t k = 0; k < s->step->bodies->count && c->changed; k++)
         if (v.changed[k] & NARC_RESHAPED)
             c->room[k] = find_room(s, (uint32_t)k);
     if (s->has_ground && !s->list->kept)
         note_lost_ground(s);
-    if (!s->has_ground) {
-        for (size_t k = 0; k < count;)
-            if (kept && !(v.changed[v.a[k]] | v.changed[v.b[k]]))
-                k = find_changed(&s->list->pairs, v.changed, k);
-            else
-                plan_pair(s, &v, k++);
-        return;
-    }
-    for (size_t k = 0, end; k < count; k = end) {
+    for (size_t k = 0, end; k < count && s->has_ground && c->changed; k = end) {
         bool ground = false;
         for (end = k; end < count && v.a[end] == v.a[k]; end++)
-            ground = ground || narc_is_ground_pair(s, v.a[end], v.b[end]);
+            ground = ground || is_ground(s, &v, end);
         if (ground)
             plan_ground(s, &v, k, end);
-        else
-            for (size_t i = k; i < end; i++)
-                plan_pair(s, &v, i);
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ slots */
+
+void narc_clear_row(narc_contacts *c, uint32_t slot) {
+    char *const row = narc_row_at(c, c->rows, slot);
+    c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
+    if (narc_count_points(c->contact_rows, row) > 0 || c->more_of[slot].count > 0) {
+        narc_mark_slot(c, slot, NARC_ASKED);
+        memset(row, 0, c->row_size);
+        memcpy(row, &slot, sizeof slot);
+        c->more_of[slot].count = 0;
+    }
+    narc_set_touching(c, slot, false);
+}
+
+/* What loops use lies in variables of their own, as whatever is written in bytes might be any of it. */
+void narc_sort_pairs(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const narc_pair_work *work = c->work, *const work_end = work + c->work_count;
+    const pair_view v = view_pairs(s);
+    const uint8_t *const state = c->state;
+    uint8_t *const flags = c->flags;
+    uint32_t *const asked = c->asked, *const known = c->known;
+    const bool kept = is_list_kept(s), recycles = s->step->recycling > 0, ground = s->has_ground;
+    const bool margins = s->step->ahead.base, more = c->more.count > 0;
+    const size_t count = c->changed ? s->list->pairs.count : 0;
+    size_t asked_count = 0, known_count = 0;
+    c->sensor_count = c->candidate_count = 0;
+    for (size_t k = 0; k < count; k++) {
+        const unsigned changed = v.changed[v.a[k]] | v.changed[v.b[k]];
+        if (kept && !changed) {
+            k = find_changed(&s->list->pairs, v.changed, k) - 1;
+            continue;
+        }
+        const uint32_t slot = v.order[k];
+        const unsigned was = flags[slot], reshaped = changed & NARC_RESHAPED;
+        const bool stale = is_stale(&v, k, slot);
+        unsigned what;
+        if (ground && is_ground(s, &v, k)) {
+            if (work == work_end || work->pair != k)
+                continue;
+            what = work++->what;
+        } else if (stale || changed) {
+            what = plan_pair(s, &v, k, recycles && !stale && !reshaped && was & NARC_SLOT_KEPT);
+        } else {
+            continue;
+        }
+        const unsigned gone = what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT;
+        const unsigned stays = reshaped ? NARC_SLOT_CROSSED : 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | gone);
+        const unsigned now = (was & stays) | (v.marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
+        const unsigned asks = what == NARC_ASK, knows = (now & NARC_SLOT_ENTRY) != 0;
+        flags[slot] = (uint8_t)now;
+        asked[asked_count] = known[known_count] = slot; /* as chance has it: without a branch */
+        asked_count += asks & !knows;
+        known_count += asks & knows;
+        if (margins && (what == NARC_ASK || what == NARC_FOLLOW))
+            c->margins[slot] = narc_find_margin(s, v.a[k], v.b[k]);
+        if (more && what == NARC_ASK) /* it may have been ground */
+            c->more_of[slot].count = 0;
+        if (what == NARC_APART && state[slot] & NARC_TOUCHING)
+            narc_clear_row(c, slot);
+        else if (what == NARC_FOLLOW && state[slot] & NARC_TOUCHING)
+            c->candidates[c->candidate_count++] = slot;
+        else if (what == NARC_ASK_SENSOR)
+            c->sensors_asked[c->sensor_count++] = slot;
+    }
+    c->known_count = known_count;
+    c->asked_count = asked_count;
 }

@@ -89,24 +89,16 @@ void narc_keep_row(const narc_contact_step *s, uint32_t a, uint32_t b, const voi
     kept->apart = r.separation[0] + kept->radius_a + kept->radius_b;
 }
 
-bool narc_may_follow(const narc_contact_step *s, const uint32_t *pair, const uint32_t *item, size_t count,
-                     const narc_kept_row *kept) {
-    enum { SOME = 64 };
-    const narc_contacts *const c = s->contacts;
+bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept) {
     narc_status status = NARC_OK;
-    for (size_t k = 0; k < count; k += SOME) {
-        uint32_t left[SOME];
-        const size_t n = count - k < SOME ? count - k : SOME;
-        const narc_query query = {.selection = {pair + k, sizeof *pair}, .selection_count = n};
-        const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
-        narc_batch batch;
-        if (!kernels || narc_begin_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, NULL) != NARC_OK)
-            return false;
-        batch.row_size = c->row_size;
-        if (kernels->recycle(&batch, 0, n, item + k, kept, s->step->recycling, NULL, left) > 0)
-            return false;
-    }
-    return true;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    const narc_query query = {.selection = {&pair, 0}, .selection_count = 1};
+    narc_batch batch;
+    uint32_t left;
+    if (!kernels || narc_fill_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, NULL) != NARC_OK)
+        return false;
+    batch.row_size = s->contacts->row_size;
+    return NARC_KERNELS_FOR(1, kernels)->recycle(&batch, 0, 1, &item, kept, s->step->recycling, NULL, &left) == 0;
 }
 
 typedef struct follow_job {
@@ -135,7 +127,7 @@ static void follow_more(const narc_contact_step *s, const narc_pairs *pairs, con
     const narc_more_rows more = c->more_of[slot];
     const narc_query query = {.selection = {&slot, 0}, .selection_count = 1};
     narc_batch batch;
-    if (narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, NULL) != NARC_OK)
+    if (narc_fill_batch(s->shapes, s->step->bodies, pairs, &query, &batch, NULL) != NARC_OK)
         return;
     batch.row_size = c->row_size;
     for (uint32_t i = more.first; i < more.first + more.count; i++) {
@@ -151,7 +143,7 @@ narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs
     narc_batch batch;
     if (count == 0)
         return NARC_OK;
-    narc_status status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
+    narc_status status = narc_fill_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
     follow_job job = {s, &batch, narc_kernels(&status, s->error)};
     if (status != NARC_OK)
         return status;
