@@ -77,30 +77,34 @@ static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) 
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-/* Some slots have been answered: what touches now? Lists those of smooth shapes that were asked before, as a pair that goes
- * soon is not worth an entry, and those whose row may be kept. Returns how many the first are. */
-static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, size_t count, uint32_t *again,
-                           uint32_t *candidates) {
+/* Some slots have been answered, most of which are of the kind `usual`: what touches now? Lists those of smooth shapes that
+ * were asked before, as a pair that goes soon is not worth an entry, in `left`, and those whose row may be kept. Returns how
+ * many the first are. */
+static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, size_t count, unsigned usual) {
     narc_contacts *const c = s->contacts;
     const size_t row_size = c->row_size;
     const bool contact_rows = c->contact_rows;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
+    uint32_t *const candidates = c->candidates;
     size_t crossed = 0, again_count = 0, candidate_count = 0;
     for (size_t i = 0; i < count; i++) {
         const uint32_t slot = slots[i];
         const unsigned was = state[slot], touches = narc_count_points(contact_rows, rows + slot * row_size) > 0;
         const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
-        unsigned kind = flags[slot] & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY);
-        again[again_count] = candidates[candidate_count] = slot; /* as chance has it: without a branch */
-        again_count += kind == NARC_SLOT_SEEN;
-        if (!(kind & NARC_SLOT_SEEN) && !narc_are_smooth(s, c->a[slot], c->b[slot]))
-            kind = NARC_SLOT_PLAIN;
-        candidate_count += touches & ((kind & NARC_SLOT_PLAIN) != 0);
+        unsigned own = flags[slot] & ~(unsigned)NARC_SLOT_KEPT;
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        flags[slot] = (uint8_t)(((flags[slot] & ~(unsigned)NARC_SLOT_KEPT) ^ crosses * NARC_SLOT_CROSSED) | kind |
-                                NARC_SLOT_SEEN);
+        if ((own & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY)) != usual) {
+            if (own & NARC_SLOT_SEEN)
+                c->left[again_count++] = slot;
+            else if (!narc_are_smooth(s, c->a[slot], c->b[slot]))
+                own |= NARC_SLOT_PLAIN;
+            own |= NARC_SLOT_SEEN;
+        }
+        flags[slot] = (uint8_t)(own ^ crosses * NARC_SLOT_CROSSED);
         crossed += crosses;
+        candidates[candidate_count] = slot; /* as chance has it: without a branch */
+        candidate_count += touches & ((own & NARC_SLOT_PLAIN) != 0);
     }
     c->marked = c->marked || count > 0;
     c->crossed_count += crossed;
@@ -130,8 +134,8 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     const bool fails = left > c->known_count / FEW;
     c->waits = !fails ? 0 : c->waits == 0 ? 1 : c->waits < MOST_STEPS ? 2 * c->waits : MOST_STEPS;
     c->wait = fails ? c->waits : c->wait > 0 ? c->wait - 1 : 0;
-    note_answers(s, c->known, c->known_count, c->left, c->candidates);
-    size_t count = note_answers(s, c->asked, plain_count, c->left, c->candidates);
+    note_answers(s, c->known, c->known_count, NARC_SLOT_SEEN | NARC_SLOT_ENTRY);
+    size_t count = note_answers(s, c->asked, plain_count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN);
     for (size_t i = plain_count; i < c->asked_count; i++)
         c->left[count++] = c->asked[i];
     for (size_t i = 0; i < count && c->wait == 0; i++)

@@ -34,7 +34,7 @@ typedef struct narc_more_rows {
 
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
  * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
-enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
+enum { NARC_NOTHING, NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
 
 /* Slots that a thread takes at a time: some 10 microseconds of work. */
 enum { NARC_SLOT_PART = 1024 };

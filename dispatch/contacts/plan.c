@@ -3,6 +3,7 @@
  * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing.
  */
 #include "column.h"
+#include "compiler.h"
 #include "contacts.h"
 #include "narc_chains.h"
 #include "store.h"
@@ -54,7 +55,6 @@ typedef struct pair_view {
     const narc_box *boxes;
     const float *room;
     float margin_room; /* INFINITY: no pair is known to have no row by its boxes */
-    bool again;
 } pair_view;
 
 static pair_view view_pairs(const narc_contact_step *s) {
@@ -68,8 +68,7 @@ static pair_view view_pairs(const narc_contact_step *s) {
                        .changed = c->broad->known.changed,
                        .boxes = c->broad->boxes_now,
                        .room = c->room,
-                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin,
-                       .again = c->again};
+                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin};
 }
 
 /* The slot that a pair has, or NARC_NO_MATCH. */
@@ -92,21 +91,10 @@ static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
 /* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, or was it at rest while
  * something changed? */
 static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
-    if (slot == UINT32_MAX || v->again)
+    if (slot == UINT32_MAX)
         return true;
     const unsigned flags = v->flags[slot], marks = v->marks[k];
     return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
-}
-
-/* What is to be done with a pair that has no ground, and is stale or has changed. */
-static inline unsigned plan_pair(const narc_contact_step *s, const pair_view *v, size_t k, bool may_follow) {
-    const uint32_t a = v->a[k], b = v->b[k];
-    const unsigned marks = v->marks[k];
-    if (marks & NARC_AT_REST && !narc_is_tested(s, a, b) && !(marks & NARC_FLIPPED))
-        return NARC_REST; /* one that is turned has the other bodies' row */
-    if (marks & NARC_SENSOR)
-        return NARC_ASK_SENSOR;
-    return are_apart(v, a, b) ? NARC_APART : may_follow ? NARC_FOLLOW : NARC_ASK;
 }
 
 static bool is_ground(const narc_contact_step *s, const pair_view *v, size_t k) {
@@ -205,6 +193,8 @@ void narc_plan_ground(const narc_contact_step *s) {
     for (size_t k = 0; k < s->step->bodies->count && c->changed; k++)
         if (v.changed[k] & NARC_RESHAPED)
             c->room[k] = find_room(s, (uint32_t)k);
+    for (size_t slot = 0; slot < c->slot_count && c->again; slot++)
+        c->flags[slot] |= NARC_SLOT_STALE;
     if (s->has_ground && !s->list->kept)
         note_lost_ground(s);
     for (size_t k = 0, end; k < count && s->has_ground && c->changed; k = end) {
@@ -230,57 +220,106 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
     narc_set_touching(c, slot, false);
 }
 
-/* What loops use lies in variables of their own, as whatever is written in bytes might be any of it. */
+/* What is to be done with pair k of the list, if it is stale or has changed. Ground: the next of what is planned. */
+static unsigned find_work(const narc_contact_step *s, const pair_view *v, size_t k, const narc_pair_work **work) {
+    const narc_contacts *const c = s->contacts;
+    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
+    const unsigned marks = v->marks[k], changed = v->changed[a] | v->changed[b];
+    const bool stale = is_stale(v, k, slot);
+    if (s->has_ground && is_ground(s, v, k))
+        return *work < c->work + c->work_count && (*work)->pair == k ? (*work)++->what : NARC_NOTHING;
+    if (!stale && !changed)
+        return NARC_NOTHING;
+    if (marks & NARC_AT_REST && !narc_is_tested(s, a, b) && !(marks & NARC_FLIPPED))
+        return NARC_REST; /* one that is turned has the other bodies' row */
+    if (marks & NARC_SENSOR)
+        return NARC_ASK_SENSOR;
+    if (are_apart(v, a, b))
+        return NARC_APART;
+    return s->step->recycling > 0 && !stale && !(changed & NARC_RESHAPED) && v->flags[slot] & NARC_SLOT_KEPT
+               ? NARC_FOLLOW
+               : NARC_ASK;
+}
+
+/* Does it. */
+static void do_work(const narc_contact_step *s, const pair_view *v, size_t k, unsigned what) {
+    narc_contacts *const c = s->contacts;
+    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
+    const unsigned gone = what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT;
+    const unsigned stays = (v->changed[a] | v->changed[b]) & NARC_RESHAPED
+                               ? NARC_SLOT_CROSSED
+                               : 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | gone);
+    const unsigned now =
+        (c->flags[slot] & stays) | (v->marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
+    c->flags[slot] = (uint8_t)now;
+    if (what == NARC_ASK || what == NARC_FOLLOW)
+        c->margins[slot] = narc_find_margin(s, a, b);
+    if (what == NARC_ASK) {
+        c->more_of[slot].count = 0; /* it may have been ground */
+        if (now & NARC_SLOT_ENTRY)
+            c->known[c->known_count++] = slot;
+        else
+            c->asked[c->asked_count++] = slot;
+    } else if (what == NARC_APART && c->state[slot] & NARC_TOUCHING) {
+        narc_clear_row(c, slot);
+    } else if (what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING) {
+        c->candidates[c->candidate_count++] = slot;
+    } else if (what == NARC_ASK_SENSOR) {
+        c->sensors_asked[c->sensor_count++] = slot;
+    }
+}
+
+/* Pairs from number `first` on as far as all bodies move, are none of ground, no sensors, and need no margin of their own:
+ * the same for these in few instructions. Returns where that ends. */
+NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, size_t first, bool kept) {
+    const unsigned special = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED;
+    narc_contacts *const c = s->contacts;
+    const pair_view v = *given; /* what loops use, in variables: what is written in bytes might be any of it */
+    uint8_t *const flags = c->flags;
+    uint32_t *asked = c->asked + c->asked_count, *known = c->known + c->known_count,
+             *candidates = c->candidates + c->candidate_count;
+    const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
+    const size_t count = s->list->pairs.count;
+    size_t k = first;
+    for (; k < count; k++) {
+        const uint32_t a = v.a[k], b = v.b[k], slot = v.order[k];
+        const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], stale = was & NARC_SLOT_STALE;
+        if ((v.marks[k] & special) | (was & NARC_SENSOR) || (kept && !changed))
+            break;
+        if (!(changed | stale))
+            continue;
+        const unsigned apart = are_apart(&v, a, b);
+        if (apart & c->state[slot])
+            break;
+        const unsigned own = was & (changed & NARC_RESHAPED ? NARC_SLOT_CROSSED : 0xffu - NARC_SLOT_STALE);
+        const unsigned follows = stale | apart ? 0 : own & follow;
+        const unsigned asks = !(apart | follows), entry = asks & (own / NARC_SLOT_ENTRY);
+        flags[slot] = (uint8_t)((own & (0xffu - NARC_SLOT_KEPT)) | follows);
+        *asked = *known = *candidates = slot; /* as chance has it: without a branch */
+        asked += asks - entry;
+        known += entry;
+        candidates += follows / NARC_SLOT_KEPT;
+    }
+    c->asked_count = (size_t)(asked - c->asked);
+    c->known_count = (size_t)(known - c->known);
+    c->candidate_count = (size_t)(candidates - c->candidates);
+    return k;
+}
+
 void narc_sort_pairs(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
-    const narc_pair_work *work = c->work, *const work_end = work + c->work_count;
     const pair_view v = view_pairs(s);
-    const uint8_t *const state = c->state;
-    uint8_t *const flags = c->flags;
-    uint32_t *const asked = c->asked, *const known = c->known;
-    const bool kept = is_list_kept(s), recycles = s->step->recycling > 0, ground = s->has_ground;
-    const bool margins = s->step->ahead.base, more = c->more.count > 0;
+    const narc_pair_work *work = c->work;
+    const bool kept = is_list_kept(s), simple = !s->has_ground && !s->step->ahead.base && c->more.count == 0;
     const size_t count = c->changed ? s->list->pairs.count : 0;
-    size_t asked_count = 0, known_count = 0;
-    c->sensor_count = c->candidate_count = 0;
+    c->sensor_count = c->candidate_count = c->asked_count = c->known_count = 0;
     for (size_t k = 0; k < count; k++) {
-        const unsigned changed = v.changed[v.a[k]] | v.changed[v.b[k]];
-        if (kept && !changed) {
-            k = find_changed(&s->list->pairs, v.changed, k) - 1;
-            continue;
-        }
-        const uint32_t slot = v.order[k];
-        const unsigned was = flags[slot], reshaped = changed & NARC_RESHAPED;
-        const bool stale = is_stale(&v, k, slot);
-        unsigned what;
-        if (ground && is_ground(s, &v, k)) {
-            if (work == work_end || work->pair != k)
-                continue;
-            what = work++->what;
-        } else if (stale || changed) {
-            what = plan_pair(s, &v, k, recycles && !stale && !reshaped && was & NARC_SLOT_KEPT);
-        } else {
-            continue;
-        }
-        const unsigned gone = what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT;
-        const unsigned stays = reshaped ? NARC_SLOT_CROSSED : 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | gone);
-        const unsigned now = (was & stays) | (v.marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
-        const unsigned asks = what == NARC_ASK, knows = (now & NARC_SLOT_ENTRY) != 0;
-        flags[slot] = (uint8_t)now;
-        asked[asked_count] = known[known_count] = slot; /* as chance has it: without a branch */
-        asked_count += asks & !knows;
-        known_count += asks & knows;
-        if (margins && (what == NARC_ASK || what == NARC_FOLLOW))
-            c->margins[slot] = narc_find_margin(s, v.a[k], v.b[k]);
-        if (more && what == NARC_ASK) /* it may have been ground */
-            c->more_of[slot].count = 0;
-        if (what == NARC_APART && state[slot] & NARC_TOUCHING)
-            narc_clear_row(c, slot);
-        else if (what == NARC_FOLLOW && state[slot] & NARC_TOUCHING)
-            c->candidates[c->candidate_count++] = slot;
-        else if (what == NARC_ASK_SENSOR)
-            c->sensors_asked[c->sensor_count++] = slot;
+        if (kept)
+            k = find_changed(&s->list->pairs, v.changed, k);
+        if (simple)
+            k = sort_simple(s, &v, k, kept);
+        const unsigned what = k < count ? find_work(s, &v, k, &work) : NARC_NOTHING;
+        if (what != NARC_NOTHING)
+            do_work(s, &v, k, what);
     }
-    c->known_count = known_count;
-    c->asked_count = asked_count;
 }
