@@ -42,40 +42,66 @@ narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, 
                              : narc_answer_manifolds(&batch, rows, capacity, out_count, s->error);
 }
 
-/* ------------------------------------------------------------------------------------------------ entries */
-
-typedef struct known_job {
-    const narc_contacts *contacts;
-    const narc_batch *batch;
-    const narc_kernel_table *kernels;
-} known_job;
+/* ------------------------------------------------------------------------------------------------ parts */
 
 /* Behind the pairs that are left of a part there is one that is none. */
-static void follow_part(void *argument, size_t part, size_t first, size_t end) {
-    const known_job *const job = argument;
-    const narc_contacts *const c = job->contacts;
-    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_size};
+static void run_part(void *argument, size_t part, size_t first, size_t end) {
+    const narc_slot_job *const job = argument;
+    uint32_t *const out = job->contacts->left + first;
     (void)part;
-    const size_t left = job->kernels->follow(job->batch, first, end - first, c->entries,
-                                             c->contact_rows ? NULL : c->ends, &rows, c->left + first);
+    const size_t left = job->work(job, first, end - first, out);
     if (left < end - first)
-        c->left[first + left] = UINT32_MAX;
+        out[left] = UINT32_MAX;
 }
 
-/* Answers pairs whose entries are known; those that are left join `asked`. Returns how many these are. */
-static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) {
+narc_status narc_run_slots(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
+                           narc_slot_job *job, size_t *out_left) {
     narc_contacts *const c = s->contacts;
-    narc_status status = NARC_OK;
-    known_job job = {c, batch, narc_kernels(&status, NULL)};
-    const size_t before = c->asked_count;
-    narc_run_ranges(s->step->workers, c->known_count, NARC_SLOT_PART, follow_part, &job);
-    for (size_t first = 0; first < c->known_count; first += NARC_SLOT_PART)
-        for (size_t k = first; k < first + NARC_SLOT_PART && k < c->known_count && c->left[k] != UINT32_MAX; k++)
-            c->asked[c->asked_count++] = c->left[k];
-    return c->asked_count - before;
+    const size_t count = query->selection_count;
+    narc_batch batch;
+    size_t left = 0;
+    *out_left = 0;
+    if (count == 0)
+        return NARC_OK;
+    narc_status status = narc_fill_batch(s->shapes, s->step->bodies, pairs, query, &batch, s->error);
+    const narc_kernel_table *const kernels = narc_kernels(&status, s->error);
+    if (status != NARC_OK)
+        return status;
+    batch.row_size = c->row_size;
+    job->contacts = c;
+    job->batch = &batch;
+    job->kernels = NARC_KERNELS_FOR(count, kernels);
+    narc_run_ranges(s->step->workers, count, NARC_SLOT_PART, run_part, job);
+    for (size_t first = 0; first < count; first += NARC_SLOT_PART)
+        for (size_t k = first; k < first + NARC_SLOT_PART && k < count && c->left[k] != UINT32_MAX; k++)
+            c->left[left++] = c->left[k];
+    *out_left = left;
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ entries */
+
+static size_t follow_part(const narc_slot_job *job, size_t first, size_t count, uint32_t *left) {
+    const narc_contacts *const c = job->contacts;
+    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_size};
+    return job->kernels->follow(job->batch, first, count, c->entries, c->contact_rows ? NULL : c->ends, &rows, left);
 }
 
 /* ------------------------------------------------------------------------------------------------ rows */
+
+/* Makes entries of the first slots in `left`. */
+static void make_entries(const narc_contact_step *s, const narc_pairs *pairs, size_t count) {
+    narc_contacts *const c = s->contacts;
+    const narc_query query = make_query(s, c->margins, c->left, count);
+    narc_batch batch;
+    if (narc_fill_batch(s->shapes, s->step->bodies, pairs, &query, &batch, NULL) != NARC_OK)
+        return;
+    batch.row_size = c->row_size;
+    for (size_t i = 0; i < count; i++)
+        c->flags[c->left[i]] |= NARC_SLOT_ENTRY;
+    narc_make_entries(&batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_size, c->entries,
+                      c->contact_rows ? NULL : c->ends);
+}
 
 /* Some slots have been answered, most of which are of the kind `usual`: what touches now? Lists those of smooth shapes that
  * were asked before, as a pair that goes soon is not worth an entry, in `left`, and those whose row may be kept. Returns how
@@ -84,6 +110,7 @@ static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, si
     narc_contacts *const c = s->contacts;
     const size_t row_size = c->row_size;
     const bool contact_rows = c->contact_rows;
+    const unsigned recycles = s->step->recycling > 0;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
     uint32_t *const candidates = c->candidates;
@@ -101,10 +128,11 @@ static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, si
                 own |= NARC_SLOT_PLAIN;
             own |= NARC_SLOT_SEEN;
         }
-        flags[slot] = (uint8_t)(own ^ crosses * NARC_SLOT_CROSSED);
+        const unsigned keeps = touches & own / NARC_SLOT_PLAIN & recycles;
+        flags[slot] = (uint8_t)((own ^ crosses * NARC_SLOT_CROSSED) | keeps * NARC_SLOT_KEPT);
         crossed += crosses;
         candidates[candidate_count] = slot; /* as chance has it: without a branch */
-        candidate_count += touches & ((own & NARC_SLOT_PLAIN) != 0);
+        candidate_count += keeps;
     }
     c->marked = c->marked || count > 0;
     c->crossed_count += crossed;
@@ -115,19 +143,13 @@ static size_t note_answers(const narc_contact_step *s, const uint32_t *slots, si
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
     narc_contacts *const c = s->contacts;
     const size_t plain_count = c->asked_count;
-    const narc_query query = make_query(s, c->margins, c->known_count ? c->known : c->asked,
-                                        c->known_count ? c->known_count : c->asked_count);
-    narc_batch batch;
+    const narc_query query = make_query(s, c->margins, c->known, c->known_count);
+    narc_slot_job job = {.work = follow_part};
     size_t found = 0, left = 0;
-    if (plain_count + c->known_count == 0)
-        return NARC_OK;
-    narc_status status = narc_fill_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
-    if (status != NARC_OK)
-        return status;
-    batch.row_size = c->row_size;
-    if (c->known_count > 0)
-        left = follow_known(s, &batch);
-    if (c->asked_count > 0)
+    narc_status status = narc_run_slots(s, pairs, &query, &job, &left);
+    for (size_t k = 0; k < left; k++)
+        c->asked[c->asked_count++] = c->left[k];
+    if (status == NARC_OK && c->asked_count > 0)
         status = narc_ask_pairs(s, pairs, c->asked, c->asked_count, true, c->rows, c->slot_capacity, &found);
     if (status != NARC_OK)
         return status;
@@ -138,16 +160,8 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     size_t count = note_answers(s, c->asked, plain_count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN);
     for (size_t i = plain_count; i < c->asked_count; i++)
         c->left[count++] = c->asked[i];
-    for (size_t i = 0; i < count && c->wait == 0; i++)
-        c->flags[c->left[i]] |= NARC_SLOT_ENTRY;
-    if (c->wait == 0)
-        narc_make_entries(&batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_size, c->entries,
-                          c->contact_rows ? NULL : c->ends);
-    for (size_t i = 0; i < c->candidate_count && s->step->recycling > 0; i++) {
-        const uint32_t slot = c->candidates[i];
-        narc_keep_row(s, c->a[slot], c->b[slot], narc_row_at(c, c->rows, slot), &c->kept[slot]);
-        c->flags[slot] |= NARC_SLOT_KEPT;
-    }
     c->asked_count = plain_count; /* the others are among the known ones */
-    return NARC_OK;
+    if (count > 0 && c->wait == 0)
+        make_entries(s, pairs, count);
+    return narc_keep_rows(s, pairs, c->candidates, NULL, c->candidate_count, c->rows, c->kept);
 }

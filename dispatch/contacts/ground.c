@@ -43,12 +43,15 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     return status;
 }
 
-/* A row of a slot to a place where rows and kept rows are. */
-static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *row, narc_kept_row *kept) {
+/* A row of a slot to place `item` of an array. */
+static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *rows, narc_kept_row *kept,
+                    uint32_t item) {
     const narc_contacts *const c = s->contacts;
+    const narc_pairs pairs = narc_view_slots(c);
+    void *const row = narc_row_at(c, rows, item);
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
-    narc_keep_row(s, c->a[slot], c->b[slot], row, kept);
+    narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
 }
 
 /* The further rows of a pair that was not asked stay. */
@@ -73,13 +76,12 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
     memcpy(row, &slot, sizeof slot);
     c->flags[slot] = (uint8_t)((c->flags[slot] & ~NARC_SLOT_KEPT) | (end > at ? NARC_SLOT_KEPT : 0));
     if (end > at)
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at), row, &c->kept[slot]);
+        put_row(s, slot, narc_row_at(c, c->ground.rows, at), c->rows, c->kept, slot);
     const size_t more = end > at ? end - at - 1 : 0;
     c->more_of[slot] = (narc_more_rows){(uint32_t)c->next_more.count, (uint32_t)more};
     for (size_t i = 0; i < more; i++) {
-        const size_t to = c->next_more.count++;
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at + 1 + i), narc_row_at(c, c->next_more.rows, to),
-                &c->next_more.kept[to]);
+        const uint32_t to = (uint32_t)c->next_more.count++;
+        put_row(s, slot, narc_row_at(c, c->ground.rows, at + 1 + i), c->next_more.rows, c->next_more.kept, to);
     }
     narc_mark_slot(c, slot, NARC_ASKED);
     narc_set_touching(c, slot, end > at);
