@@ -148,15 +148,14 @@ static inline void *narc_row_at(const narc_contacts *c, void *rows, size_t k) { 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
 
 /* Keeps the rows of slots: rows[item[i]] of slots[i] in kept[item[i]]; `item` NULL: at the slot's number. */
-narc_status narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots,
-                           const uint32_t *item, size_t count, void *rows, narc_kept_row *kept);
+void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
+                    size_t count, void *rows, narc_kept_row *kept);
 
 /* May the row of pair `pair` of the list that was kept in kept[item] follow its bodies? */
-bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, narc_kept_row *kept);
+bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept);
 
-/* Lets the rows of slots that are listed in `candidates` follow, and all that they have in `more`; those that may not join
- * `asked`. */
-narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs);
+/* The further rows of a slot, whose first row does, follow their bodies, as it was found out that they may. */
+void narc_follow_more(const narc_contact_step *s, const narc_pairs *pairs, uint32_t slot);
 
 /* ------------------------------------------------------------------------------------------------ plan.c */
 
@@ -194,27 +193,12 @@ void narc_take_ground(const narc_contact_step *s);
 
 /* ------------------------------------------------------------------------------------------------ ask.c */
 
-/* What a kernel does for pairs first .. first + count - 1 of a selection. Lists those that it leaves, and returns how many
- * these are. */
-typedef struct narc_slot_job narc_slot_job;
-typedef size_t narc_slot_work(const narc_slot_job *job, size_t first, size_t count, uint32_t *left);
-struct narc_slot_job {
-    narc_slot_work *work;
-    const narc_contacts *contacts;
-    const narc_batch *batch;
-    const narc_kernel_table *kernels;
-};
-
-/* Does it for all of a query's selection, whose pairs are known to be there, part by part; what is left is listed in
- * contacts->left. */
-narc_status narc_run_slots(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
-                           narc_slot_job *job, size_t *out_left);
-
-/* Rows of the slots in `asked` and `known`; which are written then, and what touches. */
+/* Lets the rows of slots in `candidates` follow, and all that they have in `more`; those that may not join `asked`. Then rows
+ * of the slots in `asked` and `known`, which are written now, and what touches. */
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs);
 
-/* Asks some pairs as the step says. `slots`: their hints and dense rows are those of slots. */
-narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
-                           bool slots, void *rows, size_t capacity, size_t *out_count);
+/* Asks pairs of the list, of ground, as the step says. */
+narc_status narc_ask_pairs(const narc_contact_step *s, const uint32_t *list, size_t count, void *rows, size_t capacity,
+                           size_t *out_count);
 
 #endif

@@ -29,8 +29,8 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     if (c->ground_count > 0)
         status = narc_reserve_row_array(c, &c->ground, 2 * c->ground_count);
     while (status == NARC_OK && c->ground_count > 0) {
-        status = narc_ask_pairs(s, pairs, c->ground_asked, c->ground_count, false, c->ground.rows, c->ground.capacity,
-                                &c->ground.count);
+        status =
+            narc_ask_pairs(s, c->ground_asked, c->ground_count, c->ground.rows, c->ground.capacity, &c->ground.count);
         if (status != NARC_ERROR_CAPACITY)
             break;
         status = narc_reserve_row_array(c, &c->ground, c->ground.count);

@@ -4,75 +4,49 @@
  * (kernels/sat/recycle.c).
  */
 #include "contacts.h"
+#include "dispatch.h"
 
-/* Rows of kept[...] and rows[...] that pairs have: item[i] is that of the pair that is listed at i; `item` NULL: the
- * pair's own. */
-typedef struct row_job {
-    narc_slot_job job;
-    const narc_contact_step *step;
-    const uint32_t *item;
-    void *rows;
-    narc_kept_row *kept;
-} row_job;
-
-static size_t keep_part(const narc_slot_job *job, size_t first, size_t count, uint32_t *left) {
-    const row_job *const r = (const row_job *)job;
-    const narc_rows rows = {.base = r->rows, .stride = (ptrdiff_t)job->batch->row_size};
-    (void)left;
-    job->kernels->keep(job->batch, first, count, r->item ? r->item + first : NULL, &rows, r->kept);
-    return 0;
+/* A batch of some pairs, which are known to be there. */
+static const narc_kernel_table *fill_batch(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
+                                           narc_batch *out) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    if (!kernels || narc_fill_batch(s->shapes, s->step->bodies, pairs, query, out, NULL) != NARC_OK)
+        return NULL;
+    out->row_size = s->contacts->row_size;
+    return NARC_KERNELS_FOR(query->selection_count, kernels);
 }
 
-static size_t recycle_part(const narc_slot_job *job, size_t first, size_t count, uint32_t *left) {
-    const row_job *const r = (const row_job *)job;
-    const narc_rows rows = {.base = r->rows, .stride = (ptrdiff_t)job->batch->row_size};
-    return job->kernels->recycle(job->batch, first, count, r->item ? r->item + first : NULL, r->kept,
-                                 r->step->step->recycling, r->rows ? &rows : NULL, left);
+void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
+                    size_t count, void *to, narc_kept_row *kept) {
+    const narc_query query = {.selection = {slots, sizeof *slots}, .selection_count = count};
+    const narc_rows rows = {.base = to, .stride = (ptrdiff_t)s->contacts->row_size};
+    narc_batch batch;
+    if (count == 0 || !(s->step->recycling > 0))
+        return;
+    const narc_kernel_table *const kernels = fill_batch(s, pairs, &query, &batch);
+    if (kernels)
+        kernels->keep(&batch, 0, count, item, &rows, kept);
 }
 
-static narc_status run_rows(const narc_contact_step *s, narc_slot_work *work, const narc_pairs *pairs,
-                            const uint32_t *list, const uint32_t *item, size_t count, void *rows, narc_kept_row *kept,
-                            size_t *out_left) {
-    const narc_query query = {.selection = {list, sizeof *list}, .selection_count = count};
-    row_job job = {{.work = work}, s, item, rows, kept};
-    return narc_run_slots(s, pairs, &query, &job.job, out_left);
+/* Does the row of a pair that was kept in kept[item] follow its bodies? `to`: rows; NULL: may it? */
+static bool follow_row(const narc_contact_step *s, const narc_pairs *pairs, uint32_t pair, uint32_t item, void *to,
+                       const narc_kept_row *kept) {
+    const narc_query query = {.selection = {&pair, sizeof pair}, .selection_count = 1};
+    const narc_rows rows = {.base = to, .stride = (ptrdiff_t)s->contacts->row_size};
+    narc_batch batch;
+    uint32_t left;
+    const narc_kernel_table *const kernels = fill_batch(s, pairs, &query, &batch);
+    return kernels && kernels->recycle(&batch, 0, 1, &item, kept, s->step->recycling, to ? &rows : NULL, &left) == 0;
 }
 
-narc_status narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots,
-                           const uint32_t *item, size_t count, void *rows, narc_kept_row *kept) {
-    size_t left;
-    return run_rows(s, keep_part, pairs, slots, item, s->step->recycling > 0 ? count : 0, rows, kept, &left);
+bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept) {
+    return follow_row(s, &s->list->pairs, pair, item, NULL, kept);
 }
 
-bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, narc_kept_row *kept) {
-    size_t left;
-    return run_rows(s, recycle_part, &s->list->pairs, &pair, &item, 1, NULL, kept, &left) == NARC_OK && left == 0;
-}
-
-narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs) {
-    narc_contacts *const c = s->contacts;
-    const uint32_t *const candidates = c->candidates, *const left = c->left;
-    uint32_t *asked = c->asked + c->asked_count;
-    uint8_t *const state = c->state;
-    const size_t count = c->candidate_count;
-    size_t left_count, at = 0;
-    narc_status status = run_rows(s, recycle_part, pairs, candidates, NULL, count, c->rows, c->kept, &left_count);
-    for (size_t k = 0; k < count && status == NARC_OK; k++) {
-        const uint32_t slot = candidates[k];
-        const unsigned is_left = at < left_count && left[at] == slot;
-        *asked = slot; /* as chance has it: without a branch */
-        asked += is_left;
-        at += is_left;
-        state[slot] |= (uint8_t)(is_left ? 0 : NARC_FOLLOWED);
-    }
-    c->asked_count = (size_t)(asked - c->asked);
-    c->marked = c->marked || count > 0;
-    /* The further rows of pairs of ground may follow, too, as it was found out before. */
-    for (size_t k = 0; k < count && c->more.count > 0 && status == NARC_OK; k++) {
-        const uint32_t slot = candidates[k];
-        const narc_more_rows more = c->more_of[slot];
-        for (uint32_t i = more.first; i < more.first + more.count && state[slot] & NARC_FOLLOWED; i++)
-            status = run_rows(s, recycle_part, pairs, &slot, &i, 1, c->more.rows, c->more.kept, &left_count);
-    }
-    return status;
+void narc_follow_more(const narc_contact_step *s, const narc_pairs *pairs, uint32_t slot) {
+    const narc_contacts *const c = s->contacts;
+    const narc_more_rows more = c->more_of[slot];
+    for (uint32_t i = more.first; i < more.first + more.count; i++)
+        follow_row(s, pairs, slot, i, c->more.rows, c->more.kept);
 }

@@ -169,9 +169,7 @@ static narc_status carry_out(const narc_contact_step *s) {
     narc_take_slots(c, s->list);
     const narc_pairs pairs = narc_view_slots(c);
     narc_sort_pairs(s);
-    narc_status status = narc_follow_rows(s, &pairs);
-    if (status == NARC_OK)
-        status = narc_ask_contacts(s, &pairs);
+    narc_status status = narc_ask_contacts(s, &pairs);
     if (status == NARC_OK)
         status = ask_sensors(s, &pairs);
     if (status != NARC_OK)
