@@ -80,10 +80,12 @@ INLINE void store_rows(const struct rows_of *rows, char *const *place, bool mani
     v_put_rows(place, offsetof(narc_contact, point_x), rest);
 }
 
-/* The numbers of items in a vector of a block: those that are listed, or the pairs' own. */
-INLINE void find_items(const uint32_t *item, const struct pair_indices *indices, int k, int n, int32_t *number) {
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        number[lane] = item ? (int32_t)item[k + lane < n ? k + lane : n - 1] : indices->number[k + lane];
+/* The numbers of a block's items, and in `own` if they are not the pairs' own. Behind the last they repeat it. A whole block at
+ * once: a vector that is read from what was just written word by word waits for it. */
+INLINE const int32_t *find_items(const uint32_t *item, const struct pair_indices *indices, int n, int32_t own[BLOCK]) {
+    for (int k = 0; item && k < (n + V_WIDTH - 1) / V_WIDTH * V_WIDTH; k++)
+        own[k] = (int32_t)item[k < n ? k : n - 1];
+    return item ? own : indices->number;
 }
 
 /* ------------------------------------------------------------------------------------------------ rows that follow */
@@ -134,14 +136,15 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
     const enum pose_layout layout = find_layout(&given);
     given.a.scale.base = given.b.scale.base = NULL; /* what is kept knows them */
     _Alignas(64) char room[sizeof(narc_manifold)], *place[V_WIDTH];
+    int32_t own[BLOCK];
     struct pair_indices indices;
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_bodies_of(&given, first + block, n, &indices);
+        const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
-            int32_t number[V_WIDTH];
-            find_items(item ? item + block : NULL, &indices, k, n, number);
+            const int32_t *const number = items + k;
             const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
             vf word[WORDS];
             load_items(kept, WORDS, number, false, word);
@@ -177,13 +180,14 @@ void NARC_NAMED(keep)(const narc_batch *batch, size_t first, size_t count, const
     const struct sources given = copy_sources(batch);
     const enum pose_layout layout = find_layout(&given);
     _Alignas(64) char room[sizeof(narc_kept_row)], *place[V_WIDTH];
+    int32_t own[BLOCK];
     struct pair_indices indices;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_indices(&given, first + block, n, &indices);
+        const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
-            int32_t number[V_WIDTH];
-            find_items(item ? item + block : NULL, &indices, k, n, number);
+            const int32_t *const number = items + k;
             const struct rows_of row = load_rows(rows, number, manifold);
             const struct body_pair bodies = load_bodies(&given, layout, indices.a + k, indices.b + k, NULL);
             const struct headers a = load_headers(batch->shapes->headers, indices.shape_a + k);
