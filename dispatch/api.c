@@ -60,31 +60,45 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
 }
 #endif
 
+narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,
+                                 narc_error *error) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *const kernels = narc_kernels(&status, error);
+    if (status != NARC_OK)
+        return status;
+    batch->row_size = sizeof *out_rows;
+    batch->more_at = NARC_MORE_AT(narc_contact, count);
+    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->contact, batch, out_rows, capacity, out_count,
+                            error);
+}
+
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                narc_error *error) {
     narc_batch batch;
-    const narc_kernel_table *kernels = NULL;
-    const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
+    const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);
+    return status == NARC_OK ? narc_answer_contacts(&batch, out_rows, capacity, out_count, error) : status;
+}
+
+narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, size_t capacity, size_t *out_count,
+                                  narc_error *error) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (status != NARC_OK)
         return status;
-    batch.row_size = sizeof *out_rows;
-    batch.more_at = NARC_MORE_AT(narc_contact, count);
-    return narc_answer_rows(kernels->contact, &batch, out_rows, capacity, out_count, error);
+    batch->row_size = sizeof *out_rows;
+    batch->more_at = NARC_MORE_AT(narc_manifold, count);
+    batch->flat_sine = find_flat_sine(batch->query->flat_angle);
+    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->manifold, batch, out_rows, capacity, out_count,
+                            error);
 }
 
 narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                 const narc_query *query, narc_manifold *out_rows, size_t capacity, size_t *out_count,
                                 narc_error *error) {
     narc_batch batch;
-    const narc_kernel_table *kernels = NULL;
-    const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
-    if (status != NARC_OK)
-        return status;
-    batch.row_size = sizeof *out_rows;
-    batch.more_at = NARC_MORE_AT(narc_manifold, count);
-    batch.flat_sine = find_flat_sine(batch.query->flat_angle);
-    return narc_answer_rows(kernels->manifold, &batch, out_rows, capacity, out_count, error);
+    const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);
+    return status == NARC_OK ? narc_answer_manifolds(&batch, out_rows, capacity, out_count, error) : status;
 }
 
 narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,

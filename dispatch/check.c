@@ -365,8 +365,8 @@ static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc
     return NARC_OK;
 }
 
-narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                             const narc_query *query, narc_batch *out_batch, narc_error *error) {
+narc_status narc_fill_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                            const narc_query *query, narc_batch *out_batch, narc_error *error) {
     static const narc_query defaults = {0};
     if (!shapes || !bodies || !pairs)
         return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "pairs");
@@ -387,10 +387,13 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     out_batch->count = q->count;
     out_batch->asked = q->selection.base || q->selection.stride ? q->selection_count : pairs->count;
     status = narc_check_range(q->first, &out_batch->count, out_batch->asked, "pairs", error);
+    return status != NARC_OK || out_batch->count == 0 ? status : find_sets(bodies, pairs, out_batch, error);
+}
+
+narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                             const narc_query *query, narc_batch *out_batch, narc_error *error) {
+    const narc_status status = narc_fill_batch(shapes, bodies, pairs, query, out_batch, error);
     if (status != NARC_OK || out_batch->count == 0)
-        return status;
-    status = find_sets(bodies, pairs, out_batch, error);
-    if (status != NARC_OK)
         return status;
     const size_t bad = narc_find_bad_pair(out_batch);
     return bad < out_batch->first + out_batch->count ? describe_bad_pair(out_batch, bad, error) : NARC_OK;

@@ -35,6 +35,10 @@ narc_status narc_check_range(size_t first, size_t *count, size_t total, const ch
 narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                              const narc_query *query, narc_batch *out_batch, narc_error *error);
 
+/* The same, of pairs, bodies and shapes that are known to be there. */
+narc_status narc_fill_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                            const narc_query *query, narc_batch *out_batch, narc_error *error);
+
 /* A pair's body A (side 0) or B (1), by the caller's number, and its shape. The body exists. */
 struct narc_side {
     size_t body;
@@ -47,6 +51,12 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
                                  narc_error *error);
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
                              size_t *out_count, narc_error *error);
+
+/* The rows of narc_find_contacts() and narc_find_manifolds() of a batch that was begun. */
+narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,
+                                 narc_error *error);
+narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, size_t capacity, size_t *out_count,
+                                  narc_error *error);
 
 /* Of the pairs that a batch asks for, the place of the first that names a pair, a body or a shape that does not exist;
  * the end of the range if none. */

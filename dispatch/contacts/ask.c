@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ask.c - rows of slots: from what was kept of pairs of smooth shapes, or by the plain calls, after which something is kept.
+ * ask.c - rows of slots: those that follow their bodies, from what was kept of pairs of smooth shapes, or by the plain
+ * calls, after which something is kept. Workers take parts of slots, whose rows stay in the cache meanwhile.
  */
 #include "column.h"
 #include "contacts.h"
@@ -8,157 +9,226 @@
 #include "entries.h"
 #include "narc.h"
 
+#include <stdatomic.h>
+
 /* If more than one in FEW of the entries decided nothing, bodies move too far for them: none is made for a while, and then
  * for twice as long each time, up to MOST_STEPS. */
 enum { FEW = 5, MOST_STEPS = 16 };
 
-static narc_query make_query(const narc_contact_step *s, const float *margins, const uint32_t *selection,
-                             size_t count) {
+/* What is asked of the first `count` pairs of a list, as the step says; `margins`: of each pair. */
+static narc_query make_query(const narc_contact_step *s, const float *margins, const uint32_t *list, size_t count) {
     const narc_step *const step = s->step;
     return (narc_query){.margin = step->margin,
                         .second_margin = step->second_margin,
                         .flat_angle = step->flat_angle,
                         .front_only = step->front_only,
                         .margins = {step->ahead.base ? margins : NULL, sizeof *margins},
-                        .selection = {selection, sizeof *selection},
+                        .selection = {list, sizeof *list},
                         .selection_count = count,
                         .workers = step->workers};
 }
 
-narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
-                           bool slots, void *rows, size_t capacity, size_t *out_count) {
-    const narc_contacts *const c = s->contacts;
-    const narc_bodies *const bodies = s->step->bodies;
-    narc_query query = make_query(s, slots ? c->margins : c->ground_margins, selection, count);
-    query.dense = slots;
-    query.row_stride = slots ? (ptrdiff_t)c->row_stride : 0;
-    query.hints = (narc_hint_column){slots ? c->hints : NULL, sizeof *c->hints};
-    return c->contact_rows ? narc_find_contacts(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error)
-                           : narc_find_manifolds(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error);
+static narc_status answer(const narc_contact_step *s, narc_batch *batch, void *rows, size_t capacity,
+                          size_t *out_count) {
+    return s->contacts->contact_rows ? narc_answer_contacts(batch, rows, capacity, out_count, s->error)
+                                     : narc_answer_manifolds(batch, rows, capacity, out_count, s->error);
 }
 
-/* ------------------------------------------------------------------------------------------------ entries */
+narc_status narc_ask_pairs(const narc_contact_step *s, const uint32_t *list, size_t count, void *rows, size_t capacity,
+                           size_t *out_count) {
+    const narc_query query = make_query(s, s->contacts->ground_margins, list, count);
+    narc_batch batch;
+    const narc_status status = narc_begin_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, s->error);
+    return status == NARC_OK ? answer(s, &batch, rows, capacity, out_count) : status;
+}
 
-typedef struct known_job {
-    const narc_contacts *contacts;
-    const narc_batch *batch;
+/* ------------------------------------------------------------------------------------------------ parts */
+
+/* What is done with the slots of a list, part by part. Of each it lists the slots that it leaves, and returns how many. */
+typedef struct slot_job slot_job;
+struct slot_job {
+    size_t (*run)(slot_job *job, const uint32_t *list, size_t count, uint32_t *left);
+    const narc_contact_step *step;
+    const narc_pairs *pairs;
     const narc_kernel_table *kernels;
-} known_job;
+    const uint32_t *list;
+    atomic_size_t crossed; /* so many began or ended to touch */
+};
 
-/* Behind the pairs that are left of a part there is one that is none. */
-static void follow_part(void *argument, size_t part, size_t first, size_t end) {
-    const known_job *const job = argument;
-    const narc_contacts *const c = job->contacts;
-    const narc_rows rows = {.base = c->rows, .stride = (ptrdiff_t)c->row_stride};
+/* A batch of some slots, which are known to be there. */
+static bool fill_batch(const slot_job *job, const narc_query *query, narc_batch *out) {
+    const narc_contact_step *const s = job->step;
+    if (narc_fill_batch(s->shapes, s->step->bodies, job->pairs, query, out, NULL) != NARC_OK)
+        return false;
+    out->row_size = s->contacts->row_size;
+    return query->selection_count > 0;
+}
+
+/* Behind the slots that are left of a part there is one that is none. */
+static void run_part(void *argument, size_t part, size_t first, size_t end) {
+    slot_job *const job = argument;
+    uint32_t *const out = job->step->contacts->left + first;
     (void)part;
-    const size_t left = job->kernels->follow(job->batch, first, end - first, c->entries,
-                                             c->contact_rows ? NULL : c->ends, &rows, c->left + first);
+    const size_t left = job->run(job, job->list + first, end - first, out);
     if (left < end - first)
-        c->left[first + left] = UINT32_MAX;
+        out[left] = UINT32_MAX;
 }
 
-/* Answers pairs whose entries are known; those that are left join `asked`. Returns how many these are. */
-static size_t follow_known(const narc_contact_step *s, const narc_batch *batch) {
-    narc_contacts *const c = s->contacts;
-    narc_status status = NARC_OK;
-    known_job job = {c, batch, narc_kernels(&status, NULL)};
-    const size_t before = c->asked_count;
-    narc_run_ranges(s->step->workers, c->known_count, NARC_SLOT_PART, follow_part, &job);
-    for (size_t first = 0; first < c->known_count; first += NARC_SLOT_PART)
-        for (size_t k = first; k < first + NARC_SLOT_PART && k < c->known_count && c->left[k] != UINT32_MAX; k++)
-            c->asked[c->asked_count++] = c->left[k];
-    return c->asked_count - before;
+/* All slots of a list; gathers those that are left in contacts->left, in their order, and returns how many these are. */
+static size_t run_slots(slot_job *job, const uint32_t *list, size_t count) {
+    narc_contacts *const c = job->step->contacts;
+    size_t left = 0;
+    job->list = list;
+    atomic_init(&job->crossed, 0);
+    narc_run_ranges(job->step->step->workers, count, NARC_SLOT_PART, run_part, job);
+    for (size_t first = 0; first < count; first += NARC_SLOT_PART)
+        for (size_t k = first; k < first + NARC_SLOT_PART && k < count && c->left[k] != UINT32_MAX; k++)
+            c->left[left++] = c->left[k];
+    c->crossed_count += atomic_load(&job->crossed);
+    c->marked = c->marked || count > 0;
+    return left;
 }
 
-/* Makes entries of pairs that were asked: of smooth ones that are asked for the second time, as a pair that goes soon is not
- * worth it, and of those that their entries left, which stand behind the first `plain_count`. */
-static void make_entries(const narc_contact_step *s, const narc_batch *batch, size_t plain_count) {
-    narc_contacts *const c = s->contacts;
-    size_t count = 0;
-    for (size_t i = 0; i < c->asked_count; i++) {
-        const uint32_t slot = c->asked[i];
-        const unsigned flags = c->flags[slot];
-        const bool again = i < plain_count && (flags & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN)) == NARC_SLOT_SEEN;
-        c->flags[slot] |= NARC_SLOT_SEEN;
-        if (i < plain_count && !again)
-            continue;
-        const bool smooth = !again || narc_are_smooth(s, c->a[slot], c->b[slot]);
-        c->flags[slot] |= smooth ? NARC_SLOT_ENTRY : NARC_SLOT_PLAIN;
-        c->left[count] = slot;
-        count += smooth;
-    }
-    if (count > 0)
-        narc_make_entries(batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_stride, c->entries,
-                          c->contact_rows ? NULL : c->ends);
-}
-
-/* ------------------------------------------------------------------------------------------------ rows */
-
-/* Some slots have been answered: what touches now? */
-static void mark_answered(narc_contacts *c, const uint32_t *slots, size_t count) {
+/* Some slots have been answered, most of which are of the kind `usual`: what touches now? Lists those that touch and may be
+ * kept, and in `again` those that are to have an entry: of smooth shapes, if they were asked before, as a pair that goes
+ * soon is not worth one. Returns how many these are. */
+static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, unsigned usual, uint32_t *again,
+                           uint32_t *keep, size_t *out_keep_count) {
+    const narc_contact_step *const s = job->step;
+    const narc_contacts *const c = s->contacts;
     const size_t row_stride = c->row_stride;
     const bool contact_rows = c->contact_rows;
+    const unsigned recycles = s->step->recycling > 0;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
-    uint32_t *const marked = c->marked;
-    size_t crossed = 0, marked_count = c->marked_count;
+    uint32_t *const kept = keep;
+    size_t crossed = 0, again_count = 0;
     for (size_t i = 0; i < count; i++) {
         const uint32_t slot = slots[i];
-        const unsigned was = state[slot];
-        const unsigned now = narc_count_points(contact_rows, rows + slot * row_stride) > 0 ? NARC_TOUCHING : 0;
-        const unsigned crosses = (was ^ now) & NARC_TOUCHING;
-        marked[marked_count] = slot;
-        marked_count += !(was & ~(unsigned)NARC_TOUCHING);
+        const unsigned was = state[slot], touches = narc_count_points(contact_rows, rows + slot * row_stride) > 0;
+        const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
+        unsigned own = flags[slot] & (0xffu - NARC_SLOT_KEPT);
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        flags[slot] = (uint8_t)(flags[slot] ^ crosses * NARC_SLOT_CROSSED);
+        if ((own & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY)) != usual) {
+            if (own & NARC_SLOT_SEEN)
+                again[again_count++] = slot;
+            else if (!narc_are_smooth(s, c->a[slot], c->b[slot]))
+                own |= NARC_SLOT_PLAIN;
+            own |= NARC_SLOT_SEEN;
+        }
+        const unsigned keeps = touches & own / NARC_SLOT_PLAIN & recycles;
+        flags[slot] = (uint8_t)((own ^ crosses * NARC_SLOT_CROSSED) | keeps * NARC_SLOT_KEPT);
         crossed += crosses;
+        *keep = slot; /* as chance has it: without a branch */
+        keep += keeps;
     }
-    c->marked_count = marked_count;
-    c->crossed_count += crossed;
+    *out_keep_count = (size_t)(keep - kept);
+    atomic_fetch_add_explicit(&job->crossed, crossed, memory_order_relaxed);
+    return again_count;
 }
 
-/* Rows with an edge that were asked for are kept to follow their bodies. */
-static void keep_rows(const narc_contact_step *s) {
+/* ------------------------------------------------------------------------------------------------ what is done */
+
+/* Lets the rows of slots follow their bodies. */
+static size_t recycle_slots(slot_job *job, const uint32_t *list, size_t count, uint32_t *left) {
+    const narc_contact_step *const s = job->step;
+    const narc_contacts *const c = s->contacts;
+    const narc_query query = make_query(s, c->margins, list, count);
+    const narc_rows rows = narc_view_rows(c, c->rows);
+    uint8_t *const state = c->state;
+    narc_batch batch;
+    if (!fill_batch(job, &query, &batch))
+        return 0;
+    const size_t left_count = NARC_KERNELS_FOR(count, job->kernels)
+                                  ->recycle(&batch, 0, count, NULL, c->kept, s->step->recycling, &rows, left);
+    for (size_t i = 0; i < count; i++)
+        state[list[i]] |= NARC_FOLLOWED;
+    for (size_t i = 0; i < left_count; i++)
+        state[left[i]] &= (uint8_t)~NARC_FOLLOWED;
+    return left_count;
+}
+
+/* Answers slots from their entries. */
+static size_t follow_slots(slot_job *job, const uint32_t *list, size_t count, uint32_t *left) {
+    const narc_contact_step *const s = job->step;
+    const narc_contacts *const c = s->contacts;
+    const narc_query query = make_query(s, c->margins, list, count);
+    const narc_rows rows = narc_view_rows(c, c->rows);
+    narc_batch batch;
+    size_t kept;
+    if (!fill_batch(job, &query, &batch))
+        return 0;
+    const size_t left_count = NARC_KERNELS_FOR(count, job->kernels)
+                                  ->follow(&batch, 0, count, c->entries, c->contact_rows ? NULL : c->ends, &rows, left);
+    note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_ENTRY, left, c->candidates + (list - c->known), &kept);
+    return left_count;
+}
+
+/* Asks slots, and keeps their rows. What is left is to have an entry. */
+static size_t ask_slots(slot_job *job, const uint32_t *list, size_t count, uint32_t *again) {
+    const narc_contact_step *const s = job->step;
+    const narc_contacts *const c = s->contacts;
+    uint32_t *const keep = c->candidates + (list - c->asked); /* these have been seen to */
+    narc_query query = make_query(s, c->margins, list, count);
+    narc_batch batch;
+    size_t found, keep_count;
+    query.dense = 1;
+    query.row_stride = (ptrdiff_t)c->row_stride;
+    query.hints = (narc_hint_column){c->hints, sizeof *c->hints};
+    if (!fill_batch(job, &query, &batch) || answer(s, &batch, c->rows, c->slot_capacity, &found) != NARC_OK)
+        return 0;
+    const size_t left = note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN, again, keep, &keep_count);
+    narc_keep_rows(s, job->pairs, keep, NULL, keep_count, c->rows, c->kept);
+    return left;
+}
+
+/* Makes entries of the first slots in `left`. */
+static void make_entries(const slot_job *job, size_t count) {
+    const narc_contact_step *const s = job->step;
     narc_contacts *const c = s->contacts;
-    for (size_t i = 0; i < c->asked_count; i++) {
-        const uint32_t slot = c->asked[i];
-        const uint32_t a = c->a[slot], b = c->b[slot];
-        c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-        if (!(c->state[slot] & NARC_TOUCHING) || narc_are_smooth(s, a, b))
-            continue;
-        narc_keep_row(s, a, b, narc_slot_row(c, slot), &c->kept[slot]);
-        c->flags[slot] |= NARC_SLOT_KEPT;
-    }
+    const narc_query query = make_query(s, c->margins, c->left, count);
+    narc_batch batch;
+    if (!fill_batch(job, &query, &batch))
+        return;
+    for (size_t i = 0; i < count; i++)
+        c->flags[c->left[i]] |= NARC_SLOT_ENTRY;
+    narc_make_entries(&batch, 0, count, c->left, c->rows, (ptrdiff_t)c->row_stride, c->entries,
+                      c->contact_rows ? NULL : c->ends);
+}
+
+/* Slots that are left are asked. */
+static size_t ask_left(narc_contacts *c, size_t left) {
+    for (size_t k = 0; k < left; k++)
+        c->asked[c->asked_count++] = c->left[k];
+    return left;
 }
 
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
     narc_contacts *const c = s->contacts;
+    narc_status status = NARC_OK;
+    slot_job job = {.run = recycle_slots, .step = s, .pairs = pairs, .kernels = narc_kernels(&status, s->error)};
+    if (status != NARC_OK)
+        return status;
+    ask_left(c, run_slots(&job, c->candidates, c->candidate_count));
+    for (size_t k = 0; k < c->candidate_count && c->more.count > 0; k++)
+        if (c->state[c->candidates[k]] & NARC_FOLLOWED)
+            narc_follow_more(s, pairs, c->candidates[k]);
     const size_t plain_count = c->asked_count;
-    const narc_query query = make_query(s, c->margins, c->known_count ? c->known : c->asked,
-                                        c->known_count ? c->known_count : c->asked_count);
+    job.run = follow_slots;
+    const size_t left = ask_left(c, run_slots(&job, c->known, c->known_count));
+    const narc_query query = make_query(s, c->margins, c->asked, c->asked_count);
     narc_batch batch;
-    size_t found = 0, left = 0;
-    if (plain_count + c->known_count == 0)
-        return NARC_OK;
-    narc_status status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
+    if (s->step->moved.base) /* bodies that were not looked at in this step may have any shape */
+        status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
     if (status != NARC_OK)
         return status;
-    batch.row_size = c->row_size;
-    if (c->known_count > 0)
-        left = follow_known(s, &batch);
-    if (c->asked_count > 0)
-        status = narc_ask_pairs(s, pairs, c->asked, c->asked_count, true, c->rows, c->slot_capacity, &found);
-    if (status != NARC_OK)
-        return status;
+    job.run = ask_slots;
+    const size_t again = run_slots(&job, c->asked, c->asked_count);
     const bool fails = left > c->known_count / FEW;
     c->waits = !fails ? 0 : c->waits == 0 ? 1 : c->waits < MOST_STEPS ? 2 * c->waits : MOST_STEPS;
     c->wait = fails ? c->waits : c->wait > 0 ? c->wait - 1 : 0;
     if (c->wait == 0)
-        make_entries(s, &batch, plain_count);
-    mark_answered(c, c->known, c->known_count);
-    mark_answered(c, c->asked, plain_count);
-    if (s->step->recycling > 0)
-        keep_rows(s);
+        make_entries(&job, again);
     c->asked_count = plain_count; /* the others are among the known ones */
     return NARC_OK;
 }

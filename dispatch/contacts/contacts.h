@@ -22,12 +22,12 @@
 /* What one slot is, beside its state: bits. */
 enum {
     NARC_SLOT_STALE = 1,
-    NARC_SLOT_SENSOR = 2,
-    NARC_SLOT_CROSSED = 4, /* began or ended to touch in this step */
-    NARC_SLOT_KEPT = 8,    /* `kept` counts */
-    NARC_SLOT_ENTRY = 16,  /* `entries` does, which answers the pair again */
-    NARC_SLOT_SEEN = 32,   /* it was asked before */
-    NARC_SLOT_PLAIN = 64   /* not both are smooth: it has no entry */
+    NARC_SLOT_CROSSED = 2, /* began or ended to touch in this step */
+    NARC_SLOT_SENSOR = NARC_SENSOR,
+    NARC_SLOT_KEPT = 8,   /* `kept` counts */
+    NARC_SLOT_ENTRY = 16, /* `entries` does, which answers the pair again */
+    NARC_SLOT_SEEN = 32,  /* it was asked before */
+    NARC_SLOT_PLAIN = 64  /* not both are smooth: it has no entry, but may have a kept row */
 };
 
 /* Rows beyond the first of a slot: a range of `more`. */
@@ -37,13 +37,10 @@ typedef struct narc_more_rows {
 
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
  * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
-enum { NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART, NARC_WHAT = 7 };
+enum { NARC_NOTHING, NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
 
 /* Slots that a thread takes at a time: some 10 microseconds of work. */
 enum { NARC_SLOT_PART = 1024 };
-
-/* Besides: a body has another shape or scale, so that nothing that was kept of the pair counts. */
-enum { NARC_OTHER_SHAPE = 8 };
 
 typedef struct narc_pair_work {
     uint32_t pair; /* of the list */
@@ -78,7 +75,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 39 };
+enum { NARC_ARRAYS = 38 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -94,15 +91,17 @@ struct narc_contacts {
     narc_broad_phase *broad;
     narc_step_result result;
     narc_asked last;
-    bool again; /* all pairs are to be asked: they are asked differently */
+    bool again;   /* all pairs are to be asked: they are asked differently */
+    bool marked;  /* `state` has marks of the last step */
+    bool changed; /* something is to be done with pairs */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
-    uint32_t *hints, *free, *marked, *parted; /* `free` and so on: lists of slots */
-    float *margins;                           /* that it was asked with */
-    void *own_rows, *user;                    /* own_rows: NULL if rows lie in `user` */
-    void *rows;                               /* where they lie, `row_stride` bytes each */
+    uint32_t *hints, *free, *parted; /* `free`, `parted`: lists of slots */
+    float *margins;                  /* that it was asked with */
+    void *own_rows, *user;           /* own_rows: NULL if rows lie in `user` */
+    void *rows;                      /* where they lie, `row_stride` bytes each */
     narc_kept_row *kept;
     narc_entry *entries;
     narc_entry_ends *ends; /* of manifolds */
@@ -111,15 +110,15 @@ struct narc_contacts {
 
     size_t order_capacity; /* of pairs: */
     uint32_t *order, *next_order;
-    narc_pair_work *work;           /* what is to be done in this step, in the order of pairs */
+    narc_pair_work *work;           /* what is to be done with pairs of ground, in the order of pairs */
     uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide */
-    uint32_t *candidates;           /* slots whose rows may follow */
+    uint32_t *candidates;           /* slots whose rows may follow, and then those whose rows are to be kept */
     uint32_t *sensors_asked, *ground_asked, *touching, *sensors;
     float *ground_margins;
     uint64_t *bits;
     narc_touch_event *began, *ended;
-    size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, marked_count,
-        parted_count, crossed_count;
+    size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, parted_count,
+        crossed_count;
 
     unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
@@ -170,8 +169,7 @@ void narc_free_slots(narc_contacts *contacts);
 
 /* Gives a slot a mark of this step: any bit of `state` but NARC_TOUCHING. */
 static inline void narc_mark_slot(narc_contacts *c, uint32_t slot, unsigned mark) {
-    if (!(c->state[slot] & ~NARC_TOUCHING))
-        c->marked[c->marked_count++] = slot;
+    c->marked = true;
     c->state[slot] |= (uint8_t)mark;
 }
 
@@ -195,28 +193,38 @@ static inline void *narc_slot_row(const narc_contacts *c, size_t slot) {
     return (char *)c->rows + slot * c->row_stride;
 }
 
-static inline void narc_clear_row(const narc_contacts *c, uint32_t slot) {
+/* Rows as kernels take them. */
+static inline narc_rows narc_view_rows(const narc_contacts *c, void *rows) {
+    return (narc_rows){.base = rows, .stride = (ptrdiff_t)(rows == c->rows ? c->row_stride : c->row_size)};
+}
+
+static inline void narc_zero_row(const narc_contacts *c, uint32_t slot) {
     memset(narc_slot_row(c, slot), 0, c->row_size);
     memcpy(narc_slot_row(c, slot), &slot, sizeof slot); /* the row's `pair` */
 }
 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
 
-/* Keeps a row with `count` points of two bodies. */
-void narc_keep_row(const narc_contact_step *s, uint32_t a, uint32_t b, const void *row, narc_kept_row *kept);
+/* Keeps the rows of slots: rows[item[i]] of slots[i] in kept[item[i]]; `item` NULL: at the slot's number. */
+void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
+                    size_t count, void *rows, narc_kept_row *kept);
 
-/* May `count` rows of pairs `pair` of the list follow their bodies? Row i is that of kept[item[i]]. */
-bool narc_may_follow(const narc_contact_step *s, const uint32_t *pair, const uint32_t *item, size_t count,
-                     const narc_kept_row *kept);
+/* May the row of pair `pair` of the list that was kept in kept[item] follow its bodies? */
+bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept);
 
-/* Lets the rows of slots that are listed in `candidates` follow, and all that they have in `more`; those that may not join
- * `asked`. */
-narc_status narc_follow_rows(const narc_contact_step *s, const narc_pairs *pairs);
+/* The further rows of a slot, whose first row does, follow their bodies, as it was found out that they may. */
+void narc_follow_more(const narc_contact_step *s, const narc_pairs *pairs, uint32_t slot);
 
 /* ------------------------------------------------------------------------------------------------ plan.c */
 
-/* Lists what is to be done, as far as pairs are concerned; changes nothing that a result shows. */
-void narc_plan_step(const narc_contact_step *s);
+/* Lists what is to be done with pairs of ground; changes nothing that a result shows. */
+void narc_plan_ground(const narc_contact_step *s);
+
+/* Lists the slots that are to be asked, and those whose rows may follow; what is known to have no row has none then. */
+void narc_sort_pairs(const narc_contact_step *s);
+
+/* A slot has no row any more, and does not touch. */
+void narc_clear_row(narc_contacts *contacts, uint32_t slot);
 
 /* The margin of a pair. */
 float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b);
@@ -224,8 +232,10 @@ float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Both n-arcs: to ask anew costs no more than to follow. */
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-/* Does one of both move? */
+/* Does one of both move? Only where a pair's marks say that one of them does not it must be asked. */
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
+
+enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP };
 
 /* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);
@@ -241,11 +251,12 @@ void narc_take_ground(const narc_contact_step *s);
 
 /* ------------------------------------------------------------------------------------------------ ask.c */
 
-/* Rows of the slots in `asked` and `known`; which are written then, and what touches. */
+/* Lets the rows of slots in `candidates` follow, and all that they have in `more`; those that may not join `asked`. Then rows
+ * of the slots in `asked` and `known`, which are written now, and what touches. */
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs);
 
-/* Asks some pairs as the step says. `slots`: their hints and dense rows are those of slots. */
-narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
-                           bool slots, void *rows, size_t capacity, size_t *out_count);
+/* Asks pairs of the list, of ground, as the step says. */
+narc_status narc_ask_pairs(const narc_contact_step *s, const uint32_t *list, size_t count, void *rows, size_t capacity,
+                           size_t *out_count);
 
 #endif

@@ -29,8 +29,8 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     if (c->ground_count > 0)
         status = narc_reserve_arrays(c, NARC_OF_GROUND, &c->ground.capacity, 2 * c->ground_count);
     while (status == NARC_OK && c->ground_count > 0) {
-        status = narc_ask_pairs(s, pairs, c->ground_asked, c->ground_count, false, c->ground.rows, c->ground.capacity,
-                                &c->ground.count);
+        status =
+            narc_ask_pairs(s, c->ground_asked, c->ground_count, c->ground.rows, c->ground.capacity, &c->ground.count);
         if (status != NARC_ERROR_CAPACITY)
             break;
         status = narc_reserve_arrays(c, NARC_OF_GROUND, &c->ground.capacity, c->ground.count);
@@ -43,12 +43,16 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     return status;
 }
 
-/* A row of a slot to a place where rows and kept rows are. */
-static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *row, narc_kept_row *kept) {
+/* A row of a slot to place `item` of an array. */
+static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *rows, narc_kept_row *kept,
+                    uint32_t item) {
     const narc_contacts *const c = s->contacts;
+    const narc_pairs pairs = narc_view_slots(c);
+    const narc_rows view = narc_view_rows(c, rows);
+    void *const row = (char *)view.base + (ptrdiff_t)item * view.stride;
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
-    narc_keep_row(s, c->a[slot], c->b[slot], row, kept);
+    narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
 }
 
 /* The further rows of a pair that was not asked stay. */
@@ -68,16 +72,15 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
     size_t end = at;
     while (end < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, end)) == k)
         end++;
-    narc_clear_row(c, slot);
+    narc_zero_row(c, slot);
     c->flags[slot] = (uint8_t)((c->flags[slot] & ~NARC_SLOT_KEPT) | (end > at ? NARC_SLOT_KEPT : 0));
     if (end > at)
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at), narc_slot_row(c, slot), &c->kept[slot]);
+        put_row(s, slot, narc_row_at(c, c->ground.rows, at), c->rows, c->kept, slot);
     const size_t more = end > at ? end - at - 1 : 0;
     c->more_of[slot] = (narc_more_rows){(uint32_t)c->next_more.count, (uint32_t)more};
     for (size_t i = 0; i < more; i++) {
-        const size_t to = c->next_more.count++;
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at + 1 + i), narc_row_at(c, c->next_more.rows, to),
-                &c->next_more.kept[to]);
+        const uint32_t to = (uint32_t)c->next_more.count++;
+        put_row(s, slot, narc_row_at(c, c->ground.rows, at + 1 + i), c->next_more.rows, c->next_more.kept, to);
     }
     narc_mark_slot(c, slot, NARC_ASKED);
     narc_set_touching(c, slot, end > at);
@@ -87,7 +90,7 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
 void narc_take_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     size_t at = 0, next = 0;
-    if (c->ground_count == 0 && (c->more.count == 0 || (s->list->kept && c->work_count == 0)))
+    if (c->ground_count == 0 && (c->more.count == 0 || !c->changed))
         return;
     c->next_more.count = 0;
     for (size_t k = 0; k < s->list->pairs.count; k++)

@@ -3,6 +3,7 @@
  * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing.
  */
 #include "column.h"
+#include "compiler.h"
 #include "contacts.h"
 #include "narc_chains.h"
 #include "store.h"
@@ -16,8 +17,7 @@ static uint8_t kind_of(const narc_contact_step *s, uint32_t body) {
 }
 
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    enum { AT_REST = NARC_STATIC | NARC_ASLEEP };
-    return !(kind_of(s, a) & AT_REST && kind_of(s, b) & AT_REST);
+    return !(kind_of(s, a) & NARC_AT_REST && kind_of(s, b) & NARC_AT_REST);
 }
 
 static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t body) {
@@ -55,7 +55,6 @@ typedef struct pair_view {
     const narc_box *boxes;
     const float *room;
     float margin_room; /* INFINITY: no pair is known to have no row by its boxes */
-    bool again;
 } pair_view;
 
 static pair_view view_pairs(const narc_contact_step *s) {
@@ -69,8 +68,7 @@ static pair_view view_pairs(const narc_contact_step *s) {
                        .changed = c->broad->known.changed,
                        .boxes = c->broad->boxes_now,
                        .room = c->room,
-                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin,
-                       .again = c->again};
+                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin};
 }
 
 /* The slot that a pair has, or NARC_NO_MATCH. */
@@ -93,32 +91,14 @@ static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
 /* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, or was it at rest while
  * something changed? */
 static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
-    if (slot == UINT32_MAX || v->again)
+    if (slot == UINT32_MAX)
         return true;
     const unsigned flags = v->flags[slot], marks = v->marks[k];
-    const bool sensor = marks & NARC_SENSOR, was_sensor = flags & NARC_SLOT_SENSOR;
-    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | (sensor ^ was_sensor);
+    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
 }
 
-static inline void add_work(narc_contacts *c, size_t k, unsigned what) {
-    c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, what};
-}
-
-static inline void plan_pair(const narc_contact_step *s, const pair_view *v, size_t k) {
-    const uint32_t a = v->a[k], b = v->b[k], slot = slot_of(v, k);
-    const unsigned changed = v->changed[a] | v->changed[b];
-    const bool stale = is_stale(v, k, slot);
-    if (!stale && !changed)
-        return;
-    unsigned what = are_apart(v, a, b) ? NARC_APART : NARC_ASK; /* as chance has it: without a branch */
-    if (s->step->filter && !narc_is_tested(s, a, b) && !(v->marks[k] & NARC_FLIPPED))
-        what = NARC_REST; /* one that is turned has the other bodies' row */
-    else if (v->marks[k] & NARC_SENSOR)
-        what = NARC_ASK_SENSOR;
-    else if (s->step->recycling > 0 && what == NARC_ASK && !stale && !(changed & NARC_RESHAPED) &&
-             v->flags[slot] & NARC_SLOT_KEPT)
-        what = NARC_FOLLOW;
-    add_work(s->contacts, k, what | (changed & NARC_RESHAPED ? NARC_OTHER_SHAPE : 0));
+static bool is_ground(const narc_contact_step *s, const pair_view *v, size_t k) {
+    return !(v->marks[k] & NARC_SENSOR) && narc_is_ground_pair(s, v->a[k], v->b[k]);
 }
 
 /* May all rows of pair k, of ground, follow? A pair without one may, too. */
@@ -127,9 +107,9 @@ static bool may_follow_ground(const narc_contact_step *s, uint32_t k, uint32_t s
     const narc_more_rows more = c->more_of[slot];
     if (!(c->state[slot] & NARC_TOUCHING))
         return true;
-    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, &k, &slot, 1, c->kept);
+    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, k, slot, c->kept);
     for (uint32_t i = more.first; may && i < more.first + more.count; i++)
-        may = narc_may_follow(s, &k, &i, 1, c->more.kept);
+        may = narc_may_follow(s, k, i, c->more.kept);
     return may;
 }
 
@@ -141,10 +121,9 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
-        if (!narc_is_ground_pair(s, a, b) || v->marks[k] & NARC_SENSOR) { /* it may have been */
-            const bool sensor = v->marks[k] & NARC_SENSOR;
-            const bool was_sensor = slot != UINT32_MAX && v->flags[slot] & NARC_SLOT_SENSOR;
-            const bool other = slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || sensor != was_sensor);
+        if (!is_ground(s, v, k)) { /* it may have been */
+            const bool other =
+                slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
             stale |= other;
             changed |= other;
             continue;
@@ -157,11 +136,9 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
         follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
     }
     const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
-    for (size_t k = first; k < end; k++)
-        if (!narc_is_ground_pair(s, a, v->b[k]) || v->marks[k] & NARC_SENSOR)
-            plan_pair(s, v, k);
-        else if (changed)
-            add_work(c, k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST);
+    for (size_t k = first; k < end && changed; k++)
+        if (is_ground(s, v, k))
+            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST};
 }
 
 /* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -207,35 +184,140 @@ static void note_lost_ground(const narc_contact_step *s) {
     }
 }
 
-void narc_plan_step(const narc_contact_step *s) {
+void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
     const size_t count = s->list->pairs.count;
-    const bool kept = is_list_kept(s);
     c->work_count = 0;
-    if (kept && !has_any_changed(v.changed, s->step->bodies->count))
-        return;
-    for (size_t k = 0; k < s->step->bodies->count; k++)
+    c->changed = !is_list_kept(s) || has_any_changed(v.changed, s->step->bodies->count);
+    for (size_t k = 0; k < s->step->bodies->count && c->changed; k++)
         if (v.changed[k] & NARC_RESHAPED)
             c->room[k] = find_room(s, (uint32_t)k);
+    for (size_t slot = 0; slot < c->slot_count && c->again; slot++)
+        c->flags[slot] |= NARC_SLOT_STALE;
     if (s->has_ground && !s->list->kept)
         note_lost_ground(s);
-    if (!s->has_ground) {
-        for (size_t k = 0; k < count;)
-            if (kept && !(v.changed[v.a[k]] | v.changed[v.b[k]]))
-                k = find_changed(&s->list->pairs, v.changed, k);
-            else
-                plan_pair(s, &v, k++);
-        return;
-    }
-    for (size_t k = 0, end; k < count; k = end) {
+    for (size_t k = 0, end; k < count && s->has_ground && c->changed; k = end) {
         bool ground = false;
         for (end = k; end < count && v.a[end] == v.a[k]; end++)
-            ground = ground || narc_is_ground_pair(s, v.a[end], v.b[end]);
+            ground = ground || is_ground(s, &v, end);
         if (ground)
             plan_ground(s, &v, k, end);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ slots */
+
+void narc_clear_row(narc_contacts *c, uint32_t slot) {
+    c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
+    if (narc_count_points(c->contact_rows, narc_slot_row(c, slot)) > 0 || c->more_of[slot].count > 0) {
+        narc_mark_slot(c, slot, NARC_ASKED);
+        narc_zero_row(c, slot);
+        c->more_of[slot].count = 0;
+    }
+    narc_set_touching(c, slot, false);
+}
+
+/* What is to be done with pair k of the list, if it is stale or has changed. Ground: the next of what is planned. */
+static unsigned find_work(const narc_contact_step *s, const pair_view *v, size_t k, const narc_pair_work **work) {
+    const narc_contacts *const c = s->contacts;
+    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
+    const unsigned marks = v->marks[k], changed = v->changed[a] | v->changed[b];
+    const bool stale = is_stale(v, k, slot);
+    if (s->has_ground && is_ground(s, v, k))
+        return *work < c->work + c->work_count && (*work)->pair == k ? (*work)++->what : NARC_NOTHING;
+    if (!stale && !changed)
+        return NARC_NOTHING;
+    if (marks & NARC_AT_REST && !narc_is_tested(s, a, b) && !(marks & NARC_FLIPPED))
+        return NARC_REST; /* one that is turned has the other bodies' row */
+    if (marks & NARC_SENSOR)
+        return NARC_ASK_SENSOR;
+    if (are_apart(v, a, b))
+        return NARC_APART;
+    return s->step->recycling > 0 && !stale && !(changed & NARC_RESHAPED) && v->flags[slot] & NARC_SLOT_KEPT
+               ? NARC_FOLLOW
+               : NARC_ASK;
+}
+
+/* Does it. */
+static void do_work(const narc_contact_step *s, const pair_view *v, size_t k, unsigned what) {
+    narc_contacts *const c = s->contacts;
+    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
+    const unsigned gone = what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT;
+    const unsigned stays = (v->changed[a] | v->changed[b]) & NARC_RESHAPED
+                               ? NARC_SLOT_CROSSED
+                               : 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | gone);
+    const unsigned now =
+        (c->flags[slot] & stays) | (v->marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
+    c->flags[slot] = (uint8_t)now;
+    if (what == NARC_ASK || what == NARC_FOLLOW)
+        c->margins[slot] = narc_find_margin(s, a, b);
+    if (what == NARC_ASK) {
+        c->more_of[slot].count = 0; /* it may have been ground */
+        if (now & NARC_SLOT_ENTRY)
+            c->known[c->known_count++] = slot;
         else
-            for (size_t i = k; i < end; i++)
-                plan_pair(s, &v, i);
+            c->asked[c->asked_count++] = slot;
+    } else if (what == NARC_APART && c->state[slot] & NARC_TOUCHING) {
+        narc_clear_row(c, slot);
+    } else if (what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING) {
+        c->candidates[c->candidate_count++] = slot;
+    } else if (what == NARC_ASK_SENSOR) {
+        c->sensors_asked[c->sensor_count++] = slot;
+    }
+}
+
+/* Pairs from number `first` on as far as all bodies move, are none of ground, no sensors, and need no margin of their own:
+ * the same for these in few instructions. Returns where that ends. */
+NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, size_t first, bool kept) {
+    const unsigned special = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED;
+    narc_contacts *const c = s->contacts;
+    const pair_view v = *given; /* what loops use, in variables: what is written in bytes might be any of it */
+    uint8_t *const flags = c->flags;
+    uint32_t *asked = c->asked + c->asked_count, *known = c->known + c->known_count,
+             *candidates = c->candidates + c->candidate_count;
+    const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
+    const size_t count = s->list->pairs.count;
+    size_t k = first;
+    for (; k < count; k++) {
+        const uint32_t a = v.a[k], b = v.b[k], slot = v.order[k];
+        const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], stale = was & NARC_SLOT_STALE;
+        if ((v.marks[k] & special) | (was & NARC_SENSOR) || (kept && !changed))
+            break;
+        if (!(changed | stale))
+            continue;
+        const unsigned apart = are_apart(&v, a, b);
+        if (apart & c->state[slot])
+            break;
+        const unsigned own = was & (changed & NARC_RESHAPED ? NARC_SLOT_CROSSED : 0xffu - NARC_SLOT_STALE);
+        const unsigned follows = stale | apart ? 0 : own & follow;
+        const unsigned asks = !(apart | follows), entry = asks & (own / NARC_SLOT_ENTRY);
+        flags[slot] = (uint8_t)((own & (0xffu - NARC_SLOT_KEPT)) | follows);
+        *asked = *known = *candidates = slot; /* as chance has it: without a branch */
+        asked += asks - entry;
+        known += entry;
+        candidates += follows / NARC_SLOT_KEPT;
+    }
+    c->asked_count = (size_t)(asked - c->asked);
+    c->known_count = (size_t)(known - c->known);
+    c->candidate_count = (size_t)(candidates - c->candidates);
+    return k;
+}
+
+void narc_sort_pairs(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const pair_view v = view_pairs(s);
+    const narc_pair_work *work = c->work;
+    const bool kept = is_list_kept(s), simple = !s->has_ground && !s->step->ahead.base && c->more.count == 0;
+    const size_t count = c->changed ? s->list->pairs.count : 0;
+    c->sensor_count = c->candidate_count = c->asked_count = c->known_count = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (kept)
+            k = find_changed(&s->list->pairs, v.changed, k);
+        if (simple)
+            k = sort_simple(s, &v, k, kept);
+        const unsigned what = k < count ? find_work(s, &v, k, &work) : NARC_NOTHING;
+        if (what != NARC_NOTHING)
+            do_work(s, &v, k, what);
     }
 }

@@ -24,12 +24,13 @@ typedef struct start {
     uint32_t version, byte_order;
     uint64_t size, checksum; /* all bytes; the sum counts all but itself */
     uint64_t rows, user_size, row_offset;
-    uint64_t slots, free, parted, marked, pairs, touching, sensors, began, ended, more, bodies, known;
+    uint64_t slots, free, parted, pairs, touching, sensors, began, ended, more, bodies, known;
     uint64_t skipped, asked, history;
     narc_asked last;
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
-    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, marked_anew, has_motions, unused[4];
+    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, is_list_marked, has_motions,
+        unused[7];
 } start;
 
 _Static_assert(sizeof(start) % 8 == 0 && sizeof(narc_asked) == 24, "no padding, and arrays begin at a multiple of 8");
@@ -112,7 +113,6 @@ static start describe(const saved *s) {
                 .slots = c->slot_count,
                 .free = c->free_count,
                 .parted = c->parted_count,
-                .marked = c->marked_count,
                 .pairs = r->count,
                 .touching = r->touching_count,
                 .sensors = r->sensor_count,
@@ -136,7 +136,8 @@ static start describe(const saved *s) {
                 .is_given = b->is_given,
                 .has_filter = b->has_filter,
                 .has_sets = b->has_sets,
-                .marked_anew = b->marked,
+                .is_marked = c->marked,
+                .is_list_marked = b->marked,
                 .has_motions = b->known.has_motions};
     memcpy(at.magic, magic, sizeof magic);
     return at;
@@ -151,7 +152,6 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     c->slot_count = (size_t)at->slots;
     c->free_count = (size_t)at->free;
     c->parted_count = (size_t)at->parted;
-    c->marked_count = (size_t)at->marked;
     r->count = (size_t)at->pairs;
     r->touching_count = (size_t)at->touching;
     r->sensor_count = (size_t)at->sensors;
@@ -175,7 +175,8 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     b->is_given = at->is_given;
     b->has_filter = at->has_filter;
     b->has_sets = at->has_sets;
-    b->marked = at->marked_anew;
+    c->marked = at->is_marked;
+    b->marked = at->is_list_marked;
     b->known.has_motions = at->has_motions;
     b->is_sorted = false;
     b->renewed = true; /* `previous` is not saved */
@@ -324,8 +325,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         !are_bits(bytes_of(s, &c->flags), slots, 127 & ~NARC_SLOT_CROSSED) ||
         !are_bits(bytes_of(s, &l->marks), c->result.count, NARC_KINDS | NARC_FLIPPED))
         return "flags";
-    if (!are_below(bytes_of(s, &c->marked), c->marked_count, slots) ||
-        !are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
+    if (!are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
         !are_below(bytes_of(s, &c->sensors), c->result.sensor_count, slots) ||
         !are_events_fine(s, bytes_of(s, &c->began), c->result.began_count) ||
         !are_events_fine(s, bytes_of(s, &c->ended), c->result.ended_count))
@@ -337,9 +337,9 @@ static const char *find_fault(const saved *s, uint8_t *used) {
 static bool are_counts_fine(const start *at) {
     const uint64_t most = UINT32_MAX - 1;
     return at->slots <= most && at->pairs <= most && at->bodies <= most && at->more <= most &&
-           at->free + at->parted + at->pairs == at->slots && at->marked <= at->slots && at->touching <= at->pairs &&
-           at->sensors <= at->pairs && at->began <= at->pairs && at->ended <= 2 * most &&
-           at->known == (at->is_current ? at->bodies : 0) && at->precision <= NARC_FLOAT64;
+           at->free + at->parted + at->pairs == at->slots && at->touching <= at->pairs && at->sensors <= at->pairs &&
+           at->began <= at->pairs && at->ended <= 2 * most && at->known == (at->is_current ? at->bodies : 0) &&
+           at->precision <= NARC_FLOAT64;
 }
 
 static bool are_flags_fine(const start *at) {

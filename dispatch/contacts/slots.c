@@ -71,7 +71,6 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_SLOTS, c->more_of, sizeof *c->more_of, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->free, sizeof *c->free, &c->free_count),
                                  ARRAY(NARC_OF_SLOTS, c->parted, sizeof *c->parted, &c->parted_count),
-                                 ARRAY(NARC_OF_SLOTS, c->marked, sizeof *c->marked, &c->marked_count),
                                  ARRAY(NARC_OF_PAIRS, c->order, sizeof *c->order, &r->count),
                                  ARRAY(NARC_OF_PAIRS, c->touching, sizeof *c->touching, &r->touching_count),
                                  ARRAY(NARC_OF_PAIRS, c->sensors, sizeof *c->sensors, &r->sensor_count),
@@ -145,7 +144,7 @@ static uint32_t open_slot(narc_contacts *c) {
     const uint32_t slot = c->free_count > 0 ? c->free[--c->free_count] : (uint32_t)c->slot_count++;
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
-    narc_clear_row(c, slot);
+    narc_zero_row(c, slot);
     c->hints[slot] = 0;
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;

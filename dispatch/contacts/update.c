@@ -16,57 +16,6 @@
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-/* No row is left. */
-static void clear_row(narc_contacts *c, uint32_t slot) {
-    c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-    if (narc_count_points(c->contact_rows, narc_slot_row(c, slot)) > 0 || c->more_of[slot].count > 0) {
-        narc_mark_slot(c, slot, NARC_ASKED);
-        narc_clear_row(c, slot);
-        c->more_of[slot].count = 0;
-    }
-    narc_set_touching(c, slot, false);
-}
-
-/* Does what is planned, but for pairs of ground that are asked. Here and below what loops use lies in variables of their own,
- * as whatever is written in bytes might be any of it. */
-static void do_work(const narc_contact_step *s) {
-    narc_contacts *const c = s->contacts;
-    const narc_pair_work *const work = c->work;
-    const uint32_t *const order = c->order;
-    const uint8_t *const marks = s->list->marks, *const state = c->state;
-    uint8_t *const flags = c->flags;
-    uint32_t *const asked = c->asked, *const known = c->known;
-    const bool margins = s->step->ahead.base, more = c->more.count > 0;
-    const size_t count = c->work_count;
-    size_t asked_count = 0, known_count = 0;
-    c->sensor_count = c->candidate_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t k = work[i].pair, what = work[i].what & NARC_WHAT, slot = order[k];
-        const unsigned own = marks[k] & NARC_SENSOR ? NARC_SLOT_SENSOR : 0,
-                       rest = what == NARC_REST ? NARC_SLOT_STALE : 0;
-        const unsigned goes =
-            NARC_SLOT_STALE | NARC_SLOT_SENSOR | (what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT);
-        const unsigned stays = work[i].what & NARC_OTHER_SHAPE ? NARC_SLOT_CROSSED : 0xff & ~goes;
-        const unsigned now = (flags[slot] & stays) | own | rest;
-        flags[slot] = (uint8_t)now;
-        asked[asked_count] = known[known_count] = slot; /* as chance has it: without a branch */
-        asked_count += (what == NARC_ASK) & !(now & NARC_SLOT_ENTRY);
-        known_count += (what == NARC_ASK) & ((now & NARC_SLOT_ENTRY) != 0);
-        if (margins && (what == NARC_ASK || what == NARC_FOLLOW))
-            c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
-        if (more && what == NARC_ASK) /* it may have been ground */
-            c->more_of[slot].count = 0;
-        if (what == NARC_APART && state[slot] & NARC_TOUCHING)
-            clear_row(c, slot);
-        else if (what == NARC_FOLLOW && state[slot] & NARC_TOUCHING)
-            c->candidates[c->candidate_count++] = slot;
-        else if (what == NARC_ASK_SENSOR)
-            c->sensors_asked[c->sensor_count++] = slot;
-    }
-    c->known_count = known_count;
-    c->asked_count = asked_count;
-}
-
 static narc_status ask_sensors(const narc_contact_step *s, const narc_pairs *pairs) {
     narc_contacts *const c = s->contacts;
     if (c->sensor_count == 0)
@@ -79,7 +28,7 @@ static narc_status ask_sensors(const narc_contact_step *s, const narc_pairs *pai
     for (size_t i = 0; i < c->sensor_count && status == NARC_OK; i++) {
         const uint32_t slot = c->sensors_asked[i];
         const bool touches = c->bits[i / 64] >> i % 64 & 1;
-        clear_row(c, slot);
+        narc_clear_row(c, slot);
         narc_mark_slot(c, slot, NARC_ASKED);
         narc_set_touching(c, slot, touches);
     }
@@ -110,27 +59,28 @@ static void make_lists(const narc_contact_step *s) {
     const uint32_t *const order = c->order;
     const uint8_t *const state = c->state, *const all_marks = s->list->marks;
     uint8_t *const flags = c->flags;
-    uint32_t *const touching = c->touching, *const sensors = c->sensors;
-    const bool filtered = s->step->filter;
+    uint32_t *const touching = c->touching;
     const size_t count = s->list->pairs.count;
     size_t touching_count = 0, sensor_count = 0;
     for (size_t k = 0; k < count; k++) {
         const uint32_t slot = order[k];
         const unsigned marks = all_marks[k];
-        const bool touches = state[slot] & NARC_TOUCHING, sensor = marks & NARC_SENSOR;
-        const bool tested = !filtered || narc_is_tested(s, c->a[slot], c->b[slot]);
-        touching[touching_count] = sensors[sensor_count] = slot; /* as chance has it: without a branch */
-        touching_count += touches & !sensor & tested;
-        sensor_count += touches & sensor;
-        if (!(flags[slot] & NARC_SLOT_CROSSED))
-            continue;
-        flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
-        const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
-                                        0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
-        if (touches)
-            c->began[r->began_count++] = event;
-        else
-            c->ended[r->ended_count++] = event;
+        unsigned touches = state[slot] & NARC_TOUCHING;
+        if (flags[slot] & NARC_SLOT_CROSSED) {
+            flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
+            const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
+                                            0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
+            if (touches)
+                c->began[r->began_count++] = event;
+            else
+                c->ended[r->ended_count++] = event;
+        }
+        if (marks & NARC_SENSOR && touches)
+            c->sensors[sensor_count++] = slot;
+        if (marks & NARC_SENSOR || (marks & NARC_AT_REST && !narc_is_tested(s, c->a[slot], c->b[slot])))
+            touches = 0;
+        touching[touching_count] = slot; /* as chance has it: without a branch */
+        touching_count += touches;
     }
     r->touching_count = touching_count;
     r->sensor_count = sensor_count;
@@ -186,7 +136,7 @@ static narc_status prepare(narc_contact_step *s) {
                            "not enough memory for %zu contacts", s->list->pairs.count);
     if (status != NARC_OK)
         return status;
-    narc_plan_step(s);
+    narc_plan_ground(s);
     status = narc_ask_ground(s);
     return status == NARC_ERROR_MEMORY ? narc_fail(s->error, status, 0, (double)c->ground_count,
                                                    "not enough memory for %zu contacts with ground", c->ground_count)
@@ -197,15 +147,15 @@ static narc_status prepare(narc_contact_step *s) {
 static narc_status carry_out(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     narc_step_result *const r = &c->result;
-    for (size_t k = 0; k < c->marked_count; k++)
-        c->state[c->marked[k]] &= NARC_TOUCHING;
-    c->marked_count = 0;
+    uint8_t *const state = c->state;
+    const size_t marked_count = c->marked ? c->slot_count : 0;
+    for (size_t k = 0; k < marked_count; k++)
+        state[k] &= NARC_TOUCHING;
+    c->marked = false;
     narc_take_slots(c, s->list);
     const narc_pairs pairs = narc_view_slots(c);
-    do_work(s);
-    narc_status status = narc_follow_rows(s, &pairs);
-    if (status == NARC_OK)
-        status = narc_ask_contacts(s, &pairs);
+    narc_sort_pairs(s);
+    narc_status status = narc_ask_contacts(s, &pairs);
     if (status == NARC_OK)
         status = ask_sensors(s, &pairs);
     if (status != NARC_OK)
@@ -310,7 +260,7 @@ void narc_forget_contacts(narc_contacts *c) {
     narc_forget_pairs(c->broad);
     narc_forget_poses(c->broad);
     c->partners_listed = false;
-    c->slot_count = c->free_count = c->parted_count = c->marked_count = c->crossed_count = c->more.count = 0;
+    c->slot_count = c->free_count = c->parted_count = c->crossed_count = c->more.count = 0;
     c->result.count = c->result.touching_count = c->result.sensor_count = c->result.began_count =
         c->result.ended_count = 0;
     c->result.more_count = 0;

@@ -4,6 +4,7 @@
  * normal turns with A, and each point lies where the places of both bodies that touched are now. What was kept of a row
  * (narc_kept_row) says where these are.
  */
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -31,6 +32,64 @@ enum {
     OF_LEVER = offsetof(narc_kept_row, lever) / 4
 };
 
+/* ------------------------------------------------------------------------------------------------ rows */
+
+/* What a row in each lane says of points; of contacts the second one is not there. */
+struct rows_of {
+    vf head[4], radii[4], point[2][4]; /* as in narc_manifold */
+    vm second;
+};
+
+INLINE struct rows_of load_rows(const narc_rows *rows, const int32_t *number, bool manifold) {
+    struct rows_of out;
+    const vf zero = v_set(0);
+    if (manifold) {
+        v_rows(rows->base, rows->stride, number, out.head);
+        v_rows(rows->base + offsetof(narc_manifold, radius_a), rows->stride, number, out.radii);
+        for (int i = 0; i < 2; i++)
+            v_rows(rows->base + offsetof(narc_manifold, point[i]), rows->stride, number, out.point[i]);
+        out.second = vi_lt(vi_set(1), vi_bits(out.head[1]));
+        return out;
+    }
+    vf front[4], rest[4];
+    v_rows(rows->base + offsetof(narc_contact, feature), rows->stride, number, front);
+    v_rows(rows->base + offsetof(narc_contact, point_x), rows->stride, number, rest);
+    return (struct rows_of){.head = {zero, front[0], front[2], front[3]},
+                            .radii = {rest[2], rest[3], zero, zero},
+                            .point = {{rest[0], rest[1], front[1], zero}, {zero, zero, zero, zero}},
+                            .second = vm_front(0)};
+}
+
+/* The places of items in lanes; of lanes that are not wanted, room of their own. */
+INLINE void find_places(char *base, ptrdiff_t stride, const int32_t *number, uint32_t lanes, char *room, char **place) {
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = lanes >> lane & 1 ? base + (ptrdiff_t)(uint32_t)number[lane] * stride : room;
+}
+
+INLINE void store_rows(const struct rows_of *rows, char *const *place, bool manifold) {
+    if (manifold) {
+        v_put_rows(place, 0, rows->head);
+        for (int i = 0; i < 2; i++)
+            v_put_rows(place, (int)offsetof(narc_manifold, point[i]), rows->point[i]);
+        return;
+    }
+    const vf *const p = rows->point[0];
+    const vf front[4] = {rows->head[1], p[2], rows->head[2], rows->head[3]};
+    const vf rest[4] = {p[0], p[1], rows->radii[0], rows->radii[1]};
+    v_put_rows(place, offsetof(narc_contact, feature), front);
+    v_put_rows(place, offsetof(narc_contact, point_x), rest);
+}
+
+/* The numbers of a block's items, and in `own` if they are not the pairs' own. Behind the last they repeat it. A whole block at
+ * once: a vector that is read from what was just written word by word waits for it. */
+INLINE const int32_t *find_items(const uint32_t *item, const struct pair_indices *indices, int n, int32_t own[BLOCK]) {
+    for (int k = 0; item && k < (n + V_WIDTH - 1) / V_WIDTH * V_WIDTH; k++)
+        own[k] = (int32_t)item[k < n ? k : n - 1];
+    return item ? own : indices->number;
+}
+
+/* ------------------------------------------------------------------------------------------------ rows that follow */
+
 /* From A's place of a point to B's, in A's frame. */
 INLINE vec2 find_span(const vf word[WORDS], const struct pose *pose, int point) {
     const vf *const p = word + OF_POINT + 4 * point;
@@ -47,48 +106,21 @@ INLINE vm has_hardly_moved(const vf word[WORDS], const struct pose *pose, vec2 s
     return v_lt(v_add(v2_length(moved), v_mul(word[OF_LEVER], v2_length(turned))), tolerance);
 }
 
-/* What rows get: the normal, and of each point its place and separation. */
-enum { NEW_WORDS = 8 };
-
-INLINE void find_words(const vf word[WORDS], const struct placement *placement, const vec2 span[2],
-                       float out[NEW_WORDS][V_WIDTH]) {
+/* Moves normals and points with their bodies. */
+INLINE void move_rows(const vf word[WORDS], const struct placement *placement, const vec2 span[2],
+                      struct rows_of *rows) {
     const vec2 n = {word[OF_NORMAL], word[OF_NORMAL + 1]}, normal = v2_rotate(placement->rotation_a, n);
-    v_store(out[0], normal.x);
-    v_store(out[1], normal.y);
+    rows->head[2] = normal.x;
+    rows->head[3] = normal.y;
     UNROLL
     for (int i = 0; i < 2; i++) {
         const vf *const p = word + OF_POINT + 4 * i;
         const vf separation = v_sub(v2_dot(span[i], n), v_add(word[OF_RADIUS_A], word[OF_RADIUS_B]));
         const vf out_of_a = v_add(word[OF_RADIUS_A], v_mul(v_set(0.5f), separation));
         const vec2 place = v2_rotate(placement->rotation_a, v2_add((vec2){p[0], p[1]}, v2_scale(n, out_of_a)));
-        v_store(out[2 + 3 * i], place.x);
-        v_store(out[3 + 3 * i], place.y);
-        v_store(out[4 + 3 * i], separation);
-    }
-}
-
-/* Writes these words of a row that is there. */
-INLINE void write_words(float words[NEW_WORDS][V_WIDTH], int lane, char *to, bool manifold) {
-    if (manifold) {
-        narc_manifold row;
-        memcpy(&row, to, sizeof row);
-        row.normal_x = words[0][lane];
-        row.normal_y = words[1][lane];
-        for (uint32_t i = 0; i < row.count; i++) {
-            row.point[i].x = words[2 + 3 * i][lane];
-            row.point[i].y = words[3 + 3 * i][lane];
-            row.point[i].separation = words[4 + 3 * i][lane];
-        }
-        memcpy(to, &row, sizeof row);
-    } else {
-        narc_contact row;
-        memcpy(&row, to, sizeof row);
-        row.normal_x = words[0][lane];
-        row.normal_y = words[1][lane];
-        row.point_x = words[2][lane];
-        row.point_y = words[3][lane];
-        row.separation = words[4][lane];
-        memcpy(to, &row, sizeof row);
+        const vf moved[3] = {place.x, place.y, separation};
+        for (int w = 0; w < 3; w++)
+            rows->point[i][w] = i == 0 ? moved[w] : v_select(rows->second, moved[w], rows->point[i][w]);
     }
 }
 
@@ -103,16 +135,16 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
     struct sources given = copy_sources(batch);
     const enum pose_layout layout = find_layout(&given);
     given.a.scale.base = given.b.scale.base = NULL; /* what is kept knows them */
+    _Alignas(64) char room[sizeof(narc_manifold)], *place[V_WIDTH];
+    int32_t own[BLOCK];
     struct pair_indices indices;
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_bodies_of(&given, first + block, n, &indices);
+        const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
-            int32_t number[V_WIDTH];
-            for (int lane = 0; lane < V_WIDTH; lane++)
-                number[lane] =
-                    item ? (int32_t)item[block + (size_t)(k + lane < n ? k + lane : n - 1)] : indices.number[k + lane];
+            const int32_t *const number = items + k;
             const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
             vf word[WORDS];
             load_items(kept, WORDS, number, false, word);
@@ -122,15 +154,70 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
                                       has_hardly_moved(word, &placement.pose, span[0], v_set(tolerance)));
             for (uint32_t lanes = vm_bits(vm_and_not(live, follows)); lanes; lanes &= lanes - 1)
                 left[open++] = (uint32_t)indices.number[k + FIND_LOWEST(lanes)];
-            if (!out)
+            const uint32_t lanes = vm_bits(follows);
+            if (!out || !lanes)
                 continue;
-            float words[NEW_WORDS][V_WIDTH];
-            find_words(word, &placement, span, words);
-            for (uint32_t lanes = vm_bits(follows); lanes; lanes &= lanes - 1) {
-                const int lane = FIND_LOWEST(lanes);
-                write_words(words, lane, out->base + (ptrdiff_t)(uint32_t)number[lane] * out->stride, manifold);
-            }
+            struct rows_of rows = load_rows(out, number, manifold);
+            move_rows(word, &placement, span, &rows);
+            find_places(out->base, out->stride, number, lanes, room, place);
+            store_rows(&rows, place, manifold);
         }
     }
     return open;
+}
+
+/* ------------------------------------------------------------------------------------------------ rows that are kept */
+
+/* Of length 1, but for the square of what it lacks. */
+INLINE vec2 find_unit(vec2 q) { return v2_scale(q, v_sub(v_set(1.5f), v_mul(v_set(0.5f), v2_dot(q, q)))); }
+
+INLINE vm is_finite(vf x) { return v_lt(v_abs(x), v_set(INFINITY)); }
+
+/* Keeps rows, with a point at least, of a batch's pairs first .. first + count - 1; numbers are those of `recycle`. */
+void NARC_NAMED(keep)(const narc_batch *batch, size_t first, size_t count, const uint32_t *item, const narc_rows *rows,
+                      narc_kept_row *out) {
+    const bool manifold = batch->row_size == sizeof(narc_manifold);
+    const struct sources given = copy_sources(batch);
+    const enum pose_layout layout = find_layout(&given);
+    _Alignas(64) char room[sizeof(narc_kept_row)], *place[V_WIDTH];
+    int32_t own[BLOCK];
+    struct pair_indices indices;
+    for (size_t block = 0; block < count; block += BLOCK) {
+        const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
+        load_indices(&given, first + block, n, &indices);
+        const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
+        for (int k = 0; k < n; k += V_WIDTH) {
+            const int32_t *const number = items + k;
+            const struct rows_of row = load_rows(rows, number, manifold);
+            const struct body_pair bodies = load_bodies(&given, layout, indices.a + k, indices.b + k, NULL);
+            const struct headers a = load_headers(batch->shapes->headers, indices.shape_a + k);
+            const struct headers b = load_headers(batch->shapes->headers, indices.shape_b + k);
+            const vec2 q_a = find_unit(bodies.rotation_a), q_b = find_unit(bodies.rotation_b);
+            const vec2 normal = {row.head[2], row.head[3]}, in_a = v2_unrotate(q_a, normal),
+                       relative = v2_unrotate(q_a, q_b);
+            const vm finite_a = is_finite(row.radii[0]), finite_b = is_finite(row.radii[1]);
+            /* of one point with an arc: it rolls */
+            const vf radius_a = v_select(vm_and_not(finite_a, row.second), row.radii[0], v_set(0));
+            const vf radius_b = v_select(vm_and_not(finite_b, row.second), row.radii[1], v_set(0));
+            const vf diameter_a = v_mul(v_mul(v_set(2), a.bound_radius), bodies.scale_a);
+            const vf diameter_b = v_mul(v_mul(v_set(2), b.bound_radius), bodies.scale_b);
+            const vf head[4] = {relative.x, relative.y, in_a.x, in_a.y};
+            const vf rest[4] = {radius_a, radius_b, v_add(v_add(row.point[0][2], radius_a), radius_b),
+                                v_min(diameter_a, diameter_b)};
+            find_places((char *)out, sizeof *out, number, vm_bits(vm_front(n - k)), room, place);
+            v_put_rows(place, 0, head);
+            UNROLL
+            for (int i = 0; i < 2; i++) {
+                const vf *const p = row.point[i], half = v_mul(v_set(0.5f), p[2]);
+                const vec2 point = {p[0], p[1]}, from_b = v2_add(point, v2_scale(bodies.difference, v_set(-1)));
+                const vec2 of_a = v2_unrotate(q_a, v2_add(point, v2_scale(normal, v_sub(v_neg(half), radius_a))));
+                const vec2 of_b = v2_unrotate(q_b, v2_add(from_b, v2_scale(normal, v_add(half, radius_b))));
+                vf both[4] = {of_a.x, of_a.y, of_b.x, of_b.y};
+                for (int w = 0; w < 4 && i == 1; w++)
+                    both[w] = v_select(row.second, both[w], v_set(0));
+                v_put_rows(place, (int)offsetof(narc_kept_row, point[i]), both);
+            }
+            v_put_rows(place, offsetof(narc_kept_row, radius_a), rest);
+        }
+    }
 }
