@@ -31,7 +31,6 @@ narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, 
     const narc_bodies *const bodies = s->step->bodies;
     narc_query query = make_query(s, slots ? c->margins : c->ground_margins, selection, count);
     query.dense = slots;
-    query.hints = (narc_hint_column){slots ? c->hints : NULL, sizeof *c->hints};
     return c->contact_rows ? narc_find_contacts(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error)
                            : narc_find_manifolds(s->shapes, bodies, pairs, &query, rows, capacity, out_count, s->error);
 }

@@ -66,8 +66,8 @@ struct narc_contacts {
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
-    uint32_t *hints, *free, *marked, *parted; /* `free` and so on: lists of slots */
-    float *margins;                           /* that it was asked with */
+    uint32_t *free, *marked, *parted; /* `free` and so on: lists of slots */
+    float *margins;                   /* that it was asked with */
     void *rows, *user;
     narc_kept_row *kept;
     narc_entry *entries;
@@ -191,7 +191,7 @@ void narc_take_ground(const narc_contact_step *s);
 /* Rows of the slots in `asked` and `known`; which are written then, and what touches. */
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs);
 
-/* Asks some pairs as the step says. `slots`: their hints and dense rows are those of slots. */
+/* Asks some pairs as the step says. `slots`: rows are dense, those of slots. */
 narc_status narc_ask_pairs(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *selection, size_t count,
                            bool slots, void *rows, size_t capacity, size_t *out_count);
 

@@ -69,7 +69,6 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->b, sizeof *c->b),
                               ARRAY(c->state, 1),
                               ARRAY(c->flags, 1),
-                              ARRAY(c->hints, sizeof *c->hints),
                               ARRAY(c->free, sizeof *c->free),
                               ARRAY(c->margins, sizeof *c->margins),
                               ARRAY(c->rows, c->row_size),
@@ -128,7 +127,6 @@ static uint32_t open_slot(narc_contacts *c) {
     memcpy(row, &slot, sizeof slot); /* the row's `pair` */
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
-    c->hints[slot] = 0;
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;
     c->state[slot] = 0;
@@ -152,7 +150,6 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
         if (list->marks[k] & NARC_FLIPPED) {
             c->flags[slot] |= NARC_SLOT_STALE;
             c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
-            c->hints[slot] = 0;
             narc_mark_slot(c, slot, NARC_TURNED);
         }
     }
@@ -168,13 +165,12 @@ static void release(narc_contacts *c, void *memory) {
 
 void narc_free_slots(narc_contacts *c) {
     void *const memory[] = {
-        c->candidates, c->entries,   c->ends,          c->known,          c->left,           c->a,
-        c->b,          c->state,     c->flags,         c->hints,          c->free,           c->margins,
-        c->rows,       c->user,      c->kept,          c->more_of,        c->order,          c->next_order,
-        c->work,       c->asked,     c->sensors_asked, c->marked,         c->parted,         c->ground_asked,
-        c->touching,   c->sensors,   c->bits,          c->ground_margins, c->began,          c->ended,
-        c->room,       c->more.rows, c->more.kept,     c->next_more.rows, c->next_more.kept, c->ground.rows,
-        c->ground.kept};
+        c->candidates, c->entries,       c->ends,           c->known,          c->left,         c->a,
+        c->b,          c->state,         c->flags,          c->free,           c->margins,      c->rows,
+        c->user,       c->kept,          c->more_of,        c->order,          c->next_order,   c->work,
+        c->asked,      c->sensors_asked, c->marked,         c->parted,         c->ground_asked, c->touching,
+        c->sensors,    c->bits,          c->ground_margins, c->began,          c->ended,        c->room,
+        c->more.rows,  c->more.kept,     c->next_more.rows, c->next_more.kept, c->ground.rows,  c->ground.kept};
     for (size_t k = 0; k < COUNT_OF(memory); k++)
         release(c, memory[k]);
 }
