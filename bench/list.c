@@ -16,7 +16,7 @@ struct group {
     const char *queries, *families, *layouts, *who;
 };
 
-#define QUERIES "overlap contact hinted manifold"
+#define QUERIES "overlap contact manifold"
 #define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
 #define STEPS   "boxes pairs match step kept contacts-stay"
 #define STACKS  "pyramid pyramid-templates lattice lattice-templates"
@@ -34,7 +34,7 @@ static const struct group groups[] = {
     {"contact", "n4 n8 boxes capsules", "pile pile-unlike", "box2d"},
     {"contact", "n8 boxes capsules", "pile pile-unlike", "chipmunk"},
     {"contact", "discs", "pile", "loop"},
-    {"contact hinted", "n4 n8", "pile", "avx2"},
+    {"contact", "n4 n8", "pile", "avx2"},
     {"contact manifold", "capsules", "pile", "avx2"},
     {"contact", "n8", "pile", "BEST/by1 BEST/by4 BEST/by16 BEST/by64 BEST/by256 BEST/by65536"},
     {STEPS, "n8", "pile-2000 pile pile-1000000", "BEST"},
@@ -49,7 +49,6 @@ static const struct group groups[] = {
     {"overlap contact", "n4 n6 n8 n12 n16 kinds general capsules", "mixed", "EACH"},
     {"overlap contact", "n8", "mixed-templates mixed-sorted mixed-templates-sorted", "EACH"},
     {"overlap", "bounds8", "mixed mixed-templates", "EACH"},
-    {"unhinted hinted", "n8", "mixed-templates", "EACH"},
     {"overlap", "n4 n6 n8 n12 n16", "mixed", "box2d ccd-gjk ccd-mpr"},
     {"contact", "n4 n6 n8 n12 n16", "mixed", "box2d chipmunk"},
     {"ray-fan ray-long ray-short", "gons8", SCENES, "BEST BEST/by1 box2d chipmunk"},

@@ -12,9 +12,7 @@
 enum query {
     QUERY_OVERLAP,
     QUERY_CONTACT,
-    QUERY_UNHINTED, /* contacts; every run takes the other of two frames */
-    QUERY_HINTED,   /* the same, with the hints that the run before, in the other frame, gave back */
-    QUERY_MANIFOLD, /* with such hints too */
+    QUERY_MANIFOLD,
 };
 
 struct pairs {
@@ -22,7 +20,6 @@ struct pairs {
     size_t runs, found;
     uint64_t *bits;
     narc_contact *contacts;
-    uint32_t *hints;
     uint8_t *colliding; /* of a peer */
 };
 
@@ -71,7 +68,7 @@ static void run(struct row *row) {
         row->peer->ask(row->peer_state, &(struct asked){.count = pairs.count, .pairs = scene->pairs}, p->colliding);
         return;
     }
-    const narc_query query = {.hints = NARC_HINT_ARRAY(p->hints), .workers = &row->workers};
+    const narc_query query = {.workers = &row->workers};
     narc_error error;
     narc_status status;
     if (row->question->what == QUERY_OVERLAP)
@@ -129,13 +126,11 @@ static void prepare(struct row *row) {
         prepare_peer(row);
         return;
     }
-    if (what >= QUERY_UNHINTED || is_pile(row->layout))
+    if (is_pile(row->layout))
         p->frames[1] = get_scene(row->family, row->layout, true);
     p->bits = allocate(NARC_BIT_WORDS(count), sizeof *p->bits);
-    if (what != QUERY_OVERLAP && what != QUERY_MANIFOLD)
+    if (what == QUERY_CONTACT)
         p->contacts = allocate(count, sizeof *p->contacts);
-    if (what >= QUERY_HINTED)
-        p->hints = allocate(count, sizeof *p->hints);
     for (int frame = 0; frame < 2; frame++) {
         const double *gaps = gaps_of(p->frames[p->runs % 2]);
         run(row);
@@ -145,7 +140,7 @@ static void prepare(struct row *row) {
     }
 }
 
-const struct question pair_questions[] = {
-    {"overlap", prepare, run, QUERY_OVERLAP, false},   {"contact", prepare, run, QUERY_CONTACT, false},
-    {"unhinted", prepare, run, QUERY_UNHINTED, false}, {"hinted", prepare, run, QUERY_HINTED, false},
-    {"manifold", prepare, run, QUERY_MANIFOLD, false}, {.name = NULL}};
+const struct question pair_questions[] = {{"overlap", prepare, run, QUERY_OVERLAP, false},
+                                          {"contact", prepare, run, QUERY_CONTACT, false},
+                                          {"manifold", prepare, run, QUERY_MANIFOLD, false},
+                                          {.name = NULL}};

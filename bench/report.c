@@ -36,7 +36,7 @@ static const struct table tables[] = {
      "4 arcs = n4; 8 arcs = n8; 12 arcs = n12; rounded 8-gons = rounded; boxes = boxes; discs = discs; "
      "capsules = capsules; all kinds = kinds",
      "64 = pile; 4,096 = pile-unlike",
-     "overlap = overlap/$1/$2/BEST; contact = contact/$1/$2/BEST; with hints = hinted/$1/$2/BEST;"
+     "overlap = overlap/$1/$2/BEST; contact = contact/$1/$2/BEST;"
      "manifolds = manifold/$1/$2/BEST; Box2D (times contact) = contact/$1/$2/box2d / 2;"
      "Chipmunk = contact/$1/$2/chipmunk / 2; a loop = contact/$1/$2/loop / 2",
      1},
@@ -45,7 +45,7 @@ static const struct table tables[] = {
      "manifolds = manifold/squares/$1$2/BEST; Box2D (times manifolds) = contact/squares/$1$2/box2d / 3",
      1},
     {"ns a pair, 8 arcs, 64 shapes",
-     "boxes = boxes; pairs = pairs; match, gather hints = match; whole step = step; whole step, pairs kept = kept", "",
+     "boxes = boxes; pairs = pairs; match, gather = match; whole step = step; whole step, pairs kept = kept", "",
      "2,000 bodies = $1/n8/pile-2000/BEST; 30,000 = $1/n8/pile/BEST; 1,000,000 = $1/n8/pile-1000000/BEST;"
      "2 threads = $1/n8/pile-1000000/BEST/2threads / 3",
      1},
@@ -188,7 +188,7 @@ static void print_instruction_sets(const char *best_isa, FILE *out) {
                      *columns ? "; " : "", narc_isa_name(k), narc_isa_name(k));
     const struct table table = {
         "ns a pair, piles of 30,000 bodies | shapes",
-        "overlap = overlap; contact = contact; manifolds with hints = manifold; boxes = boxes; pairs = pairs",
+        "overlap = overlap; contact = contact; manifolds = manifold; boxes = boxes; pairs = pairs",
         "discs = discs; boxes = boxes; 8 arcs = n8; rounded 8-gons = rounded", columns, 1};
     if (!isnan(time_of("overlap/discs/pile/scalar", best_isa)))
         print_table(&table, best_isa, out);

@@ -14,7 +14,7 @@
 enum step {
     STEP_BOXES,
     STEP_PAIRS, /* of boxes that are there */
-    STEP_MATCH, /* pairs of one frame with those of the other, and hints carried over */
+    STEP_MATCH, /* pairs of one frame with those of the other, and a word of each carried over */
     STEP_WHOLE, /* all of these, and manifolds; or a peer's */
     STEP_KEPT,  /* pairs that are updated, and kept, and manifolds */
     STEP_STAY,  /* narc_update_contacts() */
@@ -25,7 +25,7 @@ struct frame {
     struct scene *scene;
     narc_box *boxes;
     size_t pair_count;
-    uint32_t *a, *b, *hints;
+    uint32_t *a, *b, *words; /* `words`: an engine's own */
 };
 
 struct steps {
@@ -49,18 +49,18 @@ static narc_pairs pairs_of(const struct frame *frame) {
     return (narc_pairs){.count = frame->pair_count, .a = NARC_ARRAY(frame->a), .b = NARC_ARRAY(frame->b)};
 }
 
-static void carry_hints(struct steps *s, const struct frame *last, struct frame *frame) {
+static void carry_words(struct steps *s, const struct frame *last, struct frame *frame) {
     const narc_pairs old_pairs = pairs_of(last), new_pairs = pairs_of(frame);
     narc_error error;
     must(narc_match_pairs(s->broad, &old_pairs, &new_pairs, s->workers, s->match, &error), &error);
-    narc_gather(s->match, frame->pair_count, sizeof *frame->hints, last->hints, frame->hints);
+    narc_gather(s->match, frame->pair_count, sizeof *frame->words, last->words, frame->words);
 }
 
 /* The manifolds of these pairs where the bodies of `frame` are. */
-static void find_frame_manifolds(struct steps *s, const struct frame *frame, const narc_pairs *pairs, uint32_t *hints) {
+static void find_frame_manifolds(struct steps *s, const struct frame *frame, const narc_pairs *pairs) {
     struct scene *scene = frame->scene;
     const narc_bodies bodies = bodies_of(scene->bodies, scene->body_count);
-    const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = s->workers};
+    const narc_query query = {.workers = s->workers};
     narc_error error;
     must(narc_find_manifolds(scene->shapes, &bodies, pairs, &query, share_manifolds(s->capacity), s->capacity,
                              &s->manifold_count, &error),
@@ -70,9 +70,9 @@ static void find_frame_manifolds(struct steps *s, const struct frame *frame, con
 static void run_whole(struct steps *s, const struct frame *last, struct frame *frame) {
     find_boxes(frame->scene, SKIN / 2, s->workers, frame->boxes);
     find_frame_pairs(s, frame);
-    carry_hints(s, last, frame);
+    carry_words(s, last, frame);
     const narc_pairs pairs = pairs_of(frame);
-    find_frame_manifolds(s, frame, &pairs, frame->hints);
+    find_frame_manifolds(s, frame, &pairs);
 }
 
 static void update_pairs(struct steps *s, const struct frame *frame) {
@@ -86,7 +86,7 @@ static void run_kept(struct steps *s, const struct frame *frame) {
     update_pairs(s, frame);
     if (!s->list->kept)
         fail("a body of a kept list has left its box");
-    find_frame_manifolds(s, frame, &s->list->pairs, s->frames[0].hints);
+    find_frame_manifolds(s, frame, &s->list->pairs);
 }
 
 static void run_contacts(struct steps *s, const struct frame *frame) {
@@ -110,7 +110,7 @@ static void run(struct row *row) {
         find_frame_pairs(s, frame);
         break;
     case STEP_MATCH:
-        carry_hints(s, last, frame);
+        carry_words(s, last, frame);
         break;
     case STEP_WHOLE:
         if (row->peer)
@@ -149,7 +149,7 @@ static void make_frame(struct frame *frame, struct scene *scene, size_t capacity
     frame->boxes = allocate(scene->body_count, sizeof *frame->boxes);
     frame->a = allocate(capacity, sizeof *frame->a);
     frame->b = allocate(capacity, sizeof *frame->b);
-    frame->hints = allocate(capacity, sizeof *frame->hints);
+    frame->words = allocate(capacity, sizeof *frame->words);
 }
 
 /* Steps that have pairs to find and contacts to make are outside the time. */
@@ -161,7 +161,7 @@ static void prepare_peer(struct row *row) {
     row->bench.hits = (double)peer->count_touching(row->peer_state) / (double)row->bench.count;
 }
 
-/* Both frames once, so that each has boxes, pairs and hints; checks those of the first. */
+/* Both frames once, so that each has boxes, pairs and words; checks those of the first. */
 static void prepare(struct row *row) {
     struct steps *s = row->state = allocate(1, sizeof *s);
     row->bench.count = row->scene->pair_count;

@@ -248,7 +248,6 @@ NOINLINE void list_wanted(narc_row_kernel *kernel, const narc_batch *batch, size
     size_t skipped = 0, more = 0;
     narc_query query = *batch->query;
     query.selection = (narc_index_column){wanted->pair, sizeof *wanted->pair};
-    query.hints = (narc_hint_column){0};
     narc_batch some = *batch;
     some.query = &query;
     const narc_rows apart = {all, (ptrdiff_t)row_size, &more, wanted->list};

@@ -241,10 +241,6 @@ template <class Items, class... Fields> auto column(const Items &items, Fields..
 template <class Items, class... Fields> narc_position_column positions(const Items &items, Fields... fields) {
     return make_positions(detail::field_of(data_of(items), fields...), sizeof *data_of(items));
 }
-// Written, too.
-template <class Items, class... Fields> narc_hint_column hints(Items &&items, Fields... fields) {
-    return make_hints(detail::field_of(data_of(items), fields...), sizeof *data_of(items));
-}
 
 // Bodies in a container; their `scale` may be set afterwards.
 template <class Items, class X, class Y, class Cosine, class Sine, class Shape>
@@ -372,7 +368,6 @@ struct query : detail::options<query, narc_query> {
     query &margins(narc_float_column value) noexcept { return set(&narc_query::margins, value); }
     query &second_margin(float value) noexcept { return set(&narc_query::second_margin, value); }
     query &flat_angle(float value) noexcept { return set(&narc_query::flat_angle, value); }
-    query &hints(narc_hint_column value) noexcept { return set(&narc_query::hints, value); }
     query &range(size_t from, size_t items) noexcept {
         return set(&narc_query::first, from).set(&narc_query::count, items);
     }

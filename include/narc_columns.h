@@ -13,8 +13,6 @@
  *     NARC_ARRAY(angles)               a plain array, or a pointer to its first item
  *     NARC_POSITION_COLUMN(body, x)    the same for positions, which may be float or double
  *     NARC_POSITION_ARRAY(px)
- *     NARC_HINT_COLUMN(cache, hint)    a column that is written, too
- *     NARC_HINT_ARRAY(hints)
  *
  * These are values: they initialise, are assigned and passed. Their type is that of the items, so that doubles where
  * floats are meant do not compile. With _INIT behind the name they are bare initialisers, for objects of static storage
@@ -50,12 +48,6 @@ typedef struct narc_byte_column {
     ptrdiff_t stride;
 } narc_byte_column;
 
-/* Written as well as read: see narc_query.hints. Items do not share memory. */
-typedef struct narc_hint_column {
-    uint32_t *base;
-    ptrdiff_t stride;
-} narc_hint_column;
-
 typedef struct narc_position_column {
     const void *base;
     ptrdiff_t stride;
@@ -68,9 +60,7 @@ typedef struct narc_position_column {
 #define NARC_ARRAY(array)         NARC_TYPED_COLUMN(&(array)[0], sizeof((array)[0]))
 #define NARC_POSITION_COLUMN(array, field)                                                                             \
     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0].field, sizeof((array)[0])))
-#define NARC_POSITION_ARRAY(array)     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0])))
-#define NARC_HINT_COLUMN(array, field) ((narc_hint_column)NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0])))
-#define NARC_HINT_ARRAY(array)         ((narc_hint_column)NARC_HINTS_AT(&(array)[0], sizeof((array)[0])))
+#define NARC_POSITION_ARRAY(array) ((narc_position_column)NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0])))
 
 #define NARC_COLUMN_INIT(array, field)                                                                                 \
     { NARC_TYPED_POINTER(&(array)[0].field), (ptrdiff_t)sizeof((array)[0]) }
@@ -78,13 +68,9 @@ typedef struct narc_position_column {
     { NARC_TYPED_POINTER(&(array)[0]), (ptrdiff_t)sizeof((array)[0]) }
 #define NARC_POSITION_COLUMN_INIT(array, field) NARC_POSITIONS_AT(&(array)[0].field, sizeof((array)[0]))
 #define NARC_POSITION_ARRAY_INIT(array)         NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0]))
-#define NARC_HINT_COLUMN_INIT(array, field)     NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0]))
-#define NARC_HINT_ARRAY_INIT(array)             NARC_HINTS_AT(&(array)[0], sizeof((array)[0]))
 
 /* What those above are made of. Each type of items has a pointer that may write and one that may not. */
 #define NARC_MADE_COLUMN(type, pointer, size) ((type){(const void *)(pointer), (ptrdiff_t)(size)})
-#define NARC_HINTS_AT(pointer, size)                                                                                   \
-    { _Generic((pointer), uint32_t * : (pointer)), (ptrdiff_t)(size) }
 /* clang-format off */
 #define NARC_TYPED_COLUMN(pointer, size)                                                                               \
     _Generic((pointer),                                                                                                \
@@ -116,15 +102,11 @@ typedef struct narc_position_column {
 #define NARC_ARRAY(array)                  narc::make_column(narc::data_of(array), sizeof *narc::data_of(array))
 #define NARC_POSITION_COLUMN(array, field) NARC_FIELD(narc::make_positions, array, field)
 #define NARC_POSITION_ARRAY(array)         narc::make_positions(narc::data_of(array), sizeof *narc::data_of(array))
-#define NARC_HINT_COLUMN(array, field)     NARC_FIELD(narc::make_hints, array, field)
-#define NARC_HINT_ARRAY(array)             narc::make_hints(narc::data_of(array), sizeof *narc::data_of(array))
 
 #define NARC_COLUMN_INIT          NARC_COLUMN
 #define NARC_ARRAY_INIT           NARC_ARRAY
 #define NARC_POSITION_COLUMN_INIT NARC_POSITION_COLUMN
 #define NARC_POSITION_ARRAY_INIT  NARC_POSITION_ARRAY
-#define NARC_HINT_COLUMN_INIT     NARC_HINT_COLUMN
-#define NARC_HINT_ARRAY_INIT      NARC_HINT_ARRAY
 
 #define NARC_FIELD(make, array, field)                                                                                 \
     make(narc::data_of(array) ? &narc::data_of(array)->field : nullptr, sizeof *narc::data_of(array))
@@ -156,8 +138,6 @@ constexpr narc_byte_column make_column(const uint8_t *base, size_t stride) {
 inline narc_byte_column make_column(const bool *base, size_t stride) {
     return {reinterpret_cast<const uint8_t *>(base), static_cast<ptrdiff_t>(stride)};
 }
-
-constexpr narc_hint_column make_hints(uint32_t *base, size_t stride) { return {base, static_cast<ptrdiff_t>(stride)}; }
 
 constexpr narc_position_column make_positions(const float *base, size_t stride) {
     return {base, static_cast<ptrdiff_t>(stride), NARC_FLOAT32};

@@ -121,20 +121,22 @@ typedef enum narc_outcome {
  *                 which is up to 2 * NARC_ERROR_BOUND * (D + E_a + E_b) (narc.h); for EPA the paper's termination
  *                 threshold. 0: NARC_DEFAULT_TOLERANCE
  *   iterations    gjk: most support points of each phase, GJK and EPA; 0, or more than that: NARC_MAX_ITERATIONS. A
- *                 search that a hint has led astray begins again without it
- *   out_outcomes  one narc_outcome for each pair, as hints are; or NULL */
+ *                 search that a cached simplex has led astray begins again without it
+ *   out_outcomes  one narc_outcome for each pair of the batch; or NULL
+ *   simplexes     gjk: a cache of one number for each pair of the batch, in and out, zeros at first: the simplex that a
+ *                 pair's search ended with, which the next one starts from (a warm start). Its answers differ from a cold
+ *                 start's, within the tolerance. Any value is safe. Pairs that are not asked of keep theirs, and other
+ *                 methods leave all alone; or NULL */
 typedef struct narc_method_options {
     narc_method method;
     float tolerance;
     unsigned iterations;
     uint8_t *out_outcomes;
-    void *reserved[4]; /* NULL */
+    uint32_t *simplexes;
+    void *reserved[3]; /* NULL */
 } narc_method_options;
 
 /* narc_find_overlaps() by a method of choice.
- *   query   as there. Hints: of gjk last call's simplex, to start from (a warm start), of overlaps too; answers then
- *           differ from a cold start's, within the tolerance. Any value is safe. Other methods leave them alone. A hint
- *           belongs to one method.
  * Further errors: NARC_ERROR_ARGUMENT (no such method, a negative tolerance, the store has changed, polygon-sat and a
  * pair whose shape is not a polygon: `error` names them), NARC_ERROR_NOT_FINITE (tolerance). */
 NARC_API narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies *bodies,
@@ -144,8 +146,7 @@ NARC_API narc_status narc_find_overlaps_by(const narc_methods *methods, const na
 /* narc_find_contacts() by a method of choice: the contacts of all pairs whose separation, as the method finds it, is
  * less than the margin. Features and radii are those of the arcs that the method ended at. Further errors as
  * narc_find_overlaps_by(), and NARC_ERROR_ARGUMENT for a method that answers overlaps only. With margin 0, a pair is
- * reported exactly if narc_find_overlaps_by() with the same options sets its bit; with hints, if both start from the
- * same. */
+ * reported exactly if narc_find_overlaps_by() with the same options, cached simplexes among them, sets its bit. */
 NARC_API narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies *bodies,
                                            const narc_pairs *pairs, const narc_method_options *options,
                                            const narc_query *query, narc_contact *out_rows, size_t capacity,

@@ -93,15 +93,9 @@ typedef struct narc_pairs {
  *                     meets its second point in time; 0: that of all
  *   flat_angle        manifolds: how far an edge's normal may be from the contact's for the edge to count as facing the
  *                     other body; 0: NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
- *   hints             all but overlaps: a column beside the pairs, in and out, zeros at first. Each pair leaves a
- *                     hint, unless it is far apart, that the next call starts from, faster where bodies have moved
- *                     little: shapes with arcs gain most, those with edges less, circles, two boxes, capsules or
- *                     sharp polygons of up to 8 corners nothing. What hints mean is the library's business. Any
- *                     value is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of
- *                     the answer. Untouched on an error other than NARC_ERROR_CAPACITY
  *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once, so no more than there
  *                     are pairs (NARC_ERROR_ARGUMENT); left out ({0}, base and stride): all. So what NARC_ARRAY() makes
- *                     of an empty container asks of none. Hints, margins, rows' numbers and dense rows stay those of the
+ *                     of an empty container asks of none. Margins, rows' numbers and dense rows stay those of the
  *                     whole batch; rows are listed in the order of the selection, and bit k of overlaps is that of pair
  *                     selection[k]
  *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
@@ -122,7 +116,6 @@ typedef struct narc_query {
     float flat_angle;
     uint32_t dense;
     narc_float_column margins;
-    narc_hint_column hints;
     narc_index_column selection;
     size_t selection_count;
     size_t first, count;
@@ -130,7 +123,7 @@ typedef struct narc_query {
     const narc_workers *workers;
     size_t *out_skipped;
     uint32_t front_only;
-    void *reserved[3]; /* NULL */
+    void *reserved[5]; /* NULL */
 } narc_query;
 
 /* ------------------------------------------------------------------------------------------------ rows */
@@ -155,7 +148,7 @@ typedef struct narc_query {
  * A concave arc of a chain (narc_chains.h) has its radius below 0, so that 1/radius_a + 1/radius_b is how much the
  * two outlines are curved against each other; the bottom of a valley has -0. With such an arc a pair has a contact
  * for each arc of the other body that touches: rows that follow each other, counter-clockwise by the outward normal
- * of the concave arc. Dense rows, and hints, know only the deepest, or nothing. Pairs with a piece have a row only
+ * of the concave arc. Dense rows know only the deepest, or nothing. Pairs with a piece have a row only
  * where they touch within the margin, also an infinite one. */
 typedef struct narc_contact {
     uint32_t pair;

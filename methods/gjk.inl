@@ -27,7 +27,7 @@
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/epa.inl"
-#include "methods/gjk_hints.inl"
+#include "methods/gjk_simplexes.inl"
 #include "methods/lanes.inl"
 #include "methods/method_kernels.h"
 #include "methods/outcomes.inl"
@@ -58,10 +58,10 @@ struct search {
 
 INLINE vm all_positive(vf a, vf b, vf c) { return v_lt(v_set(0), v_min(a, v_min(b, c))); }
 
-/* Where to look: along a hint's directions first, or else along the axis between the inscribed circles, and then where
+/* Where to look: along a cached simplex's directions first, or else along the axis between the inscribed circles, and then where
  * the search says. */
-INLINE vec2 choose_direction(const struct search *s, const struct lanes *lanes, vi hint, vi age) {
-    const vi length = hint_length(hint);
+INLINE vec2 choose_direction(const struct search *s, const struct lanes *lanes, vi simplex, vi age) {
+    const vi length = simplex_length(simplex);
     const vm fresh = vi_lt(age, vi_set(1));
     vec2 direction = v2_select(fresh, get_vec2(&lanes->pair, AXIS, 0), s->m);
     for (int point = 0; point < 3; point++) {
@@ -69,7 +69,7 @@ INLINE vec2 choose_direction(const struct search *s, const struct lanes *lanes, 
         const vm here = vm_and(at, vi_lt(vi_set(point), length));
         if (!vm_any(here))
             continue;
-        direction = v2_select(here, read_hint(hint, point), direction);
+        direction = v2_select(here, get_simplex_direction(simplex, point), direction);
     }
     return direction;
 }
@@ -102,7 +102,7 @@ INLINE vm take_nearest(struct search *s, const struct vertex *w, vf noise, vm op
     return vm_and_not(open, nearer);
 }
 
-/* A first point, or the second one of a hint's triangle. */
+/* A first point, or the second one of a cached triangle. */
 INLINE void take_point(struct search *s, const struct vertex *w, vm first, vm second) {
     s->p = select_vertex(first, w, &s->p);
     s->q = select_vertex(vm_or(first, second), w, &s->q);
@@ -133,22 +133,23 @@ INLINE vm is_around(const struct vertex *p, const struct vertex *q, const struct
 }
 
 /* One step in every lane. `enough`: a separation of that much need not be known better. */
-INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *lanes, struct search *s, vi hint,
+INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *lanes, struct search *s, vi simplex,
                                   vf enough) {
     const vf zero = v_set(0);
-    const vi age = vi_load(lanes->age), seeds = hint_length(hint);
+    const vi age = vi_load(lanes->age), seeds = simplex_length(simplex);
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
-    const vec2 direction = choose_direction(s, lanes, hint, age);
+    const vec2 direction = choose_direction(s, lanes, simplex, age);
     const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, direction);
-    const struct vertex w = {found.w, found.middle, batch->query->hints.base ? find_diamond_angle(found.m) : zero};
+    const struct vertex w = {found.w, found.middle,
+                             narc_call_of(batch)->simplexes ? find_diamond_angle(found.m) : zero};
 
-    /* What the step was for: a first point, a hint's second, a side of a segment through the origin, or the rule. */
+    /* What the step was for: a first point, a triangle's second, a side of a segment through the origin, or the rule. */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
     const vm looked = vm_and_not(vi_lt(vi_set(0), s->side), fresh);
     const vm rule = vm_and_not(busy, vm_or(looked, vm_or(fresh, second)));
 
     /* Known is the separation where the gap along m is as large as the distance of the point that m was the direction
-     * of: not where m was the axis or a hint's. */
+     * of: not where m was the axis or a cached simplex's. */
     const vf tolerance = v_max(v_mul(v_set(narc_call_of(batch)->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
     const vm reached = vm_and(v_le(zero, found.gap), v_le(v_sub(s->distance, found.gap), tolerance));
     const vm known = vm_and_not(reached, vm_or(fresh, seeded));
@@ -184,11 +185,11 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
 
 INLINE vm is_done(const struct verdict *v) { return vm_or(v->collides, vm_or(v->separate, v->limit)); }
 
-/* A search that rounding has ended may go better without the hint that it began with. */
-INLINE void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verdict) {
-    const vi old = vi_load(hint), none = vi_set(0);
-    const vm again = vm_and(verdict->stuck, vi_lt(none, hint_length(old)));
-    vi_store(hint, vi_select(again, none, old));
+/* A search that rounding has ended may go better without the simplex that it began with. */
+INLINE void begin_again(struct lanes *lanes, int32_t *simplex, struct verdict *verdict) {
+    const vi old = vi_load(simplex), none = vi_set(0);
+    const vm again = vm_and(verdict->stuck, vi_lt(none, simplex_length(old)));
+    vi_store(simplex, vi_select(again, none, old));
     vi_store(lanes->age, vi_select(again, none, vi_load(lanes->age)));
     verdict->separate = vm_and_not(verdict->separate, again);
     verdict->stuck = vm_and_not(verdict->stuck, again);
@@ -220,23 +221,23 @@ INLINE void search_all(const struct call *call, const struct queue *queue, int b
     const narc_batch *batch = call->batch;
     struct lanes lanes;
     struct search s;
-    int32_t hint[V_WIDTH] = {0};
+    int32_t simplex[V_WIDTH] = {0};
     memset(&s, 0, sizeof s);
     start_lanes(&lanes, begin);
     while (fill_lanes(&lanes, queue)) {
         struct verdict verdict;
-        read_simplexes(call, &lanes, hint);
+        read_simplexes(call, &lanes, simplex);
         do {
-            verdict = step_search(batch, &lanes, &s, vi_load(hint), get_margins(call, &lanes.pair, 0));
+            verdict = step_search(batch, &lanes, &s, vi_load(simplex), get_margins(call, &lanes.pair, 0));
             end_step(&lanes, is_done(&verdict));
             if (vm_any(verdict.stuck))
-                begin_again(&lanes, hint, &verdict);
+                begin_again(&lanes, simplex, &verdict);
         } while (!vm_any(is_done(&verdict)));
         note_outcome(call, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
         note_outcome(call, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
-        if (batch->query->hints.base) {
+        if (narc_call_of(batch)->simplexes) {
             const struct vertex *const corners[] = {&s.p, &s.q, &s.third};
-            leave_simplex(call, &lanes, corners, s.best.n, verdict.collides, is_done(&verdict));
+            leave_simplexes(call, &lanes, corners, s.best.n, verdict.collides, is_done(&verdict));
         }
         if (!found) {
             mark_overlaps(call, &lanes.pair, 0, verdict.collides);

@@ -24,6 +24,7 @@ typedef struct narc_method_call {
     narc_overlap_kernel *overlap;
     narc_row_kernel *contact; /* NULL: it has none */
     uint8_t *outcomes;        /* one for each pair, out; may be NULL. Kernels write those that did not end well */
+    uint32_t *simplexes;      /* of gjk, one for each pair, in and out; may be NULL */
     float tolerance;          /* of gjk, relative to the sum of both bounding radii */
     int iterations;           /* of gjk, 1 .. NARC_MAX_ITERATIONS */
 } narc_method_call;

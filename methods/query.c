@@ -122,6 +122,7 @@ static narc_status begin_call(const narc_methods *methods, const narc_bodies *bo
     out_call->overlap = kernels.overlap;
     out_call->contact = kernels.contact;
     out_call->outcomes = options->out_outcomes;
+    out_call->simplexes = options->simplexes;
     out_call->tolerance = options->tolerance > 0 ? options->tolerance : NARC_DEFAULT_TOLERANCE;
     out_call->iterations = iterations > 0 && iterations < NARC_MAX_ITERATIONS ? (int)iterations : NARC_MAX_ITERATIONS;
     return NARC_OK;

@@ -64,7 +64,6 @@ static void find_contacts(dem *d) {
     /* touch.h decides. Shifts are rounded: those of a sheared cell, and along plates, which may be long. */
     const double rounding = 2e-7 * (d->settings.sheared ? dem_cell_size(d).x : d->wall_count > 0 ? d->diagonal : 0);
     const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
-                              .hints = NARC_HINT_COLUMN(d->list.pairs, hint),
                               .workers = &d->workers,
                               .out_skipped = &skipped};
     narc_error error;

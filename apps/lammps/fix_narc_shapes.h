@@ -77,13 +77,12 @@ class FixNarcShapes : public Fix {
     size_t most_parts = 0;                /* of a form */
     PairNarc *pair = nullptr;             /* whose contacts are remembered; it registers itself */
 
-    /* The memory of a contact: between which parts, that of the grain with the lower ID first; the springs of the
-     * contact law; and where the next search begins. */
+    /* The memory of a contact: between which parts, that of the grain with the lower ID first; and the springs
+     * of the contact law. */
     struct Memory {
         tagint other;
         uint32_t parts[2];
         narc_lammps::Springs springs;
-        uint32_t hint;
     };
     /* Of local atoms, between the end of a neighbour list and the next; while a list lives the pair style has it. */
     std::vector<std::vector<Memory>> memories;

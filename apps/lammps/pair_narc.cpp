@@ -181,7 +181,6 @@ void PairNarc::build_pairs() {
     add_pairs(true);
     disc_pairs = first.size();
     add_pairs(false);
-    hints.assign(first.size(), 0);
     springs.assign(first.size(), {0, 0, 0});
     contacts.resize(first.size() - disc_pairs);
     const size_t local = static_cast<size_t>(atom->nlocal);
@@ -193,7 +192,6 @@ void PairNarc::build_pairs() {
                 kept.parts[1] != shapes->row_part(second[k]))
                 continue;
             springs[k] = kept.springs;
-            hints[k] = kept.hint;
             touching.push_back(static_cast<uint32_t>(k));
         }
     }
@@ -208,8 +206,7 @@ void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &me
         FixNarcShapes::Memory kept = {
             atom->tag[b],
             {static_cast<uint32_t>(shapes->row_part(first[k])), static_cast<uint32_t>(shapes->row_part(second[k]))},
-            springs[k],
-            hints[k]};
+            springs[k]};
         if (ghosts || a < local)
             memories[a].push_back(kept);
         kept.other = atom->tag[a];
@@ -234,7 +231,6 @@ void PairNarc::find_contacts() {
     size_t skipped = 0;
     narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
     query.margin = static_cast<float>(4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
-    query.hints = {&hints[disc_pairs], sizeof hints[0]};
     query.workers = &workers;
     query.out_skipped = &skipped;
     narc_error failure = {};

@@ -68,7 +68,7 @@ class PairNarc : public Pair {
      * ranks, nor do its bits. First come those of two discs, which need no search. */
     bool valid = false;
     size_t disc_pairs = 0;
-    std::vector<uint32_t> first, second, hints;
+    std::vector<uint32_t> first, second;
     std::vector<narc_lammps::Springs> springs;
     std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
     std::vector<uint32_t> before;       /* and in the one before it */

@@ -104,7 +104,7 @@ double value_at(const char *pattern, const char *column, const char *isa, size_t
 
 enum question { QUESTION_OVERLAP, QUESTION_CONTACT, QUESTIONS };
 
-/* Figures 4 and 5 on the best instruction set and on one lane, n = 8 on all; EPA by threshold; moving pairs, with hints and
+/* Figures 4 and 5 on the best instruction set and on one lane, n = 8 on all; EPA by threshold; moving pairs, from last frame's simplexes and
  * without. Then all are timed, one thread: repetition after repetition goes through all rows, each time in another random
  * order. Returns the wrong booleans of methods that must have none; prints how far repetitions differ. */
 void add_rows(const struct paper *paper, uint64_t *random);

@@ -15,7 +15,7 @@ dotted = 12
 set dashtype 11 (10, 6)
 set dashtype 12 (2, 5)
 array dashes[6] = [solid, solid, solid, solid, dashed, dashed] # by column
-array warm[5] = [solid, solid, dashed, solid, dashed]
+array warm[4] = [solid, solid, dashed, solid]
 
 # As a reader calls them.
 name_of(isa) = isa eq "avx512" ? "AVX-512" : isa eq "avx2" ? "AVX2" : isa eq "sse41" ? "SSE4.1" : isa eq "neon" ? "NEON" : "plain C"
@@ -104,7 +104,7 @@ do for [name in "overlap contact"] {
     set xrange [-0.5:6.5]
     set yrange [0:*]
     set key outside below center Left reverse samplen 6 maxcols 2
-    plot for [c = 2:(name eq "overlap" ? 4 : 5)] folder."/paper-warm-".name.".dat" using 0:c:xtic(1) \
+    plot for [c = 2:4] folder."/paper-warm-".name.".dat" using 0:c:xtic(1) \
         with linespoints title columnheader(c) lw 2 dt warm[c] pt 7 ps 0.6 \
         lc rgb (c < 4 ? colors[4] : colors[2])
 }

@@ -171,11 +171,8 @@ static void add_moving(const struct paper *paper, size_t size, const char *motio
     static const struct start {
         const char *name;
         narc_method method;
-        bool hints;
-    } starts[] = {{"cold", NARC_METHOD_GJK, false},
-                  {"warm", NARC_METHOD_GJK, true},
-                  {"sat", NARC_METHOD_SAT, false},
-                  {"hinted", NARC_METHOD_SAT, true}};
+        bool warm;
+    } starts[] = {{"cold", NARC_METHOD_GJK, false}, {"warm", NARC_METHOD_GJK, true}, {"sat", NARC_METHOD_SAT, false}};
     const struct shapes *arcs = &paper->templates[size].kinds[KIND_ARC];
     const size_t pair_count = paper->settings.pair_count / 2;
     struct body *frames[FRAMES];
@@ -198,8 +195,8 @@ static void add_moving(const struct paper *paper, size_t size, const char *motio
                                   .isa = isa ? "scalar" : paper->best,
                                   .claim = -1};
                 memcpy(row.frames, frames, sizeof frames);
-                if (starts[s].hints)
-                    row.query.hints = NARC_HINT_ARRAY((uint32_t *)allocate(pair_count, sizeof(uint32_t)));
+                if (starts[s].warm)
+                    row.options.simplexes = allocate(pair_count, sizeof(uint32_t));
                 snprintf(row.name, sizeof row.name, "moving/%s/%s/%s/%s/%zu", question ? "contact" : "overlap",
                          starts[s].name, motion, row.isa, paper->settings.sizes[size]);
                 add_row(row);

@@ -54,8 +54,7 @@ static const struct grid others[] = {
     {"Moving pairs, n = 8, by the motion in a frame, in parts of the size and in radians", "µs for 1,000 checks",
      motions, MOTIONS,
      MOVING("COL/ISA/8") ";overlap, exact SAT = moving/overlap/sat/COL/ISA/8;"
-                         "contact, exact SAT = moving/contact/sat/COL/ISA/8; the same with hints = "
-                         "moving/contact/hinted/COL/ISA/8",
+                         "contact, exact SAT = moving/contact/sat/COL/ISA/8",
      "time"},
     {"Moving pairs, motion 0.01", "µs for 1,000 checks", NULL, 0, MOVING("0.01/ISA/N"), "time"},
     {"Bytes of a shape, single precision", "", NULL, 0,
@@ -220,7 +219,7 @@ void write_plots(const struct paper *paper) {
                   "exact SAT = moving/overlap/sat/COL/ISA/8");
     write_columns(paper, "paper-warm-contact.dat", paper->best, motions, MOTIONS,
                   "GJK, cold = moving/contact/cold/COL/ISA/8; GJK, warm = moving/contact/warm/COL/ISA/8;"
-                  "exact SAT = moving/contact/sat/COL/ISA/8; exact SAT with hints = moving/contact/hinted/COL/ISA/8");
+                  "exact SAT = moving/contact/sat/COL/ISA/8");
     for (int what = 0; what < 3; what++) {
         char list[1024] = "";
         for (enum kind kind = 0; kind < KINDS; kind++)

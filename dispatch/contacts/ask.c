@@ -174,7 +174,6 @@ static size_t ask_slots(slot_job *job, const uint32_t *list, size_t count, uint3
     size_t found, keep_count;
     query.dense = 1;
     query.row_stride = (ptrdiff_t)c->row_stride;
-    query.hints = (narc_hint_column){c->hints, sizeof *c->hints};
     if (!fill_batch(job, &query, &batch) || answer(s, &batch, c->rows, c->slot_capacity, &found) != NARC_OK)
         return 0;
     const size_t left = note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN, again, keep, &keep_count);

@@ -75,7 +75,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 38 };
+enum { NARC_ARRAYS = 37 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -98,10 +98,10 @@ struct narc_contacts {
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
-    uint32_t *hints, *free, *parted; /* `free`, `parted`: lists of slots */
-    float *margins;                  /* that it was asked with */
-    void *own_rows, *user;           /* own_rows: NULL if rows lie in `user` */
-    void *rows;                      /* where they lie, `row_stride` bytes each */
+    uint32_t *free, *parted; /* `free`, `parted`: lists of slots */
+    float *margins;          /* that it was asked with */
+    void *own_rows, *user;   /* own_rows: NULL if rows lie in `user` */
+    void *rows;              /* where they lie, `row_stride` bytes each */
     narc_kept_row *kept;
     narc_entry *entries;
     narc_entry_ends *ends; /* of manifolds */

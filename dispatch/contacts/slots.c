@@ -61,7 +61,6 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_SLOTS, c->b, sizeof *c->b, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->state, 1, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->flags, 1, &c->slot_count),
-                                 ARRAY(NARC_OF_SLOTS, c->hints, sizeof *c->hints, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->margins, sizeof *c->margins, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->own_rows, row_size, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->user, c->user_size, &c->slot_count),
@@ -145,7 +144,6 @@ static uint32_t open_slot(narc_contacts *c) {
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
     narc_zero_row(c, slot);
-    c->hints[slot] = 0;
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;
     c->state[slot] = 0;
@@ -169,7 +167,6 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
         if (list->marks[k] & NARC_FLIPPED) {
             c->flags[slot] |= NARC_SLOT_STALE;
             c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
-            c->hints[slot] = 0;
             narc_mark_slot(c, slot, NARC_TURNED);
         }
     }

@@ -36,10 +36,10 @@ struct question {
     box_stage *boxes, *capsules;
 };
 
-/* What finds their answers (sat/search.c): the stages but for those that write rows, the first of calls with hints, and what
- * answers pairs with a concave arc that wait. */
+/* What finds their answers (sat/search.c): the stages but for those that write rows, and what answers pairs with a concave
+ * arc that wait. */
 struct row_search {
-    stage *stages[STAGES], *hinted;
+    stage *stages[STAGES];
     void (*concave)(const struct call *call);
 };
 

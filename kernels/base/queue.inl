@@ -72,7 +72,6 @@ enum { QUEUE_FIELDS = FIELDS };
 struct queue {
     _Alignas(64) float item[QUEUE_FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
     int32_t *record_a, *record_b;                    /* the arcs that a stage found: push() leaves them out */
-    int32_t *hinted;                                 /* 1 where a hint named these arcs */
     int count;
     int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
     bool whole;            /* first stage of overlaps: are whole arcs worth their price? */
@@ -80,7 +79,7 @@ struct queue {
 
 /* Where a stage keeps what it finds. Queues whose stages take turns share one. */
 struct found_arcs {
-    int32_t record_a[CAPACITY], record_b[CAPACITY], hinted[CAPACITY];
+    int32_t record_a[CAPACITY], record_b[CAPACITY];
 };
 
 /* An empty queue. */
@@ -90,7 +89,6 @@ INLINE void start_queue(struct queue *queue, struct found_arcs *arcs) {
     queue->whole = false;
     queue->record_a = arcs->record_a;
     queue->record_b = arcs->record_b;
-    queue->hinted = arcs->hinted;
 }
 
 INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }

@@ -179,8 +179,6 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
         item[BOX_PAIR] = v_of_bits(pairs);
         push_boxes(queue, near, item);
-        if (call->rows && call->batch->query->hints.base)
-            put_hints(call, pairs, near, vi_set(FIRST_ARCS));
     }
     return taken;
 }

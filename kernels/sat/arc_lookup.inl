@@ -7,7 +7,6 @@
 #ifndef NARC_SAT_ARC_LOOKUP_INL
 #define NARC_SAT_ARC_LOOKUP_INL
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/queue.inl"
@@ -58,19 +57,11 @@ INLINE void find_arcs(const narc_record *records, const struct queue *queue, int
     *out_b = find_arc(records, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k), n_b);
 }
 
-/* Finds the arcs that hold DIRECTION for the pairs `begin` ... of a queue. With `hints`, lanes that have one keep the
- * arcs that it names. */
-INLINE void look_up_arcs(const narc_record *records, struct queue *queue, int begin, bool hints) {
+/* Finds the arcs that hold DIRECTION for the pairs `begin` ... of a queue. */
+INLINE void look_up_arcs(const narc_record *records, struct queue *queue, int begin) {
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm hinted = hints ? vi_lt(vi_set(0), vi_load(queue->hinted + k)) : vm_front(0);
-        if (hints && vm_bits(hinted) == vm_bits(vm_front(V_WIDTH)))
-            continue;
         vi a, b;
         find_arcs(records, queue, k, get_vec2(queue, DIRECTION, k), &a, &b);
-        if (hints) {
-            a = vi_select(hinted, vi_load(queue->record_a + k), a);
-            b = vi_select(hinted, vi_load(queue->record_b + k), b);
-        }
         vi_store(queue->record_a + k, a);
         vi_store(queue->record_b + k, b);
     }

@@ -30,7 +30,7 @@
  * those in the other lanes, done? */
 INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf item[FIELDS], bool in_order) {
     const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
-    const vm answered = vm_and(open, vm_or(p.far, p.only)), left = vm_and_not(open, answered);
+    const vm left = vm_and_not(open, vm_or(p.far, p.only));
     const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
     const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
     const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
@@ -51,8 +51,6 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
         find_places(call, pairs, found, place);
         write_rows(call, place, find_numbers(call, pairs), &answer);
     }
-    if (call->batch->query->hints.base)
-        put_hints(call, pairs, answered, vi_set(FIRST_ARCS));
     return left;
 }
 
@@ -97,22 +95,18 @@ static void answer_rows_of_capsules(const struct call *call, const struct box_qu
 NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, struct queue *concave) {
     const struct row_search *const search = &NARC_NAMED(search);
     const struct question *const question = given->question;
-    const bool hinted = given->batch->query->hints.base != NULL, second = question->edges != NULL;
-    stage *const stages[STAGES] = {hinted ? search->hinted : search->stages[PROBE],
-                                   search->stages[PROBE_AGAIN],
-                                   search->stages[CLIMB],
-                                   second           ? question->polygons
-                                   : NARC_SHORTCUTS ? answer_rows_of_polygons
-                                                    : NULL,
-                                   search->stages[DECIDE],
-                                   answer_rows,
-                                   question->edges};
+    const bool second = question->edges != NULL;
+    stage *const stages[STAGES] = {
+        search->stages[PROBE],  search->stages[PROBE_AGAIN],
+        search->stages[CLIMB],  second ? question->polygons : NARC_SHORTCUTS ? answer_rows_of_polygons : NULL,
+        search->stages[DECIDE], answer_rows,
+        question->edges};
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
-                                  .edged = NARC_SHORTCUTS && !hinted ? CLIMB : 0,
+                                  .edged = NARC_SHORTCUTS ? CLIMB : 0,
                                   .end = end};
     struct box_queue boxes[BOX_QUEUES];
     struct call call = *given;

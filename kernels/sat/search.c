@@ -3,8 +3,8 @@
  * search.c - the search of all questions that have rows: with which arcs two bodies touch, and along which normal.
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
- * to the last bit: a probe along the axis (or of the arcs of the last call), another along u, a climb to a local
- * maximum, a walk past the two junctions beside it, and the formula itself. The normal n and the arcs are those of the
+ * to the last bit: a probe along the axis, another along u, a climb to a local maximum, a walk past the two
+ * junctions beside it, and the formula itself. The normal n and the arcs are those of the
  * highest local maximum of the gap. Polygons of few corners go from the first probe to a stage that has the gap at all
  * junctions. What is certain goes to the last stage, which is the question's.
  */
@@ -29,14 +29,12 @@
 #include "simd/simd.h"
 
 INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live, enum probing how) {
+    (void)how;
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
     const vf limit = v_add(margin, find_lookup_slack(queue, k));
-    vm apart = vm_or(p.far, is_above(p.u, p.radii, get_vec2(queue, DIRECTION, k), limit));
-    if (how == OF_HINTS) /* a hint's arcs may not hold DIRECTION */
-        apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(queue->hinted + k)), p.far));
+    const vm apart = vm_or(p.far, is_above(p.u, p.radii, get_vec2(queue, DIRECTION, k), limit));
     const vm certain = vm_and_not(p.only, apart);
-    store_hints(call, queue, k, vm_or(p.far, p.only), vi_load(queue->record_a + k), vi_load(queue->record_b + k));
     return (struct verdict){p.u, p.length, p.separation, vm_or(apart, certain),
                             vm_and(certain, is_below(p.separation, margin))};
 }
@@ -74,27 +72,6 @@ static void climb_rows(const struct call *call, struct queue *queues, int begin)
     climb_from(&rows, call, queues, begin);
 }
 
-/* First stage with hints: probes the arcs of the last call, and the next stage probes along u. Where there are edges,
- * climbs from those arcs. A maximum that is not certain would mostly be found again from the axis: it is left to the
- * formula; those that lost their way begin anew. */
-static void start_from_hints(const struct call *call, struct queue *queues, int begin) {
-    struct queue *const queue = &queues[PROBE];
-    read_hints(call, queue, begin);
-    look_up_arcs(call->batch->shapes->records, queue, begin, true);
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
-        const vm round = vm_and(live, smooth), edged = vm_and_not(live, smooth);
-        if (vm_any(round))
-            pass_on(queue, k, probe(&rows, call, queues, queue, k, round, OF_HINTS), ROW_FIELDS, &queues[PROBE_AGAIN]);
-        if (vm_any(edged)) {
-            vm lost;
-            const vm left = climb_to(&rows, call, queues, queue, k, edged, &lost);
-            pass_on(queue, k, vm_and(left, lost), ROW_FIELDS, &queues[CLIMB]);
-            pass_on(queue, k, vm_and_not(left, lost), ROW_FIELDS, &queues[DECIDE]);
-        }
-    }
-}
-
 /* Polygons: the gap at all junctions. Those pairs for which one exceeds all others take the places of the queue's last
  * ones, from `begin` on: they are the question's. */
 static void compare_edges(const struct call *call, struct queue *queues, int begin) {
@@ -106,8 +83,6 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
         const vf slack = get(queue, SLACK, k), limit = v_add(get_margins(call, queue, k), v_mul(v_set(2), slack));
         const struct polygon_edge found = find_polygon_edge(call->batch->shapes->records, queue, k);
         const struct best_edge *best = &found.best;
-        if (call->batch->query->hints.base)
-            put_hints(call, get_bits(queue, PAIR, k), live, vi_set(FIRST_ARCS));
         const vm near = vm_and_not(live, v_lt(limit, best->gap));
         if (!vm_any(near))
             continue;
@@ -141,7 +116,6 @@ static void decide(const struct call *call, struct queue *queues, int begin) {
         const vm live = vm_front(queue->count - k);
         struct gap gap;
         decide_gap(call->batch->shapes, queue, k, live, &gap);
-        store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm wanted = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
         if (vm_any(wanted))
             settle(call, queues, queue, k, wanted, gap.separation, find_normal(call, queue, k, wanted, &gap),
@@ -153,6 +127,5 @@ static void decide(const struct call *call, struct queue *queues, int begin) {
 const struct row_search NARC_NAMED(search) = {
     .stages = {NARC_SHORTCUTS ? probe_rows : NULL, NARC_SHORTCUTS ? probe_rows_again : NULL,
                NARC_SHORTCUTS ? climb_rows : NULL, NARC_SHORTCUTS ? compare_edges : NULL, decide},
-    .hinted = NARC_SHORTCUTS ? start_from_hints : NULL,
     .concave = NARC_PIECES ? answer_concave : NULL,
 };

@@ -148,8 +148,8 @@ INLINE void keep_maximum(struct local_maximum *maximum, const struct arc_pair *a
  * u from the centre of A's arc to that of B's (normal_fan.inl). If u lies in it, that is the maximum. Else the gap
  * rises beyond hi, or beyond lo, and the search crosses that junction; if it would go back over the junction that it
  * has just crossed, that junction is the maximum. Where it would go back over the other shape's, both junctions lie side
- * by side: the search ends there, `turned`. Where the sectors have no common part (a hint that is stale) steps
- * lead anywhere: whoever uses the result checks that the arcs hold its direction. */
+ * by side: the search ends there, `turned`. Where the sectors have no common part (arcs are looked up to some
+ * digits) steps lead anywhere: whoever uses the result checks that the arcs hold its direction. */
 INLINE struct local_maximum climb(const narc_record *records, const struct queue *queue, int k, vm live) {
     const struct pose pose = get_pose(queue, k);
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * stages.inl - the search for the highest local maximum of the gap (search.inl), stage by stage: a probe along the axis
- * between the inscribed circles, or of the arcs of a hint; another along u; a climb. How a probe is judged, and what
- * becomes of what is certain, is not theirs: rows (search.c) want all of a contact, overlaps (overlap.c) a sign.
+ * between the inscribed circles, another along u, a climb. How a probe is judged, and what becomes of what is certain, is
+ * not theirs: rows (search.c) want all of a contact, overlaps (overlap.c) a sign.
  */
 #ifndef NARC_SAT_STAGES_INL
 #define NARC_SAT_STAGES_INL
@@ -28,12 +28,12 @@ struct verdict {
     vm wanted;  /* and it is to be told */
 };
 
-enum probing { ALONG_AXIS, OF_HINTS, ALONG_U };
+enum probing { ALONG_AXIS, ALONG_U };
 
 /* How a search ends: constants. */
 struct search {
     int fields; /* what a pair needs in the queues */
-    bool rows;  /* are there margins and hints? */
+    bool rows;  /* are there margins? */
     struct verdict (*judge)(const struct call *call, struct queue *queue, int k, vm live, enum probing how);
     /* Pairs k ... of a queue in the lanes `which` touch along n, with the arcs in these records. */
     void (*settle)(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
@@ -55,22 +55,19 @@ INLINE vm probe(const struct search *search, const struct call *call, struct que
 }
 
 /* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
- * without an answer. In *out_lost, those that are not even near a local maximum; DIRECTION leads to the others'. */
+ * without an answer. Where it came near a local maximum, that one's becomes the DIRECTION of rows. */
 INLINE vm climb_to(const struct search *search, const struct call *call, struct queue *queues, struct queue *queue,
-                   int k, vm live, vm *out_lost) {
+                   int k, vm live) {
     const vf margin = search->rows ? get_margins(call, queue, k) : v_set(0);
     const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
     const struct local_maximum *m = &top.maximum;
-    if (search->rows)
-        store_hints(call, queue, k, vm_or(top.apart, top.certain), m->record_a, m->record_b);
     const vm wanted =
         vm_and(top.certain, search->rows ? is_below(top.separation, margin) : v_lt(top.separation, margin));
     if (vm_any(wanted))
         search->settle(call, queues, queue, k, wanted, top.separation, top.normal, m->record_a, m->record_b);
-    const vm near = vm_or(m->found, m->turned);
-    *out_lost = vm_and_not(live, near);
     if (search->rows)
-        store_vec2(queue, DIRECTION, k, v2_select(near, m->direction, get_vec2(queue, DIRECTION, k)));
+        store_vec2(queue, DIRECTION, k,
+                   v2_select(vm_or(m->found, m->turned), m->direction, get_vec2(queue, DIRECTION, k)));
     return vm_and_not(live, vm_or(top.apart, top.certain));
 }
 
@@ -78,7 +75,7 @@ INLINE vm climb_to(const struct search *search, const struct call *call, struct 
  * other pairs go to the climb, which begins along the axis again. */
 INLINE void probe_axis(const struct search *search, const struct call *call, struct queue *queues, int begin) {
     struct queue *const queue = &queues[PROBE];
-    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    look_up_arcs(call->batch->shapes->records, queue, begin);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         const vm left = probe(search, call, queues, queue, k, live, ALONG_AXIS);
@@ -95,7 +92,7 @@ INLINE void probe_axis(const struct search *search, const struct call *call, str
 /* Probes along DIRECTION. */
 INLINE void probe_again(const struct search *search, const struct call *call, struct queue *queues, int begin) {
     struct queue *const queue = &queues[PROBE_AGAIN];
-    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    look_up_arcs(call->batch->shapes->records, queue, begin);
     for (int k = begin; k < queue->count; k += V_WIDTH)
         pass_on(queue, k, probe(search, call, queues, queue, k, vm_front(queue->count - k), ALONG_U), search->fields,
                 &queues[CLIMB]);
@@ -104,10 +101,9 @@ INLINE void probe_again(const struct search *search, const struct call *call, st
 /* Climbs from the arcs that hold DIRECTION. */
 INLINE void climb_from(const struct search *search, const struct call *call, struct queue *queues, int begin) {
     struct queue *const queue = &queues[CLIMB];
-    look_up_arcs(call->batch->shapes->records, queue, begin, false);
-    vm lost;
+    look_up_arcs(call->batch->shapes->records, queue, begin);
     for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, climb_to(search, call, queues, queue, k, vm_front(queue->count - k), &lost), search->fields,
+        pass_on(queue, k, climb_to(search, call, queues, queue, k, vm_front(queue->count - k)), search->fields,
                 &queues[DECIDE]);
 }
 

@@ -44,9 +44,8 @@ typedef struct narc_casts {
                                          CAST_DIRECT: it went too far once, and tries no more */
             float rounds[CAST_SLOTS];      /* contacts so far */
             uint32_t pair[CAST_SLOTS], body[CAST_SLOTS]; /* its number, and that of B */
-            uint32_t hint[CAST_SLOTS];
         };
-        float single[21][CAST_SLOTS];
+        float single[20][CAST_SLOTS];
     };
     union {
         struct {

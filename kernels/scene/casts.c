@@ -256,7 +256,6 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     v_store(casts->rounds + to, v_set(0));
     memcpy(casts->pair + to, number, V_WIDTH * sizeof(int32_t));
     memcpy(casts->body + to, body[1], V_WIDTH * sizeof(int32_t));
-    memset(casts->hint + to, 0, V_WIDTH * sizeof(int32_t));
 }
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape
@@ -505,7 +504,7 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
     casts.front_only = given->front_only;
     const narc_bodies a = view_side(&casts, 0, zeros, zeros), b = view_side(&casts, 1, casts.x_now, casts.y_now);
     const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &b};
-    const narc_query query = {.margin = INFINITY, .hints = {casts.hint, sizeof casts.hint[0]}};
+    const narc_query query = {.margin = INFINITY};
     const narc_batch contacts = {.shapes = batch->shapes,
                                  .a = &a,
                                  .b = &b,

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
  * gjk.c - gjk for all kinds of shapes in all kinds of places: what it promises, with any tolerance, any
- * number of iterations, and any hints.
+ * number of iterations, and from any cached simplexes.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "guard.h"
 #include "method_support.h"
 
 static struct corpus corpora[3]; /* both precisions, and polygons */
@@ -84,14 +85,12 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
     return NULL;
 }
 
-/* All contacts of a corpus. Outcomes must be wanted. `hints` may be NULL. */
-static struct counts check_contacts(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                    const char *name) {
+/* All contacts of a corpus. Outcomes must be wanted. */
+static struct counts check_contacts(const struct corpus *corpus, const narc_method_options *options, const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
-    struct contacts all =
-        query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY, .hints = hint_column(hints)});
+    struct contacts all = query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY});
     assert_int_equal(all.count, count);
     for (size_t k = 0; k < count; k++) {
         const unsigned outcome = options->out_outcomes[k];
@@ -116,7 +115,7 @@ TEST(test_tolerances) {
             const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
-            const struct counts counts = check_contacts(&corpora[c], &options, NULL, name);
+            const struct counts counts = check_contacts(&corpora[c], &options, name);
             print_counts(name, &counts);
             wrong += counts.wrong;
             free(outcomes);
@@ -125,8 +124,7 @@ TEST(test_tolerances) {
     assert_int_equal(wrong, 0);
 }
 
-typedef struct counts check_corpus(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                   const char *name);
+typedef struct counts check_corpus(const struct corpus *corpus, const narc_method_options *options, const char *name);
 
 /* How many pairs of all corpora run out of iterations; none is wrong. */
 static size_t count_all_limits(check_corpus *check, const char *what, unsigned iterations) {
@@ -137,7 +135,7 @@ static size_t count_all_limits(check_corpus *check, const char *what, unsigned i
         const narc_method_options options = {
             .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
         snprintf(name, sizeof name, "%s, iterations %u, scene %d", what, iterations, c);
-        const struct counts counts = check(&corpora[c], &options, NULL, name);
+        const struct counts counts = check(&corpora[c], &options, name);
         print_counts(name, &counts);
         assert_int_equal(counts.wrong, 0);
         limits += counts.outcomes[NARC_OUTCOME_LIMIT];
@@ -209,12 +207,11 @@ TEST(test_margins) {
 /* ------------------------------------------------------------------------------------------------ overlaps */
 
 /* Bits and outcomes of a corpus. With a limit on iterations an answer may be missing, and then says so. */
-static struct counts check_overlaps(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
-                                    const char *name) {
+static struct counts check_overlaps(const struct corpus *corpus, const narc_method_options *options, const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
-    uint64_t *bits = query_overlaps(&corpus->scene, options, &(narc_query){.hints = hint_column(hints)});
+    uint64_t *bits = query_overlaps(&corpus->scene, options, NULL);
     for (size_t k = 0; k < count; k++) {
         const struct exact_pair *pair = &corpus->pairs[k];
         const unsigned outcome = options->out_outcomes[k];
@@ -226,7 +223,7 @@ static struct counts check_overlaps(const struct corpus *corpus, const narc_meth
             wrong = "iterations ran out, but it collides";
         else if (outcome == NARC_OUTCOME_LIMIT && options->iterations == 0)
             wrong = "iterations ran out";
-        else if (outcome == NARC_OUTCOME_ROUNDING && !hints && fabs(pair->gap) > pair->bound)
+        else if (outcome == NARC_OUTCOME_ROUNDING && !options->simplexes && fabs(pair->gap) > pair->bound)
             wrong = "rounding ended the search";
         else if (fabs(pair->gap) > pair->bound && bit_is_set(bits, k) != (pair->gap < 0) &&
                  (outcome == NARC_OUTCOME_DONE || bit_is_set(bits, k)))
@@ -248,24 +245,30 @@ TEST(test_overlaps) {
     assert_true(limits > 0);
 }
 
-/* ------------------------------------------------------------------------------------------------ hints */
+/* ------------------------------------------------------------------------------------------------ warm starts */
 
-/* Overlaps and contacts with these hints, and what those calls leave of them. */
-static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, const char *what) {
-    const size_t count = corpus->scene.pair_count;
+static uint32_t *create_simplexes(size_t count) {
+    uint32_t *const simplexes = calloc(count, sizeof *simplexes);
+    assert_non_null(simplexes);
+    return simplexes;
+}
+
+/* Overlaps and contacts from these simplexes, and from what those calls leave of them. */
+static size_t check_warm_starts(const struct corpus *corpus, uint32_t *simplexes, const char *what) {
+    const size_t count = corpus->scene.pair_count, size = count * sizeof *simplexes;
     uint8_t *outcomes = make_junk(count);
-    uint32_t *of_overlaps = create_hints(count);
-    memcpy(of_overlaps, hints, count * sizeof *hints);
-    const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
+    uint32_t *of_overlaps = memcpy(create_simplexes(count), simplexes, size);
+    narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes, .simplexes = of_overlaps};
     size_t wrong = 0;
     for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
-        const struct counts counts = check_overlaps(corpus, &options, of_overlaps, what);
+        const struct counts counts = check_overlaps(corpus, &options, what);
         wrong += counts.wrong;
-        /* Rounding may leave a search with useless hints no way on; hardly ever. */
+        /* Rounding may leave a search from a useless simplex no way on; hardly ever. */
         assert_true(counts.outcomes[NARC_OUTCOME_ROUNDING] <= count / 1000);
     }
+    options.simplexes = simplexes;
     for (int again = 0; again < 2; again++) {
-        const struct counts counts = check_contacts(corpus, &options, hints, what);
+        const struct counts counts = check_contacts(corpus, &options, what);
         print_counts(what, &counts);
         wrong += counts.wrong;
     }
@@ -274,59 +277,60 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
     return wrong;
 }
 
-static size_t count_limits(const struct corpus *corpus, unsigned iterations, uint32_t *hints) {
+static size_t count_limits(const struct corpus *corpus, unsigned iterations, uint32_t *simplexes) {
     const size_t count = corpus->scene.pair_count;
     uint8_t *outcomes = make_junk(count);
     size_t limits = 0;
-    const narc_method_options options = {.method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
-    free(query_overlaps(&corpus->scene, &options, &(narc_query){.hints = hint_column(hints)}));
+    const narc_method_options options = {
+        .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes, .simplexes = simplexes};
+    free(query_overlaps(&corpus->scene, &options, NULL));
     for (size_t k = 0; k < count; k++)
         limits += outcomes[k] == NARC_OUTCOME_LIMIT;
     free(outcomes);
     return limits;
 }
 
-/* What hints are for: where nothing has moved, of the pairs for which some steps are too few, most need no more
- * of them with hints. */
+/* What warm starts are for: where nothing has moved, of the pairs for which some steps are too few, most need no more of
+ * them. */
 TEST(test_warm_start) {
     for (int c = 0; c < CORPORA; c++) {
-        uint32_t *hints = create_hints(corpora[c].scene.pair_count);
+        uint32_t *simplexes = create_simplexes(corpora[c].scene.pair_count);
         const size_t cold = count_limits(&corpora[c], 3, NULL);
-        assert_int_equal(count_limits(&corpora[c], 0, hints), 0);
-        const size_t warm = count_limits(&corpora[c], 3, hints);
-        printf("  three steps are too few for %zu pairs, with hints for %zu\n", cold, warm);
+        assert_int_equal(count_limits(&corpora[c], 0, simplexes), 0);
+        const size_t warm = count_limits(&corpora[c], 3, simplexes);
+        printf("  three steps are too few for %zu pairs, of a warm start for %zu\n", cold, warm);
         assert_true(warm < cold / 2 || cold < 100); /* of fewer pairs it is chance */
-        free(hints);
+        free(simplexes);
     }
 }
 
-/* Hints of a scene in motion. */
+/* Simplexes of a scene in motion. */
 TEST(test_frames) {
     struct test_random random = test_random_named("gjk frames");
     struct corpus corpus = make_corpus("gjk frames", NARC_FLOAT64, 0.3, false);
     solve_corpus(&corpus);
     const size_t count = corpus.scene.pair_count;
-    uint32_t *hints = create_hints(count), *zeros = create_hints(count);
-    size_t wrong = check_with_hints(&corpus, hints, "zeros, then own");
-    assert_true(memcmp(hints, zeros, count * sizeof *hints) != 0);
+    uint32_t *simplexes = create_simplexes(count);
+    size_t wrong = check_warm_starts(&corpus, simplexes, "zeros, then own");
+    for (size_t k = 0; k < count; k++)
+        assert_true(simplexes[k] != 0);
     static const double steps[] = {1e-6, 0.01, 0.1, 3};
     for (size_t s = 0; s < sizeof steps / sizeof *steps; s++) {
         scene_move_bodies(&corpus.scene, &random, steps[s]);
         solve_corpus(&corpus);
-        wrong += check_with_hints(&corpus, hints, "after a step");
+        wrong += check_warm_starts(&corpus, simplexes, "after a step");
     }
-    free(hints);
-    free(zeros);
+    free(simplexes);
     destroy_corpus(&corpus);
     assert_int_equal(wrong, 0);
 }
 
-TEST(test_garbage_hints) {
+TEST(test_any_simplexes) {
     struct test_random random = test_random_named("gjk garbage");
     size_t wrong = 0;
     for (int c = 0; c < CORPORA; c++) {
         const size_t count = corpora[c].scene.pair_count;
-        uint32_t *hints = create_hints(count);
+        uint32_t *simplexes = create_simplexes(count);
         for (int kind = 0; kind < 6; kind++) {
             static const char *const names[] = {"random bits", "all ones",       "single bits",
                                                 "random axes", "random triples", "three times the same"};
@@ -338,13 +342,70 @@ TEST(test_garbage_hints) {
                                            (bits & ~3u) | 1,
                                            bits | 3,
                                            (ten | ten << 10 | ten << 20) << 2 | 3};
-                hints[k] = values[kind];
+                simplexes[k] = values[kind];
             }
-            wrong += check_with_hints(&corpora[c], hints, names[kind]);
+            wrong += check_warm_starts(&corpora[c], simplexes, names[kind]);
         }
-        free(hints);
+        free(simplexes);
     }
     assert_int_equal(wrong, 0);
+}
+
+/* What is left behind is the same on every instruction set and with any number of threads, between forbidden pages. Pairs
+ * that are not asked of, and a call that is refused, leave what is there; so does another method. */
+TEST(test_simplexes_of_a_batch) {
+    struct test_random random = test_random_named("gjk simplexes");
+    const struct scene *const scene = &corpora[0].scene;
+    const size_t count = scene->pair_count, first = 64, size = count * sizeof(uint32_t);
+    const narc_workers three = narc_openmp_workers(3);
+    uint32_t *const right = create_simplexes(count), *const start = create_simplexes(count),
+                    *selection = make_junk(size);
+    for (uint32_t k = 0; k < count; k++) {
+        start[k] = random_below(&random, 4) ? (uint32_t)random_bits(&random) : 0;
+        selection[k] = (uint32_t)count - 1 - k;
+    }
+    for (int contacts = 0; contacts < 2; contacts++) {
+        narc_method_options options = {.method = NARC_METHOD_GJK, .simplexes = memcpy(right, start, size)};
+        const narc_query whole = {.margin = 0.25f, .workers = &three},
+                         part = {.margin = 0.25f, .first = first, .count = count - first},
+                         chosen = {.margin = 0.25f, .selection = {selection, 4}, .selection_count = count - first};
+        const narc_query *const queries[] = {&whole, &part, &chosen};
+        test_use_isa("scalar");
+        if (contacts)
+            free(query_contacts(scene, &options, &(narc_query){.margin = 0.25f}).rows);
+        else
+            free(query_overlaps(scene, &options, NULL));
+        test_use_isa(test_isa());
+        for (int q = 0; q < 3; q++) {
+            uint32_t *const found = options.simplexes = guard_copy(start, size);
+            if (contacts)
+                free(query_contacts(scene, &options, queries[q]).rows);
+            else
+                free(query_overlaps(scene, &options, queries[q]));
+            for (size_t k = 0; k < count; k++)
+                assert_int_equal(found[k], q == 0 || k >= first ? right[k] : start[k]);
+            guard_release(found);
+        }
+        options.simplexes = memcpy(right, start, size);
+        options.method = NARC_METHOD_SAT;
+        free(query_overlaps(scene, &options, NULL));
+        options.method = NARC_METHOD_SAT_FIRST;
+        free(query_contacts(scene, &options, &whole).rows);
+        assert_memory_equal(right, start, size);
+    }
+    narc_methods *const methods = create_methods(scene->store);
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    const narc_method_options options = {.method = NARC_METHOD_GJK, .simplexes = right};
+    size_t found;
+    assert_int_equal(
+        narc_find_contacts_by(methods, &bodies, &pairs, &options, &(narc_query){.margin = NAN}, NULL, 0, &found, NULL),
+        NARC_ERROR_NOT_FINITE);
+    assert_memory_equal(right, start, size);
+    narc_destroy_methods(methods);
+    free(selection);
+    free(start);
+    free(right);
 }
 
 int main(void) { return test_begin() ? test_run("methods_gjk", make_corpora, destroy_corpora) : TEST_SKIPPED; }

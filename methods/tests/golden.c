@@ -14,14 +14,14 @@
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0x7ec640b6e75a6511u, 0x88b6eccb0495ec6du};
 
-/* Twice, by GJK the second time from the first one's hints. */
+/* Twice, by GJK the second time from the first one's simplexes. */
 static uint64_t hash_method(const struct scene *scene, narc_method method) {
     static uint8_t outcomes[PAIRS];
-    static uint32_t hints[PAIRS];
-    const narc_method_options options = {.method = method, .out_outcomes = outcomes};
-    const narc_query query = {.margin = INFINITY, .hints = NARC_HINT_ARRAY(hints)};
+    static uint32_t simplexes[PAIRS];
+    const narc_method_options options = {.method = method, .out_outcomes = outcomes, .simplexes = simplexes};
+    const narc_query query = {.margin = INFINITY};
     uint64_t hash = TEST_HASH_START;
-    memset(hints, 0, sizeof hints);
+    memset(simplexes, 0, sizeof simplexes);
     for (int round = 0; round < 2; round++) {
         uint64_t *bits = query_overlaps(scene, &options, &query);
         struct contacts found = {0};
@@ -31,7 +31,7 @@ static uint64_t hash_method(const struct scene *scene, narc_method method) {
         }
         hash = test_hash_items(hash, bits, NARC_BIT_WORDS(scene->pair_count), sizeof(uint64_t));
         hash = test_hash(hash, outcomes, scene->pair_count);
-        hash = test_hash_items(hash, hints, PAIRS, sizeof *hints);
+        hash = test_hash_items(hash, simplexes, PAIRS, sizeof *simplexes);
         hash = hash_contacts(hash, found);
         free(found.rows);
         free(bits);

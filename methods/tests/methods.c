@@ -48,16 +48,13 @@ TEST(test_sat_is_narc_find) {
         const size_t count = scene->pair_count;
         const narc_bodies bodies = scene_bodies(scene);
         const narc_pairs pairs = scene_pairs(scene);
-        uint32_t *hints = create_hints(count), *own_hints = create_hints(count);
         uint8_t *outcomes = make_junk(count);
         const narc_method_options options = {.tolerance = 0.5f, .iterations = 1, .out_outcomes = outcomes};
         for (int m = 0; m < MARGINS; m++) {
-            const narc_query query = {.margin = margins[m], .hints = hint_column(hints)};
-            const narc_query own_query = {.margin = margins[m], .hints = hint_column(own_hints)};
+            const narc_query query = {.margin = margins[m]};
             struct contacts found = query_contacts(scene, &options, &query);
-            struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &own_query);
+            struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &query);
             check_contacts_below(&found, &expected, INFINITY, "sat");
-            assert_memory_equal(hints, own_hints, count * sizeof *hints);
             free(found.rows);
             free(expected.rows);
         }
@@ -69,8 +66,6 @@ TEST(test_sat_is_narc_find) {
         free(bits);
         free(expected_bits);
         free(outcomes);
-        free(hints);
-        free(own_hints);
     }
 }
 
@@ -220,10 +215,9 @@ TEST(test_first_pair) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = make_junk(count), *again = make_junk(count);
-        uint32_t *hints = create_hints(count), *zeros = create_hints(count);
         const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes};
         const narc_method_options other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
-        const narc_query query = {.margin = INFINITY, .hints = hint_column(hints)};
+        const narc_query query = {.margin = INFINITY};
         struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
         uint64_t *bits = query_overlaps(&corpus->scene, &other, NULL);
@@ -238,11 +232,8 @@ TEST(test_first_pair) {
             assert_memory_equal(outcomes, again, count);
             free(found.rows);
         }
-        assert_memory_equal(hints, zeros, count * sizeof *hints);
         free(outcomes);
         free(again);
-        free(hints);
-        free(zeros);
         free(bits);
         free(all.rows);
     }
@@ -279,9 +270,8 @@ TEST(test_polygons) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = make_junk(count);
-        uint32_t *hints = create_hints(count), *zeros = create_hints(count);
         const narc_method_options options = {.method = NARC_METHOD_POLYGON_SAT, .out_outcomes = outcomes};
-        narc_query query = {.margin = INFINITY, .hints = hint_column(hints)};
+        narc_query query = {.margin = INFINITY};
         struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
         check_all_done(outcomes, count);
@@ -309,10 +299,7 @@ TEST(test_polygons) {
             check_contacts_below(&found, &all, more[m], "polygon-sat");
             free(found.rows);
         }
-        assert_memory_equal(hints, zeros, count * sizeof *hints);
         free(outcomes);
-        free(hints);
-        free(zeros);
         free(bits);
         free(all.rows);
     }
@@ -499,7 +486,10 @@ TEST(test_circles_in_one_place) {
     struct scene scene = make_two(&disc, 0, 0);
     uint8_t outcome;
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
-        const narc_method_options options = {NARC_METHOD_GJK, ways[k].tolerance, ways[k].iterations, &outcome, {NULL}};
+        const narc_method_options options = {.method = NARC_METHOD_GJK,
+                                             .tolerance = ways[k].tolerance,
+                                             .iterations = ways[k].iterations,
+                                             .out_outcomes = &outcome};
         struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
         assert_int_equal(outcome, ways[k].outcome);
         assert_true(fabs((double)found.rows[0].separation + 2) <= ways[k].off);

@@ -63,9 +63,9 @@ TEST(test_options) {
         options.tolerance = -0.25f;
         expect_wrong(&scene, options, NARC_ERROR_ARGUMENT, "tolerance is -0.25");
         options.tolerance = 0;
-        options.reserved[3] = &scene;
+        options.reserved[2] = &scene;
         expect_wrong(&scene, options, NARC_ERROR_ARGUMENT, "reserved");
-        options.reserved[3] = NULL;
+        options.reserved[2] = NULL;
         if (method >= NARC_METHOD_CIRCLE)
             expect_wrong(&scene, options, NARC_ERROR_ARGUMENT, narc_method_name(method));
     }

@@ -15,7 +15,7 @@ static narc_methods *of_scene, *of_polygons;
 static narc_query query;
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS / 4];
-static uint32_t hints[PAIRS];
+static uint32_t simplexes[PAIRS];
 static uint8_t outcomes[PAIRS];
 static size_t count, skipped;
 
@@ -25,7 +25,7 @@ static narc_status ask(narc_method method, narc_error *error) {
     const narc_methods *methods = of_some ? of_polygons : of_scene;
     const narc_bodies bodies = scene_bodies(of_some ? &polygons : &scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    const narc_method_options options = {.method = method, .out_outcomes = outcomes};
+    const narc_method_options options = {.method = method, .out_outcomes = outcomes, .simplexes = simplexes};
     const narc_status status = narc_find_overlaps_by(methods, &bodies, &pairs, &options, &query, bits, error);
     if (status != NARC_OK || method >= NARC_METHOD_CIRCLE)
         return status;
@@ -76,7 +76,7 @@ TEST(test_calls) {
     of_polygons = create_methods(polygons.store);
     for (size_t k = 0; k < PAIRS; k++)
         margins[k] = k % 3 ? INFINITY : 0.25f;
-    query = (narc_query){.margins = NARC_ARRAY(margins), .hints = NARC_HINT_ARRAY(hints), .out_skipped = &skipped};
+    query = (narc_query){.margins = NARC_ARRAY(margins), .out_skipped = &skipped};
     run_on_stacks(calls, sizeof calls / sizeof *calls, NARC_METHODS_STACK_SIZE, set_workers);
 }
 

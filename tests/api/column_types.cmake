@@ -3,23 +3,16 @@
 # in C where its warnings are errors.
 set(good "bodies.cosine = NARC_COLUMN(body, c)" "bodies.shape = NARC_COLUMN(body, shape)"
   "bodies.x = NARC_POSITION_COLUMN(body, x)" "bodies.y = NARC_POSITION_COLUMN(body, c)"
-  "query.hints = NARC_HINT_COLUMN(body, shape)" "query.hints = NARC_HINT_ARRAY(words)")
+  "query.selection = NARC_ARRAY(words)" "query.selection = NARC_COLUMN(body, constant)" "query.selection = NARC_ARRAY(constants)")
 set(bad "bodies.cosine = NARC_COLUMN(body, x)" "bodies.cosine = NARC_COLUMN(body, shape)"
   "bodies.shape = NARC_COLUMN(body, c)" "bodies.shape = NARC_COLUMN(body, signed_shape)"
   "bodies.x = NARC_POSITION_COLUMN(body, shape)" "bodies.x = NARC_COLUMN(body, c)" "bodies.scale = NARC_ARRAY(doubles)"
-  "query.hints = NARC_HINT_COLUMN(body, constant)" "query.hints = NARC_HINT_COLUMN(body, signed_shape)"
-  "query.hints = NARC_HINT_COLUMN(body, c)" "query.hints = NARC_HINT_ARRAY(constants)"
-  "query.hints = NARC_HINT_ARRAY(doubles)" "query.hints = NARC_COLUMN(body, shape)"
-  "bodies.shape = NARC_HINT_ARRAY(words)" "query.selection = NARC_ARRAY(doubles)")
+  "query.selection = NARC_ARRAY(doubles)")
 # Objects of static storage duration.
 foreach(type "narc_float_column COLUMN body,c" "narc_index_column ARRAY words" "narc_position_column POSITION_COLUMN body,x"
-    "narc_position_column POSITION_ARRAY doubles" "narc_hint_column HINT_COLUMN body,shape"
-    "narc_hint_column HINT_ARRAY words")
+    "narc_position_column POSITION_ARRAY doubles")
   string(REGEX REPLACE "(.*) (.*) (.*)" "static const \\1 column = NARC_\\2_INIT(\\3)" statement "${type}")
   list(APPEND good "${statement}")
-endforeach()
-foreach(array constants doubles)
-  list(APPEND bad "static const narc_hint_column column = NARC_HINT_ARRAY_INIT(${array})")
 endforeach()
 # Rows.
 foreach(call contacts manifolds)
@@ -35,14 +28,13 @@ endforeach()
 list(APPEND bad_rows "narc_find_overlaps(shapes, &bodies, &pairs, &query, words, NULL)")
 # The same by narc.hpp.
 set(good_cpp "bodies.cosine = narc::column(body, &Body::c)" "bodies.x = narc::positions(body, &Body::x)"
-  "query.hints = narc::hints(body, &Body::shape)" "(void)narc::find_contacts(shapes, bodies, pairs, query, contacts)"
+  "query.selection = narc::column(words)" "(void)narc::find_contacts(shapes, bodies, pairs, query, contacts)"
   "(void)narc::find_manifolds(shapes, bodies, pairs, query, manifolds)"
   "bodies = narc::bodies_of(body, &Body::x, &Body::x, &Body::c, &Body::c, &Body::shape)"
   "query = narc::query().workers(workers)")
 set(bad_cpp "bodies.cosine = narc::column(body, &Body::x)" "bodies.x = narc::column(body, &Body::c)"
-  "bodies.x = narc::positions(body, &Body::shape)" "query.hints = narc::hints(body, &Body::constant)"
-  "query.hints = narc::hints(body, &Body::signed_shape)" "query.hints = narc::hints(constants)"
-  "query.hints = narc::column(words)" "(void)narc::find_contacts(shapes, bodies, pairs, query, manifolds)"
+  "bodies.x = narc::positions(body, &Body::shape)" "query.selection = narc::column(body, &Body::signed_shape)"
+  "(void)narc::find_contacts(shapes, bodies, pairs, query, manifolds)"
   "(void)narc::find_manifolds(shapes, bodies, pairs, query, doubles)"
   "(void)narc::find_manifolds(shapes, bodies, pairs, query, contacts)"
   "(void)narc::find_overlaps(shapes, bodies, pairs, query, words)"

@@ -60,7 +60,6 @@ struct Named {
 };
 struct Pair {
     uint32_t a, b;
-    uint32_t hint;
     float margin;
 };
 // A row within what a solver keeps of a pair.
@@ -107,7 +106,7 @@ Scene make_scene(uint32_t count) {
         entity.shape = k % 3 == 2 ? circle : box;
         scene.entities.push_back(entity);
         if (k > 0)
-            scene.pairs.push_back({k - 1, k, 0, 0.5f});
+            scene.pairs.push_back({k - 1, k, 0.5f});
     }
     scene.bodies = narc::bodies_of(scene.entities, &Entity::position, &Entity::rotation, &Entity::shape);
     scene.batch = narc::pairs_of(scene.pairs, &Pair::a, &Pair::b);
@@ -160,15 +159,14 @@ void test_columns() {
     CHECK(narc::positions(floats).precision == NARC_FLOAT32 && narc::column(floats).stride == sizeof(float));
     const std::array<uint64_t, 2> words = {1, 2};
     CHECK(narc::column(words).base == words.data());
-    Pair pairs[2] = {};
-    CHECK(narc::hints(pairs, &Pair::hint).base == &pairs[0].hint);
-    std::vector<uint32_t> hints(2);
-    CHECK(narc::hints(hints).base == hints.data() && narc::hints(narc::span<uint32_t>(hints)).stride == 4);
+    const std::vector<uint32_t> indices(2);
+    CHECK(narc::column(indices).base == indices.data() &&
+          narc::column(narc::span<const uint32_t>(indices)).stride == 4);
 
     const std::vector<Entity> nobody;
     CHECK(!narc::column(nobody, &Entity::pose, &Pose::rotation, &Rotation::c).base);
     CHECK(narc::positions(nobody, &Entity::position, &Vector::y).precision == NARC_FLOAT64);
-    CHECK(!narc::hints(std::vector<Pair>(), &Pair::hint).base);
+    CHECK(!narc::column(std::vector<Pair>(), &Pair::margin).base);
 }
 
 void test_bodies() {
@@ -278,21 +276,20 @@ void test_query() {
     size_t skipped = 0;
     const narc_workers workers = narc_openmp_workers(2);
     const float margins[] = {1, 2};
-    uint32_t hints[] = {0, 0};
+    const uint32_t selection[] = {0, 1};
     const narc::query q = narc::query()
                               .margin(1)
                               .margins(narc::column(margins))
                               .second_margin(2)
                               .flat_angle(0.25f)
-                              .hints(narc::hints(hints))
-                              .selection(hints)
+                              .selection(selection)
                               .range(3, 4)
                               .dense()
                               .workers(workers)
                               .skipped(skipped);
     const narc_query &c = q;
     CHECK(c.margin == 1 && c.margins.base == margins && c.second_margin == 2 && c.flat_angle == 0.25f);
-    CHECK(c.hints.base == hints && c.selection.base == hints && c.selection_count == 2 && c.first == 3 && c.count == 4);
+    CHECK(c.selection.base == selection && c.selection_count == 2 && c.first == 3 && c.count == 4);
     CHECK(c.dense == 1 && c.workers == &workers && c.out_skipped == &skipped && c.row_stride == 0 && !c.reserved[0]);
     const narc_query zero = {};
     CHECK(same<narc_query>(narc::query(), zero));
@@ -344,11 +341,11 @@ void test_contacts() {
     for (size_t k = 0; k < found; k++)
         CHECK(same(slots[k].manifold, expected_manifolds[k]) && same(slots[k].contact, expected[k]));
 
-    // Margins, hints, a selection, dense rows.
+    // Margins, a selection, dense rows.
     const uint32_t selection[] = {4, 2};
     size_t skipped = 9;
     narc::query query = narc::query().margins(narc::column(scene.pairs, &Pair::margin)).skipped(skipped);
-    query.hints(narc::hints(scene.pairs, &Pair::hint)).selection(selection);
+    query.selection(selection);
     const auto chosen = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, rows).value();
     CHECK(chosen.size() == 2 && chosen[0].pair == 4 && chosen[1].pair == 2 && skipped == 0);
     query.dense();
@@ -424,7 +421,7 @@ void test_small_batches() {
     CHECK(one.size() == 1 && std::fabs(one[0].separation + 0.25f) < 1e-6f && one[0].normal_x == 1);
 
     // Errors: a body that is not there, a store that is not there.
-    const Pair wrong[] = {{0, 2, 0, 0}};
+    const Pair wrong[] = {{0, 2, 0}};
     const narc_pairs wrong_pairs = narc::pairs_of(wrong, &Pair::a, &Pair::b);
     CHECK(status_of(narc::find_contacts(scene.shapes, scene.bodies, wrong_pairs, {}, rows)) == NARC_ERROR_INDEX);
     CHECK(status_of(narc::find_overlaps(scene.shapes, scene.bodies, wrong_pairs, {}, bits)) == NARC_ERROR_INDEX);

@@ -17,7 +17,6 @@ enum { PAIRS = 200, BODIES = 30 };
 /* Outputs of all calls. */
 struct outputs {
     narc_manifold rows[PAIRS]; /* of others and bits, too */
-    uint32_t hints[PAIRS];
     uint8_t outcomes[PAIRS];
     size_t count, skipped;
 };
@@ -33,7 +32,6 @@ struct call {
 static narc_status run(const struct question *question, const struct call *call, struct outputs *out,
                        narc_error *error) {
     narc_query query = call->query;
-    query.hints = NARC_HINT_ARRAY(out->hints);
     query.out_skipped = &out->skipped;
     const struct asked asked = {call->shapes, call->bodies, call->pairs, &query,
                                 out->rows,    PAIRS,        &out->count, out->outcomes};
@@ -215,11 +213,10 @@ TEST(test_first_wrong_pair) {
     const void *shapes = take_shapes(scene.store, NULL);
     narc_manifold *rows = make_junk(MANY * sizeof *rows);
     uint8_t *outcomes = make_junk(MANY);
-    uint32_t *hints = make_junk(MANY * sizeof *hints);
     scene.pairs[8111].a = scene.pairs[4055].b = scene.pairs[4056].a = 5005;
     for (size_t k = 0; k < 6 * question_count; k++) {
         const narc_workers workers = narc_openmp_workers((unsigned)(k % 6));
-        const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &workers};
+        const narc_query query = {.workers = &workers};
         size_t found;
         const struct asked asked = {shapes, &bodies, &pairs, &query, rows, MANY, &found, outcomes};
         narc_error error = {0};
@@ -228,9 +225,8 @@ TEST(test_first_wrong_pair) {
         expect_error(status, NARC_ERROR_INDEX, &error, "5005");
         assert_int_equal(error.index, 4055);
     }
-    assert_true(is_junk(hints, MANY * sizeof *hints) && is_junk(outcomes, MANY));
+    assert_true(is_junk(outcomes, MANY));
     release_shapes(shapes);
-    free(hints);
     free(outcomes);
     free(rows);
     destroy_scene(&scene);
@@ -409,8 +405,8 @@ TEST(test_no_pairs) {
 
 /* ------------------------------------------------------------------------------------------------ capacity */
 
-/* What fits is the start of the list, the needed size is told, nothing behind the list is written; hints and outcomes
- * are as with enough room. No list at all: the call counts. */
+/* What fits is the start of the list, the needed size is told, nothing behind the list is written; outcomes are
+ * as with enough room. No list at all: the call counts. */
 TEST(test_capacity) {
     enum { MANY = 3000 };
     struct test_random random = test_random_named("capacity");
@@ -422,9 +418,8 @@ TEST(test_capacity) {
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         const void *shapes = take_shapes(scene.store, NULL);
-        uint32_t *hints = create_hints(MANY);
         uint8_t *outcomes = make_junk(MANY);
-        struct answer all = ask_scene(question, &scene, (narc_query){0}, hints);
+        struct answer all = ask_scene(question, &scene, (narc_query){0});
         const size_t fixed[] = {0, 1, 63, 64, 65, all.count - 1, all.count};
         assert_true(all.count > 100);
         for (size_t trial = 0; trial < 24; trial++) {
@@ -432,12 +427,11 @@ TEST(test_capacity) {
             const size_t capacity = trial < 7 ? fixed[trial] : random_below(&random, all.count);
             void *shorter = guard_allocate(answer_size(question, capacity));
             size_t skipped = 12345, needed;
-            narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &workers, .out_skipped = &skipped};
+            narc_query query = {.workers = &workers, .out_skipped = &skipped};
             query.row_stride = trial % 2 ? (ptrdiff_t)question->row_size : 0;
             const struct asked asked = {shapes,   &bodies, &pairs,  &query, trial ? shorter : NULL,
                                         capacity, &needed, outcomes};
             narc_error error = {0};
-            memset(hints, 0, MANY * sizeof *hints);
             const narc_status status = question->ask(question, &asked, &error);
             if (capacity < all.count)
                 expect_error(status, NARC_ERROR_CAPACITY, &error, "rows");
@@ -446,11 +440,9 @@ TEST(test_capacity) {
             assert_int_equal(needed, all.count);
             assert_int_equal(skipped, 0);
             assert_memory_equal(shorter, all.rows, answer_size(question, capacity));
-            assert_memory_equal(hints, all.hints, MANY * sizeof *hints);
             assert_memory_equal(outcomes, all.outcomes, MANY);
             guard_release(shorter);
         }
-        free(hints);
         free(outcomes);
         destroy_answer(&all);
         release_shapes(shapes);

@@ -64,7 +64,6 @@ static void check_pointers(void) {
     LAYOUT(narc_index_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_word_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_byte_column, 16, AT(base, 0) && AT(stride, 8));
-    LAYOUT(narc_hint_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_position_column, 24, AT(base, 0) && AT(stride, 8) && AT(precision, 16));
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
@@ -89,9 +88,8 @@ static void check_pointers(void) {
                AT(lost_count, 168) && AT(skipped, 176) && AT(kept, 184));
     LAYOUT(narc_query, 144,
            AT(margin, 0) && AT(second_margin, 4) && AT(flat_angle, 8) && AT(dense, 12) && AT(margins, 16) &&
-               AT(hints, 32) && AT(selection, 48) && AT(selection_count, 64) && AT(first, 72) && AT(count, 80) &&
-               AT(row_stride, 88) && AT(workers, 96) && AT(out_skipped, 104) && AT(front_only, 112) &&
-               AT(reserved, 120));
+               AT(selection, 32) && AT(selection_count, 48) && AT(first, 56) && AT(count, 64) && AT(row_stride, 72) &&
+               AT(workers, 80) && AT(out_skipped, 88) && AT(front_only, 96) && AT(reserved, 104));
     LAYOUT(narc_refinement, 176,
            AT(arcs, 0) && AT(cosine, 8) && AT(sine, 32) && AT(other_cosine, 56) && AT(other_sine, 80) &&
                AT(shift_x, 104) && AT(shift_y, 128) && AT(workers, 152) && AT(reserved, 160));
@@ -114,7 +112,8 @@ static void check_pointers(void) {
     LAYOUT(narc_nearest_options, 120,
            AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));
     LAYOUT(narc_method_options, 56,
-           AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(reserved, 24));
+           AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(simplexes, 24) &&
+               AT(reserved, 32));
     LAYOUT(narc_named_shape, 48, AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40));
     LAYOUT(narc_shape_list, 16, AT(count, 0) && AT(items, 8));
     LAYOUT(narc_contours, 40, AT(points, 0) && AT(point_count, 8) && AT(ends, 16) && AT(count, 24) && AT(flatness, 32));

@@ -177,16 +177,16 @@ TEST(tells_that_there_is_no_memory) {
 
 TEST(gathers_columns) {
     const uint32_t match[] = {2, NARC_NO_MATCH, 0, 2};
-    const uint32_t hints[] = {10, 11, 12};
+    const uint32_t values[] = {10, 11, 12};
     const struct { float normal, tangent[2]; } impulses[] = {{1, {2, 3}}, {4, {5, 6}}, {7, {8, 9}}};
-    uint32_t *out_hints = guard_allocate(sizeof match);
+    uint32_t *out_values = guard_allocate(sizeof match);
     float(*const out_impulses)[3] = guard_allocate(4 * sizeof impulses[0]);
-    narc_gather(match, 4, sizeof *hints, hints, out_hints);
+    narc_gather(match, 4, sizeof *values, values, out_values);
     narc_gather(match, 4, sizeof impulses[0], impulses, out_impulses);
-    assert_memory_equal(out_hints, ((const uint32_t[]){12, 0, 10, 12}), sizeof match);
+    assert_memory_equal(out_values, ((const uint32_t[]){12, 0, 10, 12}), sizeof match);
     assert_memory_equal(out_impulses, ((const float[4][3]){{7, 8, 9}, {0, 0, 0}, {1, 2, 3}, {7, 8, 9}}),
                         4 * sizeof impulses[0]);
-    guard_release(out_hints);
+    guard_release(out_values);
     guard_release(out_impulses);
 }
 

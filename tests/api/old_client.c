@@ -48,12 +48,12 @@ struct workers {
 struct query {
     float margin, second_margin, flat_angle;
     uint32_t dense;
-    struct column margins, hints, selection;
+    struct column margins, selection;
     size_t selection_count, first, count;
     ptrdiff_t row_stride;
     const struct workers *workers;
     size_t *out_skipped;
-    void *reserved[4];
+    void *reserved[6];
 };
 struct contact {
     uint32_t pair;
@@ -160,13 +160,11 @@ static void ask_contacts(void) {
     } row[PAIRS] = {{.after = 77}, {.after = 77}};
     const float margins[PAIRS] = {0, 0, 0, 1};
     const uint32_t selection[] = {3, 1};
-    uint32_t hints[PAIRS] = {0};
     struct query query = {0,
                           0,
                           0,
                           0,
                           {margins, 4},
-                          {hints, 4},
                           {selection, 4},
                           2,
                           .row_stride = sizeof row[0],

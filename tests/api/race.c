@@ -27,7 +27,6 @@ struct worker {
     const struct question *question;
     int number;
     pthread_t thread;
-    uint32_t hints[PAIRS];
     uint8_t outcomes[PAIRS];
     narc_manifold rows[PAIRS]; /* of others and bits, too */
     size_t count;
@@ -47,7 +46,7 @@ static void switch_sets(struct worker *w) {
 static void ask(struct worker *w) {
     const narc_bodies bodies = scene_bodies(&w->shared->scene);
     const narc_pairs pairs = scene_pairs(&w->shared->scene);
-    const narc_query query = {.margin = INFINITY, .hints = NARC_HINT_ARRAY(w->hints)};
+    const narc_query query = {.margin = INFINITY};
     const struct asked asked = {w->shared->shapes, &bodies, &pairs, &query, w->rows, PAIRS, &w->count, w->outcomes};
     for (int frame = 0; frame < 3; frame++)
         check(w, w->question->ask(w->question, &asked, NULL) == NARC_OK);
@@ -65,8 +64,7 @@ static void *work(void *argument) {
 
 /* Both were asked the same. */
 static bool same_answers(const struct worker *one, const struct worker *other) {
-    return one->count == other->count && memcmp(one->hints, other->hints, sizeof one->hints) == 0 &&
-           memcmp(one->outcomes, other->outcomes, sizeof one->outcomes) == 0 &&
+    return one->count == other->count && memcmp(one->outcomes, other->outcomes, sizeof one->outcomes) == 0 &&
            memcmp(one->rows, other->rows, sizeof one->rows) == 0;
 }
 

@@ -27,7 +27,7 @@ static narc_pair_options pair_options;
 static narc_broad_phase *broad;
 static const narc_pair_list *pair_list;
 static float margins[PAIRS], shifts[PAIRS], cosines[PAIRS], sines[PAIRS];
-static uint32_t hints[PAIRS], selection[PAIRS], indices[2][PAIRS * 2], match[PAIRS], shape;
+static uint32_t selection[PAIRS], indices[2][PAIRS * 2], match[PAIRS], shape;
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
 static narc_refined_contact refined[PAIRS];
@@ -217,7 +217,7 @@ TEST(test_calls) {
     broken = narc_view_bodies(bad, 1);
     pairs = scene_pairs(&scene);
     pairs.shift_x = pairs.shift_y = NARC_ARRAY(shifts);
-    query = (narc_query){.margins = NARC_ARRAY(margins), .hints = NARC_HINT_ARRAY(hints), .out_skipped = &skipped};
+    query = (narc_query){.margins = NARC_ARRAY(margins), .out_skipped = &skipped};
     dense = selected = range = query;
     dense.dense = 1;
     selected.selection = NARC_ARRAY(selection);

@@ -26,7 +26,6 @@ struct question {
     struct pair pairs[PAIRS];
     float motion_x[BODIES], motion_y[BODIES], angle[BODIES], target;
     narc_query query;
-    uint32_t hints[PAIRS];
     size_t room; /* for rows, too few perhaps */
 };
 
@@ -53,12 +52,9 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
         BODIES, NARC_POSITION_COLUMN(q->scene.bodies, x), NARC_POSITION_COLUMN(q->scene.bodies, y), {NULL}};
     const narc_cast_options cast = {.target = q->target, .workers = workers};
     const narc_query touching = {.workers = workers};
-    uint32_t hints[PAIRS];
     narc_query query = q->query;
     memset(answer, 0, sizeof *answer);
-    memcpy(hints, q->hints, sizeof hints);
     query.workers = workers;
-    query.hints = hint_column(hints);
     query.out_skipped = &answer->skipped;
     assert_int_equal(narc_find_overlaps(store, &bodies, &pairs, &query, &answer->bits, NULL), NARC_OK);
     assert_int_equal(narc_find_contacts(store, &bodies, &pairs, &query, answer->contacts, ROWS, &answer->count, NULL),
@@ -289,10 +285,8 @@ static void take_pairs(struct bytes *from, struct question *q) {
         q->motion_y[k] = take_bounded(from, 8);
         q->angle[k] = take_below(from, 2) ? take_bounded(from, 3) : 0;
     }
-    for (size_t k = 0; k < PAIRS; k++) {
+    for (size_t k = 0; k < PAIRS; k++)
         q->pairs[k] = (struct pair){(uint32_t)(k / (PAIRS / BODIES)), (uint32_t)(take_byte(from) % q->entries)};
-        q->hints[k] = take_word(from);
-    }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -16,7 +16,6 @@ enum { BODIES = 6, PAIRS = 24 };
 struct question {
     struct scene scene;
     narc_query query;
-    uint32_t hints[PAIRS];
     size_t chosen; /* for the reference, which takes long */
 };
 
@@ -35,11 +34,8 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     const narc_pairs pairs = scene_pairs(&q->scene);
     const narc_shapes *const store = q->scene.store;
     narc_query query = q->query, all = {.margin = INFINITY, .dense = 1, .workers = workers};
-    uint32_t hints[PAIRS];
     size_t count;
-    memcpy(hints, q->hints, sizeof hints);
     query.workers = workers;
-    query.hints = hint_column(hints);
     query.out_skipped = &answer->skipped;
     memset(answer, 0, sizeof *answer);
     assert_int_equal(narc_find_overlaps(store, &bodies, &pairs, &all, &answer->bits, NULL), NARC_OK);
@@ -103,8 +99,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     q.query.margin = fabs(margin) < 10 ? (float)margin : 0;
     q.query.second_margin = fabs(second) < 10 ? (float)second : 0;
     q.query.flat_angle = fabs(flat) < 1.5 ? (float)flat : 0;
-    for (size_t k = 0; k < PAIRS; k++)
-        q.hints[k] = take_word(&from);
     take_flights(&from, &q.scene);
     struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
     check(&q, answer);

@@ -191,7 +191,7 @@ static void check_places(const struct place *places, const unsigned char *right,
 }
 
 /* Dense rows and listed ones, without gaps and within larger structures, of all pairs, of some of them, of a sub-range;
- * with one margin and with margins of the pairs, with hints in a structure of the caller's. */
+ * with one margin and with margins of the pairs. */
 static void check_rows(struct test_random *random, const struct batch *batch, float margin, unsigned threads) {
     const size_t count = batch->scene->pair_count, size = batch->question->row_size;
     const narc_workers workers = narc_openmp_workers(threads);

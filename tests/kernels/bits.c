@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * bits.c - every question: one instruction set against scalar, to the last bit, with all counts, layouts, numbers of
- * threads, margins and hints; guard pages on all sides.
+ * threads and margins; guard pages on all sides.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -27,15 +27,14 @@ static size_t margins_of(const struct question *question) { return question->row
 /* What scalar says of all pairs of a scene, one thread. */
 struct expected {
     const struct question *question;
-    const uint32_t *hints; /* before; NULL: a call without */
     struct answer answers[MARGINS];
 };
 
-static struct expected expect(const struct scene *scene, const struct question *question, const uint32_t *hints) {
-    struct expected expected = {.question = question, .hints = hints};
+static struct expected expect(const struct scene *scene, const struct question *question) {
+    struct expected expected = {.question = question};
     test_use_isa("scalar");
     for (size_t m = 0; m < margins_of(question); m++)
-        expected.answers[m] = ask_scene(question, scene, (narc_query){.margin = margins[m]}, hints);
+        expected.answers[m] = ask_scene(question, scene, (narc_query){.margin = margins[m]});
     test_use_isa(test_isa());
     return expected;
 }
@@ -81,9 +80,8 @@ static void check_answer(const struct expected *expected, const struct part *par
     /* No longer than what is found: the guard then lies right behind the last row. */
     void *const rows = guard_allocate(answer_size(question, question->row_size ? found : count));
     uint8_t *const outcomes = guard_allocate(count);
-    uint32_t *const hints = expected->hints ? guard_copy(expected->hints + part->first, count * sizeof *hints) : NULL;
     size_t told = found;
-    const narc_query query = {.margin = margins[m], .hints = hint_column(hints), .workers = &part->workers};
+    const narc_query query = {.margin = margins[m], .workers = &part->workers};
     const struct asked asked = {part->shapes, &part->columns.bodies, &part->columns.pairs, &query, rows, found, &told,
                                 outcomes};
     assert_int_equal(question->ask(question, &asked, NULL), NARC_OK);
@@ -99,10 +97,6 @@ static void check_answer(const struct expected *expected, const struct part *par
     assert_memory_equal(outcomes, all->outcomes + part->first, count);
     guard_release(rows);
     guard_release(outcomes);
-    if (hints) {
-        assert_memory_equal(hints, all->hints + part->first, count * sizeof *hints);
-        guard_release(hints);
-    }
 }
 
 static void check_part(const struct scene *scene, const void *shapes, const struct expected *expected,
@@ -129,45 +123,35 @@ static void release_guarded(struct guarded *guarded) {
     narc_destroy_shapes(guarded->store);
 }
 
-static uint32_t *random_hints(struct test_random *random, size_t count) {
-    uint32_t *hints = create_hints(count);
-    for (size_t k = 0; k < count; k++)
-        hints[k] = random_below(random, 4) ? (uint32_t)random_bits(random) : 0;
-    return hints;
-}
-
 /* ------------------------------------------------------------------------------------------------ tests */
 
 /* Numbers of pairs from 0 on, each in the next of some layouts or in all of them. */
-static void check_counts(const struct question *question, narc_precision precision, bool hinted, enum layout layout,
-                         size_t layouts, size_t grow) {
+static void check_counts(const struct question *question, narc_precision precision, enum layout layout, size_t layouts,
+                         size_t grow) {
     struct test_random random = test_random_named(question->name);
     struct scene scene = make_question_scene(&random, question, precision, BODIES, 2 * SMALL_COUNTS);
     suit_layout(&scene, layout);
     struct guarded guarded = guard_shapes(&scene);
-    uint32_t *hints = hinted ? random_hints(&random, scene.pair_count) : NULL;
-    struct expected expected = expect(&scene, question, hints);
+    struct expected expected = expect(&scene, question);
     const size_t each = question->every_layout ? layouts : 1;
     for (size_t count = 0; count < SMALL_COUNTS; count += 1 + count / grow)
         for (size_t k = 0; k < each; k++)
             check_part(&scene, guarded.shapes, &expected, layout + (enum layout)((count + k) % layouts),
                        random_below(&random, SMALL_COUNTS), count, 1);
     destroy_expected(&expected);
-    free(hints);
     release_guarded(&guarded);
     destroy_scene(&scene);
 }
 
 TEST(test_all_counts) {
     for (size_t q = 0; q < 2 * question_count; q++)
-        check_counts(&questions[q / 2], q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, (q + 1) % 4 / 2, LAYOUT_ARRAYS, 3,
-                     SMALL_COUNTS);
+        check_counts(&questions[q / 2], q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, LAYOUT_ARRAYS, 3, SMALL_COUNTS);
 }
 
 /* Values that are one for all bodies, and no scales. */
 TEST(test_shared_values) {
     for (size_t q = 0; q < 2 * question_count; q++)
-        check_counts(&questions[q / 2], (q + 1) % 4 / 2 ? NARC_FLOAT64 : NARC_FLOAT32, false,
+        check_counts(&questions[q / 2], (q + 1) % 4 / 2 ? NARC_FLOAT64 : NARC_FLOAT32,
                      q % 2 ? LAYOUT_SHARED : LAYOUT_UNSCALED, 1, 4);
 }
 
@@ -180,12 +164,10 @@ TEST(test_threads) {
             const narc_precision precision = k % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
             struct scene scene = make_question_scene(&random, &questions[q], precision, 300, counts[k]);
             struct guarded guarded = guard_shapes(&scene);
-            uint32_t *hints = k % 2 ? NULL : random_hints(&random, counts[k]);
-            struct expected expected = expect(&scene, &questions[q], hints);
+            struct expected expected = expect(&scene, &questions[q]);
             for (unsigned threads = 0; threads <= 3; threads++)
                 check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, counts[k], threads);
             destroy_expected(&expected);
-            free(hints);
             release_guarded(&guarded);
             destroy_scene(&scene);
         }
@@ -194,25 +176,16 @@ TEST(test_threads) {
 
 /* Everything there is, in the hardest places. */
 static void check_corpus(const char *name, narc_precision precision, bool polygons) {
-    struct test_random random = test_random_named(name);
     struct corpus corpus = make_corpus(name, precision, 0.5, polygons);
     const struct scene *scene = &corpus.scene;
     struct guarded guarded = guard_shapes(scene);
     for (size_t q = 0; q < question_count; q++) {
         if (questions[q].polygons && !polygons)
             continue;
-        uint32_t *hints = random_hints(&random, scene->pair_count);
-        struct expected expected = expect(scene, &questions[q], NULL);
-        check_part(scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene->pair_count, 1);
+        struct expected expected = expect(scene, &questions[q]);
+        check_part(scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene->pair_count, 2);
+        check_part(scene, guarded.shapes, &expected, LAYOUT_ARRAYS, 0, scene->pair_count, 1);
         destroy_expected(&expected);
-        for (unsigned round = 0; round < 2; round++) { /* then with what that leaves */
-            expected = expect(scene, &questions[q], hints);
-            check_part(scene, guarded.shapes, &expected, round ? LAYOUT_ARRAYS : LAYOUT_STRUCTURES, 0,
-                       scene->pair_count, 2 - round);
-            memcpy(hints, expected.answers[0].hints, scene->pair_count * sizeof *hints);
-            destroy_expected(&expected);
-        }
-        free(hints);
     }
     release_guarded(&guarded);
     destroy_corpus(&corpus);
@@ -237,35 +210,31 @@ TEST(test_margins_of_pairs) {
         float margin[PAIRS];
         size_t skipped = 0;
         for (size_t m = 0; m < MARGINS; m++)
-            each[m] = ask_scene(question, &scene, (narc_query){.margin = margins[m], .workers = &workers}, NULL);
+            each[m] = ask_scene(question, &scene, (narc_query){.margin = margins[m], .workers = &workers});
         for (size_t k = 0; k < PAIRS; k++) {
             const size_t m = (k * k + k / 3) % (MARGINS + 1);
             margin[k] = m < MARGINS ? margins[m] : NAN;
             skipped += m == MARGINS;
         }
-        uint32_t *hints = create_hints(PAIRS);
-        for (int hinted = 0; hinted < 2; hinted++) {
-            size_t at = 0, next[MARGINS + 1] = {0};
-            const narc_query query = {.margin = -1000, .margins = NARC_ARRAY(margin), .workers = &workers};
-            struct answer found = ask_scene(question, &scene, query, hinted ? hints : NULL);
-            assert_int_equal(found.skipped, skipped);
-            for (size_t k = 0; k < PAIRS; k++) {
-                for (size_t m = 0; m < MARGINS; m++)
-                    next[m] += next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) < k;
-                const size_t m = (k * k + k / 3) % (MARGINS + 1);
-                const bool wanted =
-                    m < MARGINS && next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) == k;
-                const bool there = at < found.count && *answer_pair(question, found.rows, at) == k;
-                assert_int_equal(there, wanted);
-                if (there)
-                    assert_memory_equal(answer_row(question, found.rows, at),
-                                        answer_row(question, each[m].rows, next[m]), question->row_size);
-                at += there;
-            }
-            assert_int_equal(at, found.count);
-            destroy_answer(&found);
+        size_t at = 0, next[MARGINS + 1] = {0};
+        const narc_query query = {.margin = -1000, .margins = NARC_ARRAY(margin), .workers = &workers};
+        struct answer found = ask_scene(question, &scene, query);
+        assert_int_equal(found.skipped, skipped);
+        for (size_t k = 0; k < PAIRS; k++) {
+            for (size_t m = 0; m < MARGINS; m++)
+                next[m] += next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) < k;
+            const size_t m = (k * k + k / 3) % (MARGINS + 1);
+            const bool wanted =
+                m < MARGINS && next[m] < each[m].count && *answer_pair(question, each[m].rows, next[m]) == k;
+            const bool there = at < found.count && *answer_pair(question, found.rows, at) == k;
+            assert_int_equal(there, wanted);
+            if (there)
+                assert_memory_equal(answer_row(question, found.rows, at), answer_row(question, each[m].rows, next[m]),
+                                    question->row_size);
+            at += there;
         }
-        free(hints);
+        assert_int_equal(at, found.count);
+        destroy_answer(&found);
         for (size_t m = 0; m < MARGINS; m++)
             destroy_answer(&each[m]);
         destroy_scene(&scene);
@@ -307,8 +276,7 @@ static void check_skipped(const struct scene *scene, const struct question *ques
                           size_t expected, unsigned threads) {
     const narc_workers workers = narc_openmp_workers(threads);
     for (size_t m = 0; m < margins_of(question); m++) {
-        struct answer answer =
-            ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers}, NULL);
+        struct answer answer = ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers});
         assert_int_equal(answer.skipped, expected);
         for (uint32_t k = 0; k < scene->pair_count && (!question->row_size || isinf(margins[m])); k++)
             assert_true(has_none(question, &answer, k) || !(broken[scene->pairs[k].a] || broken[scene->pairs[k].b]));
@@ -339,7 +307,7 @@ TEST(test_skipped_pairs) {
             const size_t left = MANY - first, count = 1 + random_below(&random, MANY / 4);
             part.pairs = scene.pairs + first;
             part.pair_count = count < left ? count : left;
-            struct answer answer = ask_scene(&questions[q], &part, (narc_query){0}, NULL);
+            struct answer answer = ask_scene(&questions[q], &part, (narc_query){0});
             sum += answer.skipped;
             destroy_answer(&answer);
         }
@@ -350,7 +318,7 @@ TEST(test_skipped_pairs) {
 
 /* Asks of three bodies in one place; `removed`: of the pairs with the second one there is no answer. */
 static void ask_of_three(const struct question *question, const struct scene *scene, bool removed) {
-    struct answer answer = ask_scene(question, scene, (narc_query){.margin = INFINITY}, NULL);
+    struct answer answer = ask_scene(question, scene, (narc_query){.margin = INFINITY});
     assert_int_equal(answer.skipped, removed ? 3 : 0);
     assert_int_equal(answer.count, question->row_size ? 4 : 0);
     for (uint32_t k = 0; k < 4 && removed; k++)

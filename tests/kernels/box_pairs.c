@@ -163,20 +163,4 @@ TEST(test_seldom) {
     destroy_scene(&scene);
 }
 
-/* Hints are those of contacts: overlaps leave them alone. */
-TEST(test_overlaps_without_hints) {
-    struct test_random random = test_random_named("hints");
-    struct scene scene = make_boxes(&random, USUAL, OTHERS);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    uint32_t *hints = malloc(pairs.count * sizeof *hints);
-    for (size_t k = 0; k < pairs.count; k++)
-        hints[k] = 0xdead0000u + (uint32_t)k;
-    free(find_overlaps(scene.store, &bodies, &pairs, &(narc_query){.hints = NARC_HINT_ARRAY(hints)}));
-    for (size_t k = 0; k < pairs.count; k++)
-        assert_int_equal(hints[k], 0xdead0000u + (uint32_t)k);
-    free(hints);
-    destroy_scene(&scene);
-}
-
 TEST_MAIN("box_pairs")

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * everything.c - all that a scene can be asked, asked in two ways: on this instruction set and in scalar, with workers and
- * without, as bodies move and hints go on; from every layout, behind guard pages; one by one; elsewhere; beside bodies that
+ * without, as bodies move; from every layout, behind guard pages; one by one; elsewhere; beside bodies that
  * are far away; and of any bits.
  */
 #include "everything.h"
@@ -40,14 +40,13 @@ static struct answers check_bits(const struct everything *e, const char *how) {
 
 /* ------------------------------------------------------------------------------------------------ bits */
 
-/* The world goes on: bodies move a little, small steps and large ones, and hints are those that the call before left. */
+/* The world goes on: bodies move a little, small steps and large ones. */
 static void check_moves(struct test_random *random, struct world *world, size_t indexed, const char *name) {
     enum { MOVES = 3 };
     for (int move = 0; move < MOVES; move++) {
         struct everything e = view_world(world);
         e.indexed = e.movers = indexed;
         struct answers right = check_bits(&e, name);
-        memcpy(world->hints, right.rows[ANSWER_HINTS], world->scene.pair_count * sizeof *world->hints);
         destroy_answers(&right);
         scene_move_bodies(&world->scene, random, random_log_between(random, 1e-7, 0.1));
     }
@@ -101,7 +100,6 @@ TEST(each_by_itself) {
             one.rays = view_rays(world.rays + k, 1);
             one.points.x = view_rays(world.points + k, 1).x;
             one.points.y = view_rays(world.points + k, 1).y;
-            one.hints = world.hints + k;
             if (world.shifted) {
                 one.pairs.shift_x.base = one.pairs.shift_y.base = world.shift + k;
                 one.query.margins.base = world.margins + k;
@@ -325,7 +323,6 @@ TEST(survives_garbage) {
         }
         for (size_t k = 0; k < PAIRS; k++) {
             world.points[k].x = any_double(&random, world.points[k].x);
-            world.hints[k] = random_below(&random, 2) ? (uint32_t)random_bits(&random) : 0;
             world.shift[k] = any_float(&random, world.shift[k]);
         }
         struct everything e = view_world(&world);

@@ -127,20 +127,18 @@ static void check_forms(const struct ground_bodies *g, const struct contacts *ri
         assert_true(is_junk(rows.rows + right->count, sizeof *rows.rows) || k < 10);
     }
 
-    /* margins of their own, a selection, hints, and one pair at a time */
+    /* margins of their own, a selection, and one pair at a time */
     float *margins = malloc(count * sizeof *margins);
-    uint32_t *selection = malloc(count * sizeof *selection), *hints = calloc(count, sizeof *hints);
+    uint32_t *selection = malloc(count * sizeof *selection);
     for (size_t k = 0; k < count; k++) {
         margins[k] = margin;
         selection[k] = (uint32_t)(count - 1 - k);
     }
     size_t found = 0;
-    const narc_query each = {.margins = NARC_ARRAY(margins), .hints = NARC_HINT_ARRAY(hints)};
-    for (int round = 0; round < 2; round++) {
-        assert_int_equal(ask_contacts(scene, &each, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
-        assert_int_equal(found, right->count);
-        assert_memory_equal(rows.rows, right->rows, size);
-    }
+    const narc_query each = {.margins = NARC_ARRAY(margins)};
+    assert_int_equal(ask_contacts(scene, &each, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
+    assert_int_equal(found, right->count);
+    assert_memory_equal(rows.rows, right->rows, size);
     const narc_query selected = {.margin = margin, .selection = NARC_ARRAY(selection), .selection_count = count};
     assert_int_equal(ask_contacts(scene, &selected, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
     assert_int_equal(found, right->count);
@@ -186,7 +184,6 @@ static void check_forms(const struct ground_bodies *g, const struct contacts *ri
     assert_memory_equal(bits, others, NARC_BIT_WORDS(count) * sizeof *bits);
     free(others);
     free(bits);
-    free(hints);
     free(selection);
     free(margins);
     free(rows.rows);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * separations.c - one float a pair: to the last bit what contacts tell, also of pieces of ground; strides, ranges, selections,
- * hints and workers.
+ * separations.c - one float a pair: to the last bit what contacts tell, also of pieces of ground; strides, ranges, selections
+ * and workers.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +33,6 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
     enum { STRIDE = 3 };
     float *const expected = find_expected(store, bodies, pairs, &query);
     float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
-    uint32_t *const hints = calloc(pairs->count, sizeof *hints);
     size_t told = 0, skipped = 0, contacts_skipped = 0;
     for (unsigned threads = 1; threads <= 3; threads++) {
         const narc_workers workers = narc_openmp_workers(threads);
@@ -41,8 +40,6 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
         query.workers = &workers;
         query.row_stride = 0;
         query.out_skipped = &skipped;
-        query.hints = threads > 1 ? (narc_hint_column){hints, sizeof *hints}
-                                  : (narc_hint_column){0}; /* the third time they are those of the second */
         assert_int_equal(narc_find_separations(store, bodies, pairs, &query, found, NULL), NARC_OK);
         assert_memory_equal(found, expected, pairs->count * sizeof *found);
         query.row_stride = -STRIDE * (ptrdiff_t)sizeof *strided;
@@ -63,7 +60,6 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
     assert_int_equal(skipped, contacts_skipped);
     for (size_t k = 0; k < pairs->count; k++)
         told += expected[k] < INFINITY;
-    free(hints);
     guard_release(strided);
     free(expected);
     return told;

@@ -28,7 +28,6 @@ static const struct {
     [ANSWER_SEPARATIONS] = {"separations", sizeof(float), 1, false},
     [ANSWER_CONTACTS] = {"contacts", sizeof(narc_contact), 0x1fc, true},
     [ANSWER_MANIFOLDS] = {"manifolds", sizeof(narc_manifold), 0x773c, true},
-    [ANSWER_HINTS] = {"hints", sizeof(uint32_t), 0, false},
     [ANSWER_CASTS] = {"casts of pairs", sizeof(narc_impact), 0x7f8, true},
     [ANSWER_DISTANCES] = {"distances", sizeof(narc_distance), 0x1f8, true},
     [ANSWER_RAYS] = {"rays", sizeof(narc_ray_hit), 0x1f8, true},
@@ -61,11 +60,6 @@ static void ask_pairs(const struct everything *e, const narc_workers *workers, s
     expect_ok(narc_find_separations(e->shapes, &e->bodies, &e->pairs, &query,
                                     add_rows(answers, ANSWER_SEPARATIONS, count), &error),
               &error);
-    uint32_t *const hints = add_rows(answers, ANSWER_HINTS, e->hints ? count : 0);
-    if (e->hints) {
-        memcpy(hints, e->hints, count * sizeof *hints);
-        query.hints = hint_column(hints);
-    }
     query.out_skipped = &counts[2];
     expect_ok(narc_find_contacts(e->shapes, &e->bodies, &e->pairs, &query, add_rows(answers, ANSWER_CONTACTS, count),
                                  count, &counts[3], &error),
@@ -194,8 +188,6 @@ void expect_same_row(const struct answers *all, size_t k, const struct answers *
     const float *const separations = all->rows[ANSWER_SEPARATIONS];
     assert_memory_equal(one->rows[ANSWER_SEPARATIONS], &separations[k], sizeof *separations);
     assert_int_equal(bit_is_set(one->rows[ANSWER_OVERLAPS], 0), bit_is_set(all->rows[ANSWER_OVERLAPS], k));
-    if (one->count[ANSWER_HINTS] > 0)
-        assert_memory_equal(one->rows[ANSWER_HINTS], row_of(all, ANSWER_HINTS, k), sizeof(uint32_t));
     for (int kind = 0; kind < ANSWERS; kind++) {
         if (!kinds[kind].numbered || kind == ANSWER_MOVERS)
             continue;
@@ -275,7 +267,6 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
                           .rays = calloc(rays + 1, sizeof *world.rays),
                           .points = calloc(pairs + 1, sizeof *world.points),
                           .ray_count = rays,
-                          .hints = create_hints(pairs),
                           .shift = calloc(pairs + 1, sizeof *world.shift),
                           .margins = calloc(pairs + 1, sizeof *world.margins)};
     world.shifted = random_below(random, 2); /* one random number a statement */
@@ -309,7 +300,6 @@ void destroy_world(struct world *world) {
     free(world->motion);
     free(world->rays);
     free(world->points);
-    free(world->hints);
     free(world->shift);
     free(world->margins);
     destroy_scene(&world->scene);
@@ -326,7 +316,6 @@ struct everything view_world(const struct world *world) {
                            .pairs = scene_pairs(&world->scene),
                            .rays = view_rays(world->rays, world->ray_count),
                            .points = {.count = pairs, .x = points.x, .y = points.y},
-                           .hints = world->hints,
                            .query = world->query,
                            .cast = world->cast,
                            .inside = world->inside};

@@ -19,8 +19,7 @@ struct everything {
     narc_pairs pairs;
     narc_rays rays;
     narc_points points; /* as many as pairs: distances are those of each from its pair's first body */
-    const uint32_t *hints;
-    narc_query query; /* with dense rows */
+    narc_query query;   /* with dense rows */
     narc_cast_options cast;
     narc_inside inside;
     const narc_box *boxes; /* the index's, if they are not those of its bodies */
@@ -34,7 +33,6 @@ enum answer_kind {
     ANSWER_SEPARATIONS,
     ANSWER_CONTACTS,
     ANSWER_MANIFOLDS,
-    ANSWER_HINTS,
     ANSWER_CASTS,
     ANSWER_DISTANCES,
     ANSWER_RAYS,
@@ -71,7 +69,6 @@ struct world {
     struct test_motion *motion;
     struct test_ray *rays, *points;
     size_t ray_count;
-    uint32_t *hints;
     float *shift, *margins; /* of each pair, of every other world */
     bool shifted;
     narc_query query;

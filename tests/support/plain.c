@@ -177,9 +177,6 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
         each[k] = random_below(random, 2) ? separation : nextafterf(separation, INFINITY);
         each[k] = random_below(random, 20) ? each[k] : NAN;
     }
-    uint32_t *hints = malloc(scene->pair_count * sizeof *hints);
-    for (size_t k = 0; k < scene->pair_count; k++)
-        hints[k] = (uint32_t)random_below(random, 12) << 8 | (uint32_t)random_below(random, 12);
     for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
         narc_query query = {.margin = margins[m], .flat_angle = flats[random_below(random, 6)]};
         const narc_workers workers = narc_openmp_workers((unsigned)random_below(random, 3));
@@ -188,18 +185,14 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
         if (m == 1)
             query.margins = (narc_float_column){each, sizeof *each};
         struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
-        if (random_below(random, 2))
-            query.hints = NARC_HINT_ARRAY(hints);
         struct manifolds found = find_manifolds(scene->store, &columns.bodies, pairs, &query);
         check_rows(scene, &right, &found, name);
         free(right.rows);
         free(found.rows);
         if (m != 1)
-            check_plain_contacts(&batch,
-                                 &(narc_query){.margin = margins[m], .hints = query.hints, .workers = &workers});
+            check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .workers = &workers});
     }
     check_plain_overlaps(&batch, NULL);
-    free(hints);
     free(each);
     free(batch.right);
     destroy_columns(&columns);

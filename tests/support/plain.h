@@ -32,7 +32,7 @@ void check_plain_contacts(const struct plain_batch *batch, const narc_query *que
 /* Arrays or structures. */
 enum layout any_layout(struct test_random *random);
 
-/* The same of manifolds with any flat angle and margins, contacts, with hints and without, and overlaps of a scene. */
+/* The same of manifolds with any flat angle and margins, contacts, and overlaps of a scene. */
 void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name);
 
 #endif

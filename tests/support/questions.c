@@ -25,18 +25,12 @@ size_t answer_size(const struct question *question, size_t count) {
     return question->row_size ? count * question->row_size : NARC_BIT_WORDS(count) * sizeof(uint64_t);
 }
 
-struct answer ask_scene(const struct question *question, const struct scene *scene, narc_query query,
-                        const uint32_t *hints) {
+struct answer ask_scene(const struct question *question, const struct scene *scene, narc_query query) {
     const size_t count = scene->pair_count;
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     const void *shapes = take_shapes(scene->store, NULL);
     struct answer answer = {.rows = make_junk(answer_size(question, count)), .outcomes = make_junk(count)};
-    if (hints) {
-        answer.hints = create_hints(count);
-        memcpy(answer.hints, hints, count * sizeof *hints);
-    }
-    query.hints = hint_column(answer.hints);
     query.out_skipped = &answer.skipped;
     const struct asked asked = {shapes, &bodies, &pairs, &query, answer.rows, count, &answer.count, answer.outcomes};
     narc_error error;
@@ -48,6 +42,5 @@ struct answer ask_scene(const struct question *question, const struct scene *sce
 
 void destroy_answer(struct answer *answer) {
     free(answer->rows);
-    free(answer->hints);
     free(answer->outcomes);
 }

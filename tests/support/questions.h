@@ -45,14 +45,11 @@ struct scene make_question_scene(struct test_random *random, const struct questi
 struct answer {
     void *rows;
     size_t count, skipped;
-    uint32_t *hints;
     uint8_t *outcomes;
 };
 
-/* Asks of all pairs of a scene, with a copy of these hints, or NULL. Outputs are full of junk before; any error fails the
- * test. */
-struct answer ask_scene(const struct question *question, const struct scene *scene, narc_query query,
-                        const uint32_t *hints);
+/* Asks of all pairs of a scene. Outputs are full of junk before; any error fails the test. */
+struct answer ask_scene(const struct question *question, const struct scene *scene, narc_query query);
 void destroy_answer(struct answer *answer);
 
 /* The bytes of an answer with so many pairs, or rows. */

@@ -200,8 +200,6 @@ struct manifolds scene_manifolds(const struct scene *scene, float margin) {
     return find_manifolds(scene->store, &bodies, &pairs, &(narc_query){.margin = margin});
 }
 
-uint32_t *create_hints(size_t count) { return allocate(count, sizeof(uint32_t)); }
-
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs) {
     const size_t shapes_per_family = 4;
     /* Bodies are about 2 wide: on a square of this width about half of the pairs collide. */

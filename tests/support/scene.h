@@ -106,12 +106,6 @@ uint64_t *scene_overlaps(const struct scene *scene);
 struct contacts scene_contacts(const struct scene *scene, float margin);
 struct manifolds scene_manifolds(const struct scene *scene, float margin);
 
-/* Zeros, as hints of as many pairs. */
-uint32_t *create_hints(size_t count);
-
-/* A plain array of hints; NULL: none. */
-static inline narc_hint_column hint_column(uint32_t *hints) { return (narc_hint_column){hints, sizeof *hints}; }
-
 /* Pairs of random bodies of random families, about half of which collide; no special placements, so it is fast. */
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs);
 
