@@ -59,16 +59,14 @@ TEST(test_free_places) {
     assert_int_equal(d.grain_count, 150);
     dem_start(&d);
     const narc_bodies bodies = dem_make_poses(&d);
-    const narc_pairs pairs = {.count = d.list.count,
-                              .a = NARC_COLUMN(d.list.pairs, a),
-                              .b = NARC_COLUMN(d.list.pairs, b),
-                              .shift_x = NARC_COLUMN(d.list.pairs, shift_x),
-                              .shift_y = NARC_COLUMN(d.list.pairs, shift_y)};
-    const narc_query query = {.margin = (float)gap - 1e-4f};
+    const narc_query query = {
+        .margin = (float)gap - 1e-4f, .selection = NARC_ARRAY(d.found->order), .selection_count = d.found->count};
     size_t count = 99, walls = 0, images = 0;
-    for (size_t k = 0; k < d.list.count; k++) {
-        walls += dem_is_wall(dem_body_b(&d, k));
-        images += !dem_is_wall(dem_body_b(&d, k)) && d.list.pairs[k].shift_x != 0;
+    for (size_t k = 0; k < d.found->count; k++) {
+        const dem_image *image = &d.images[narc_index_at(d.found->pairs.b, d.found->order[k])];
+        const bool wall = image->part >= d.grain_count;
+        walls += wall;
+        images += !wall && image->right != 0;
     }
     assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, &query, NULL, 0, &count, NULL), NARC_OK);
     print_message("%zu pairs, %zu with walls, %zu across the border\n", d.list.count, walls, images);
