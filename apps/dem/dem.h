@@ -172,12 +172,12 @@ typedef struct dem_wall {
 /* What narc is asked about: all parts where they are, then images of some: a cell's width away, and blocks of plates under
  * a grain. An image meets only who is no image. */
 typedef struct dem_image {
-    uint64_t id;    /* as narc knows it: the part; of an image also its direction, or the grain's part */
+    uint64_t id;             /* as narc knows it: the part; of an image also its direction, or the grain's part */
+    uint64_t category, mask; /* who may meet whom */
     uint32_t part;
-    uint32_t owner; /* the only part that it may meet, or UINT32_MAX */
-    uint32_t group; /* the body + 1 */
+    uint32_t owner;   /* the only part that it may meet, or UINT32_MAX */
+    uint32_t group;   /* two of the same form no pair: the body + 2; 1 of walls and images */
     int8_t right, up; /* by how many cells */
-    uint8_t still;    /* two of them form no pair */
     vec shift;        /* from the part */
 } dem_image;
 

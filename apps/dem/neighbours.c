@@ -24,10 +24,12 @@
 /* ------------------------------------------------------------------------------------------------ images */
 
 static void add_image(dem *d, dem_image image) {
-    image.group = d->parts[image.part].body + 1;
     dem_grow(&d->images, d->image_count + 1, sizeof *d->images);
     d->images[d->image_count++] = image;
 }
+
+/* Of 63 colours. */
+static uint64_t find_category(uint32_t part) { return UINT64_C(1) << part % 63; }
 
 /* A plate itself meets no grain, but its images do. */
 static void add_parts(dem *d) {
@@ -35,7 +37,12 @@ static void add_parts(dem *d) {
     for (uint32_t k = 0; k < d->part_count; k++) {
         const size_t body = d->parts[k].body;
         const bool wall = body >= d->grain_count, plate = wall && d->walls[body - d->grain_count].kind == DEM_PLATE;
-        add_image(d, (dem_image){.id = k, .part = k, .owner = plate ? k : UINT32_MAX, .still = wall});
+        add_image(d, (dem_image){.id = k,
+                                 .category = find_category(k),
+                                 .mask = plate ? 0 : UINT64_MAX,
+                                 .part = k,
+                                 .owner = UINT32_MAX,
+                                 .group = wall ? 1 : (uint32_t)body + 2});
     }
 }
 
@@ -100,7 +107,9 @@ static void add_images_across_borders(dem *d) {
     const narc_box all = find_widths(d);
     for (uint32_t k = 0; k < d->part_count; k++)
         for (int i = 0; i < 9 && !is_empty(d->boxes[k]); i++) {
-            dem_image image = {.id = (uint64_t)(i + 1) << 32 | k, .part = k, .owner = UINT32_MAX, .still = 1};
+            dem_image image = d->images[k];
+            image.id |= (uint64_t)(i + 1) << 32;
+            image.group = 1;
             image.right = (int8_t)(i % 3 - 1);
             image.up = (int8_t)(i / 3 - 1);
             image.shift = dem_find_shift(d, &image);
@@ -123,9 +132,11 @@ static void add_images_of_plate(dem *d, const dem_body *block, const dem_wall *p
                      (size_t)(b - d->bodies), plate->name, dem_explain_depth(d));
         if (height - b->reach <= d->settings.skin * 1.001)
             add_image(d, (dem_image){.id = (uint64_t)(k + 10) << 32 | block->first_part,
+                                     .category = UINT64_C(1) << 63,
+                                     .mask = find_category(k),
                                      .part = block->first_part,
                                      .owner = k,
-                                     .still = 1,
+                                     .group = 1,
                                      .shift = {(double)(float)(-n.y * along), (double)(float)(n.x * along)}});
     }
 }
@@ -189,7 +200,8 @@ static void list_pairs(dem *d) {
 
 void dem_find_pairs(dem *d) {
     const narc_bodies bodies = dem_make_poses(d);
-    const narc_pair_filter filter = {.kind = NARC_COLUMN(d->images, still),
+    const narc_pair_filter filter = {.category = NARC_COLUMN(d->images, category),
+                                     .mask = NARC_COLUMN(d->images, mask),
                                      .group = NARC_COLUMN(d->images, group)};
     /* touch.h decides. Shifts along plates are rounded. */
     const double rounding = 2e-7 * (d->settings.sheared ? dem_cell_size(d).x : d->wall_count > 0 ? d->diagonal : 0);

@@ -147,7 +147,7 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
 static bool check_indices(const dem *d) {
     bool ok = true;
     for (size_t k = d->part_count; k < d->image_count && ok; k++)
-        ok = d->images[k].part < d->part_count && d->images[k].still == 1;
+        ok = d->images[k].part < d->part_count;
     for (size_t k = 0; k < d->contact_count && ok; k++)
         ok = d->contacts[k].pair < d->pair_count;
     return ok;
