@@ -60,7 +60,7 @@ void dem_add_wall(dem *d, dem_wall wall) {
 }
 
 /* A plate is the upper side of its block. Half of that side is four times the largest grain's reach and the skin, so
- * that it goes on further than any grain that may touch it, whatever both move before the next list. */
+ * that it goes on further than any grain that may touch it, whatever both move before there is another image. */
 void dem_add_walls(dem *d) {
     const double side_by_extent = 0.88622692545275801; /* of a square: sqrt(pi) / 2 */
     const double half = 4 * (d->grain_reach + d->settings.skin);

@@ -57,7 +57,7 @@ void dem_wrap_bodies(dem *d) {
         return;
     if (s->sheared)
         d->offset -= size.x * nearbyint(d->offset / size.x);
-    d->list_offset = d->offset;
+    d->last_offset = d->offset;
     for (size_t k = 0; k < d->body_count; k++) {
         dem_body *b = &d->bodies[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];

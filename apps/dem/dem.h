@@ -126,7 +126,7 @@ typedef struct dem_body {
     uint32_t shape, material, first_part;
     int32_t cell_x, cell_y;       /* how often it crossed the periodic border, for true displacements */
     double reach;                 /* of the scaled shape */
-    vec list_position, list_turn; /* where it was when the images were made */
+    vec last_position, last_turn; /* where it was when the images were made */
     double mass, inertia;
 } dem_body;
 
@@ -250,12 +250,12 @@ struct dem {
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
 
     uint64_t step;
-    double time; /* step * time_step, summed over stages with their own steps */
-    uint64_t list_builds; /* how often images were made */
+    double time;       /* step * time_step, summed over stages with their own steps */
+    uint64_t renewals; /* how often images were made */
     dem_account account;
     /* Of a sheared cell: how far the cell above is to the right of this one, and was when the images were made; what
      * that cell's contacts pull; and the work done so. */
-    double offset, list_offset, pull, shear_work;
+    double offset, last_offset, pull, shear_work;
 
     dem_image *images; /* parts, too */
     size_t image_count;
@@ -347,12 +347,8 @@ unsigned dem_team(const dem *d); /* threads */
 vec dem_cell_size(const dem *d);
 
 /* The bodies of a pair. */
-static inline dem_body *dem_body_a(const dem *d, size_t pair) {
-    return &d->bodies[d->parts[d->pairs[pair].a].body];
-}
-static inline dem_body *dem_body_b(const dem *d, size_t pair) {
-    return &d->bodies[d->parts[d->pairs[pair].b].body];
-}
+static inline dem_body *dem_body_a(const dem *d, size_t pair) { return &d->bodies[d->parts[d->pairs[pair].a].body]; }
+static inline dem_body *dem_body_b(const dem *d, size_t pair) { return &d->bodies[d->parts[d->pairs[pair].b].body]; }
 static inline const dem_image *dem_image_b(const dem *d, size_t pair) { return &d->images[d->pairs[pair].image]; }
 static inline dem_memory *dem_memory_of(const dem *d, size_t pair) {
     return (dem_memory *)d->found->user + d->pairs[pair].slot;

@@ -2,22 +2,22 @@
  *
  * neighbours.c - images across borders and of plates, and which pairs may touch.
  *
- * narc keeps pairs, and in the slot of each its history (narc_contacts.h). It knows no borders: for pairs across one it is
- * asked about images, which are bodies a cell's width away. Images are made of what is within half the skin of where others
- * may be, so they serve until something has moved half of it (step.c watches that, rotation included).
+ * narc keeps pairs, and each one's history in its slot (narc_contacts.h). A pair is known by its two bodies, and there are
+ * no borders: so who is near another one across a border, or near a plate, meets an image, a body that has an id of its own.
+ * Images are made with boxes half the skin larger, and serve until something has moved half of it (step.c watches that,
+ * rotation included).
  *
- * Borders: a pair across one is found from both sides, and counts where the image is that of the larger part. Walls meet
- * no images: two bodies that are marked "still" form no pair. A pair of bodies must be found once, so that its history can
- * be: two images of B that both are near A would be two. This cannot be if the cell is as wide as the boxes of the two
- * together, which find_widths() demands. Where a grain is wrapped into the cell another image of it, or of its neighbour,
- * takes over: the pair parts and begins in the same step, and its history goes along.
+ * Borders: an image is a cell's width away. A pair across a border is found from both sides, and counts where the image is
+ * that of the larger part. Images and walls are of one group, and form no pair. A pair of parts must be found once, so that
+ * its history can be: two images of B that both are near A would be two. This cannot be if the cell is as wide as the boxes
+ * of the two together, which find_widths() demands. Where a grain is wrapped into the cell another image of it, or of its
+ * neighbour, takes over: the pair parts and begins in the same step, and its history goes along.
  *
  * Plates: a plate is a half plane, and its body a block whose upper side is the plate. Each grain that is near has an image
  * of the block of its own, right under it: so the plate has no ends, and narc sees two bodies of similar size, whose
- * separation is precise.
+ * separation is precise. Parts have 63 colours (categories), so that few others meet that image.
  */
 #include <math.h>
-#include <string.h>
 
 #include "dem.h"
 
@@ -28,7 +28,6 @@ static void add_image(dem *d, dem_image image) {
     d->images[d->image_count++] = image;
 }
 
-/* Of 63 colours. */
 static uint64_t find_category(uint32_t part) { return UINT64_C(1) << part % 63; }
 
 /* A plate itself meets no grain, but its images do. */
@@ -45,19 +44,6 @@ static void add_parts(dem *d) {
                                  .group = wall ? 1 : (uint32_t)body + 2});
     }
 }
-
-static void find_boxes(dem *d) {
-    const narc_bodies bodies = dem_make_poses(d);
-    const narc_box_options options = {.margin = (float)(0.5 * d->settings.skin), .workers = &d->workers};
-    narc_error error;
-    dem_grow(&d->boxes, d->part_count, sizeof *d->boxes);
-    dem_demand(d, narc_compute_boxes(d->store, &bodies, &options, d->boxes, &error), "boxes", &error);
-    for (size_t w = 0; w < d->wall_count; w++) /* plates have other images */
-        if (d->walls[w].kind == DEM_PLATE)
-            d->boxes[d->bodies[d->grain_count + w].first_part] = (narc_box){1, 1, -1, -1};
-}
-
-static bool is_empty(narc_box box) { return !(box.min_x <= box.max_x); }
 
 /* Of a part's box; of a body of several, what its whole may take at most. */
 static vec find_size(const dem *d, size_t part) {
@@ -83,7 +69,7 @@ static narc_box find_widths(dem *d) {
     for (size_t i = 0; i < d->part_count; i++) {
         const size_t k = d->parts[i].body;
         const vec both = plus(find_size(d, i), grain);
-        if (!is_empty(d->boxes[i]) &&
+        if (d->images[i].mask != 0 &&
             ((d->settings.periodic_x && both.x >= size.x) || (d->settings.periodic_y && both.y >= size.y)))
             dem_fail(d,
                      "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
@@ -103,10 +89,14 @@ static void add_images_across_borders(dem *d) {
     const dem_settings *s = &d->settings;
     if (!s->periodic_x && !s->periodic_y)
         return;
-    find_boxes(d);
+    const narc_bodies bodies = dem_make_poses(d);
+    const narc_box_options options = {.margin = (float)(0.5 * s->skin), .workers = &d->workers};
+    narc_error error;
+    dem_grow(&d->boxes, d->part_count, sizeof *d->boxes);
+    dem_demand(d, narc_compute_boxes(d->store, &bodies, &options, d->boxes, &error), "boxes", &error);
     const narc_box all = find_widths(d);
     for (uint32_t k = 0; k < d->part_count; k++)
-        for (int i = 0; i < 9 && !is_empty(d->boxes[k]); i++) {
+        for (int i = 0; i < 9 && d->images[k].mask != 0; i++) {
             dem_image image = d->images[k];
             image.id |= (uint64_t)(i + 1) << 32;
             image.group = 1;
@@ -160,10 +150,10 @@ void dem_renew_images(dem *d) {
     add_images_across_borders(d);
     add_images_of_plates(d);
     for (size_t k = 0; k < d->body_count; k++) { /* from where bodies move */
-        d->bodies[k].list_position = d->bodies[k].position;
-        d->bodies[k].list_turn = d->bodies[k].turn;
+        d->bodies[k].last_position = d->bodies[k].position;
+        d->bodies[k].last_turn = d->bodies[k].turn;
     }
-    d->list_builds++;
+    d->renewals++;
 }
 
 /* ------------------------------------------------------------------------------------------------ pairs */
@@ -173,9 +163,9 @@ static void carry_over(const dem *d) {
     const narc_step_result *r = d->found;
     dem_memory *memory = r->user;
     for (const narc_touch_event *old = r->ended; old < r->ended + r->ended_count; old++)
-        for (const narc_touch_event *new = r->began; old->parted && new < r->began + r->began_count; new ++)
-            if (old->id_a == new->id_a && (uint32_t)old->id_b == (uint32_t)new->id_b)
-                memory[new->slot] = memory[old->slot];
+        for (const narc_touch_event *now = r->began; old->parted && now < r->began + r->began_count; now++)
+            if (old->id_a == now->id_a && (uint32_t)old->id_b == (uint32_t)now->id_b)
+                memory[now->slot] = memory[old->slot];
 }
 
 /* In narc's order images stand behind parts. */
@@ -204,7 +194,7 @@ void dem_find_pairs(dem *d) {
                                      .mask = NARC_COLUMN(d->images, mask),
                                      .group = NARC_COLUMN(d->images, group)};
     /* touch.h decides. Shifts along plates are rounded. */
-    const double rounding = 2e-7 * (d->settings.sheared ? dem_cell_size(d).x : d->wall_count > 0 ? d->diagonal : 0);
+    const double rounding = d->wall_count > 0 ? 2e-7 * d->diagonal : 0;
     const narc_step step = {.bodies = &bodies,
                             .margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
                             .skin = (float)(0.5 * d->settings.skin),

@@ -24,7 +24,7 @@ static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
 enum { VERSION = 7, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
-    uint64_t bodies, walls, images, pairs, contacts;
+    uint64_t bodies, walls, images, pairs, contacts; /* images that are no parts */
 } counts;
 
 /* What is known of a pair. */
@@ -76,14 +76,14 @@ static void pass_body(stream *s, dem_body *b) {
     *b = s->ok ? now : *b;
 }
 
-static void pass_all(stream *s, dem *d, dem_progress *progress, history *histories) {
+static void pass_all(stream *s, dem *d, const counts *n, dem_progress *progress, history *histories) {
     PASS(*progress);
     PASS(d->step);
     PASS(d->time);
-    PASS(d->list_builds);
+    PASS(d->renewals);
     PASS(d->account);
     PASS(d->offset);
-    PASS(d->list_offset);
+    PASS(d->last_offset);
     PASS(d->pull);
     PASS(d->shear_work);
     PASS(d->settings.shear);
@@ -93,13 +93,13 @@ static void pass_all(stream *s, dem *d, dem_progress *progress, history *histori
         pass_wall(s, d, w);
     for (size_t k = 0; k < d->body_count; k++)
         pass_body(s, &d->bodies[k]);
-    PASS_ALL(d->images + d->part_count, d->image_count - d->part_count);
-    PASS_ALL(histories, d->pair_count);
-    PASS_ALL(d->contacts, d->contact_count); /* a run that has no more steps is asked for them */
+    PASS_ALL(d->images + d->part_count, n->images);
+    PASS_ALL(histories, n->pairs);
+    PASS_ALL(d->contacts, n->contacts); /* a run that has no more steps is asked for them */
 }
 
 void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
-    counts n = {d->body_count, d->wall_count, d->image_count, d->pair_count, d->contact_count};
+    counts n = {d->body_count, d->wall_count, d->image_count - d->part_count, d->pair_count, d->contact_count};
     history *histories = NULL;
     dem_progress where = *progress;
     header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = progress->input};
@@ -111,7 +111,7 @@ void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
         histories[k] = (history){d->pairs[k].a, d->pairs[k].b, *dem_memory_of(d, k)};
     fwrite(&head, 1, sizeof head, file.file); /* room for it */
     pass(&out, &n, sizeof n);
-    pass_all(&out, d, &where, histories);
+    pass_all(&out, d, &n, &where, histories);
     dem_release(histories);
     head.size = out.used;
     head.checksum = out.checksum;
@@ -144,21 +144,19 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
     return false;
 }
 
-static bool check_indices(const dem *d) {
+/* Takes what was read beside bodies: the pairs must be found again, and get their histories. */
+static bool take_pairs(dem *d, const counts *n, const history *histories) {
     bool ok = true;
-    for (size_t k = d->part_count; k < d->image_count && ok; k++)
-        ok = d->images[k].part < d->part_count;
-    for (size_t k = 0; k < d->contact_count && ok; k++)
-        ok = d->contacts[k].pair < d->pair_count;
-    return ok;
-}
-
-/* Finds the pairs again, and gives them their histories. */
-static bool take_histories(dem *d, const history *histories) {
-    const size_t count = d->pair_count;
-    dem_find_pairs(d);
-    bool ok = d->pair_count == count;
-    for (size_t k = 0; k < count && ok; k++) {
+    d->image_count = d->part_count + n->images;
+    d->contact_count = n->contacts;
+    for (size_t k = d->part_count; k < d->image_count; k++)
+        ok = ok && d->images[k].part < d->part_count;
+    for (size_t k = 0; k < n->contacts; k++)
+        ok = ok && d->contacts[k].pair < n->pairs;
+    if (ok)
+        dem_find_pairs(d);
+    ok = ok && d->pair_count == n->pairs;
+    for (size_t k = 0; k < n->pairs && ok; k++) {
         ok = histories[k].a == d->pairs[k].a && histories[k].b == d->pairs[k].b;
         *dem_memory_of(d, k) = histories[k].memory;
     }
@@ -168,25 +166,23 @@ static bool take_histories(dem *d, const history *histories) {
 void dem_read_restart(dem *d, dem_progress *progress, const char *path) {
     size_t size;
     char *bytes = dem_read_file(path, &size), problem[128] = "its bodies do not fit the input";
-    history *histories = NULL;
     bool ok = check_header(bytes, size, progress->input, problem, sizeof problem);
     if (ok) {
         stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
         counts n = {0};
+        history *histories = NULL;
         pass(&in, &n, sizeof n);
-        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.images >= d->part_count &&
-             n.images - d->part_count <= in.size / sizeof(dem_image) && n.pairs <= in.size / sizeof(history) &&
-             n.contacts <= n.pairs;
-        d->image_count = ok ? n.images : d->part_count;
-        d->pair_count = ok ? n.pairs : 0;
-        d->contact_count = ok ? n.contacts : 0;
-        dem_grow(&d->images, d->image_count, sizeof *d->images);
-        dem_grow(&histories, d->pair_count, sizeof *histories);
-        dem_grow(&d->contacts, d->contact_count, sizeof *d->contacts);
-        pass_all(&in, d, progress, histories);
-        ok = ok && in.ok && in.used == in.size && check_indices(d) && take_histories(d, histories);
+        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.images <= in.size / sizeof(dem_image) &&
+             n.pairs <= in.size / sizeof(history) && n.contacts <= n.pairs;
+        if (ok) {
+            dem_grow(&d->images, d->part_count + n.images, sizeof *d->images);
+            dem_grow(&histories, n.pairs, sizeof *histories);
+            dem_grow(&d->contacts, n.contacts, sizeof *d->contacts);
+            pass_all(&in, d, &n, progress, histories);
+            ok = in.ok && in.used == in.size && take_pairs(d, &n, histories);
+        }
+        dem_release(histories);
     }
-    dem_release(histories);
     dem_release(bytes);
     if (!ok)
         dem_fail(d, "%s: %s", path, problem);

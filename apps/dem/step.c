@@ -16,7 +16,7 @@
  * times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below the
  * limit so has not moved. A NaN has moved. */
 static inline bool has_moved(const dem_body *b, double limit) {
-    const vec way = minus(b->position, b->list_position), turn = minus(b->turn, b->list_turn);
+    const vec way = minus(b->position, b->last_position), turn = minus(b->turn, b->last_turn);
     const double p = dot(way, way), q = b->reach * b->reach * dot(turn, turn);
     return !(2 * (p + q) <= limit * limit) && !(sqrt(p) + sqrt(q) <= limit);
 }
@@ -30,7 +30,7 @@ static inline void kick(dem_body *b, double half, vec gravity) {
 /* Half of the change of grains' velocities, and the way, of walls too. Has anything moved by half of the skin, or of
  * what shear has left of it? */
 static bool begin_step(dem *d) {
-    const double dt = d->settings.time_step, limit = 0.5 * (d->settings.skin - fabs(d->offset - d->list_offset));
+    const double dt = d->settings.time_step, limit = 0.5 * (d->settings.skin - fabs(d->offset - d->last_offset));
     int moved = !(limit > 0);
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1) reduction(| : moved)
     for (size_t k = 0; k < d->grain_count; k++) {

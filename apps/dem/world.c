@@ -19,17 +19,8 @@ void dem_create(dem *d, dem_settings settings) {
 }
 
 void dem_destroy(dem *d) {
-    void *const arrays[] = {d->outlines,
-                            d->shapes,
-                            d->bodies,
-                            d->parts,
-                            d->walls,
-                            d->images,
-                            d->pairs,
-                            d->contacts,
-                            d->poses,
-                            d->blocks,
-                            d->boxes};
+    void *const arrays[] = {d->outlines, d->shapes,   d->bodies, d->parts,  d->walls, d->images,
+                            d->pairs,    d->contacts, d->poses,  d->blocks, d->boxes};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         dem_release(arrays[i]);
     narc_destroy_shapes(d->store);
