@@ -60,7 +60,7 @@ void dem_add_wall(dem *d, dem_wall wall) {
 }
 
 /* A plate is the upper side of its block. Half of that side is four times the largest grain's reach and the skin, so
- * that it goes on further than any grain that may touch it, whatever both move before the next list. */
+ * that it goes on further than any grain that may touch it, whatever both move before there is another image. */
 void dem_add_walls(dem *d) {
     const double side_by_extent = 0.88622692545275801; /* of a square: sqrt(pi) / 2 */
     const double half = 4 * (d->grain_reach + d->settings.skin);
@@ -88,14 +88,15 @@ void dem_add_walls(dem *d) {
 /* ------------------------------------------------------------------------------------------------ all of them */
 
 narc_bodies dem_make_poses(dem *d) {
-    dem_grow(&d->poses, d->part_count, sizeof *d->poses);
+    dem_grow(&d->poses, d->image_count, sizeof *d->poses);
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1)
-    for (size_t i = 0; i < d->part_count; i++) {
-        const dem_body *b = &d->bodies[d->parts[i].body];
-        const float cosine = (float)b->turn.x, sine = (float)b->turn.y;
-        d->poses[i] = (narc_body){b->position.x, b->position.y, cosine, sine, b->scale, d->parts[i].outline};
+    for (size_t i = 0; i < d->image_count; i++) {
+        const dem_part *part = &d->parts[d->images[i].part];
+        const dem_body *b = &d->bodies[part->body];
+        const vec at = plus(b->position, d->images[i].shift);
+        d->poses[i] = (narc_body){at.x, at.y, (float)b->turn.x, (float)b->turn.y, b->scale, part->outline};
     }
-    return narc_view_bodies(d->poses, d->part_count);
+    return narc_view_bodies(d->poses, d->image_count);
 }
 
 dem_region dem_bound(const dem *d, bool with_walls) {
@@ -125,7 +126,7 @@ void dem_fail_lost(dem *d) {
     narc_error error = {.message = "its position is out of range"};
     size_t k = 0;
     if (narc_validate_bodies(d->store, &bodies, &error) != NARC_OK)
-        k = d->parts[error.index].body;
+        k = d->parts[d->images[error.index].part].body;
     else
         while (k + 1 < d->body_count &&
                fabs(d->bodies[k].position.x) + fabs(d->bodies[k].position.y) < NARC_MAX_DISTANCE)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * boundary.c - periodic borders: bodies are wrapped into the cell when pairs are found, and only then. Shear.
+ * boundary.c - periodic borders: bodies are wrapped into the cell when images are made, and only then. Shear.
  *
  * A sheared cell (Lees and Edwards 1972): the cell above moves to the right, by the rate of shear times the height. Who
  * is in it is `offset` further right than its image here, and faster by that speed; who crosses the border gets both.
- * Shifts of pairs across it change in each step. A float is enough for narc; forces take them anew in double precision.
+ * So images across it move in each step.
  */
 #include <math.h>
 
@@ -28,23 +28,15 @@ void dem_set_shear(dem *d, double rate) {
     d->settings.shear = rate;
 }
 
-/* The x shift of a pair across the upper or lower border: whole widths, and the offset. */
-static double find_shear_shift(const dem *d, const dem_pair *pair, double old_offset) {
-    const double lift = dem_find_lift(pair), width = dem_cell_size(d).x;
-    return width * nearbyint(((double)pair->shift_x - lift * old_offset) / width) + lift * d->offset;
-}
-
-vec dem_find_shift(const dem *d, const dem_pair *pair) {
-    const bool sheared = d->settings.sheared && pair->shift_y != 0;
-    return (vec){sheared ? find_shear_shift(d, pair, d->offset) : (double)pair->shift_x, (double)pair->shift_y};
+vec dem_find_shift(const dem *d, const dem_image *of) {
+    const vec size = dem_cell_size(d);
+    return (vec){of->right * size.x + of->up * d->offset, of->up * size.y};
 }
 
 void dem_shear_cell(dem *d) {
-    const double old = d->offset;
     d->offset += d->settings.time_step * dem_find_drift(d);
-    for (dem_pair *p = d->list.pairs; d->settings.sheared && p < d->list.pairs + d->list.count; p++)
-        if (p->shift_y != 0)
-            p->shift_x = (float)find_shear_shift(d, p, old);
+    for (dem_image *i = d->images; d->settings.sheared && i < d->images + d->image_count; i++)
+        i->shift = dem_find_shift(d, i);
 }
 
 /* ------------------------------------------------------------------------------------------------ wrapping */
@@ -65,7 +57,7 @@ void dem_wrap_bodies(dem *d) {
         return;
     if (s->sheared)
         d->offset -= size.x * nearbyint(d->offset / size.x);
-    d->list_offset = d->offset;
+    d->last_offset = d->offset;
     for (size_t k = 0; k < d->body_count; k++) {
         dem_body *b = &d->bodies[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];

@@ -13,7 +13,7 @@
  *       bodies.c      grains and walls, and as narc sees them
  *       boundary.c    wrapping, shear
  *       filling.c     where grains start
- *       neighbours.c  boxes, pairs with a skin, images, history
+ *       neighbours.c  images, pairs that may touch, history
  *       walls.c       motion of walls, servo control
  *       laws.c        forces of contacts and bodies
  *       step.c        velocity Verlet, the narrow phase
@@ -45,6 +45,7 @@
 
 #include <narc.h>
 #include <narc_broad_phase.h>
+#include <narc_contacts.h>
 
 #include <stdio.h>
 
@@ -99,7 +100,7 @@ typedef struct dem_region {
 
 typedef struct dem_settings {
     double time_step;
-    double skin;      /* pairs are kept while nothing has moved half of it */
+    double skin;      /* images, and narc's pairs, are kept while nothing has moved half of it */
     double thickness; /* of the grains, across the plane */
     vec gravity;
     dem_law law;
@@ -125,7 +126,7 @@ typedef struct dem_body {
     uint32_t shape, material, first_part;
     int32_t cell_x, cell_y;       /* how often it crossed the periodic border, for true displacements */
     double reach;                 /* of the scaled shape */
-    vec list_position, list_turn; /* where it was when the pairs were found */
+    vec last_position, last_turn; /* where it was when the images were made */
     double mass, inertia;
 } dem_body;
 
@@ -168,14 +169,26 @@ typedef struct dem_wall {
     double idle_way; /* how far servo control has moved it since it touched a grain */
 } dem_wall;
 
-/* Two parts whose boxes, half the skin larger, overlap. */
+/* What narc is asked about: all parts where they are, then images of some: a cell's width away, and blocks of plates under
+ * a grain. An image meets only who is no image. */
+typedef struct dem_image {
+    uint64_t id;             /* as narc knows it: the part; of an image also its direction, or the grain's part */
+    uint64_t category, mask; /* who may meet whom */
+    uint32_t part;
+    uint32_t owner;   /* the only part that it may meet, or UINT32_MAX */
+    uint32_t group;   /* two of the same form no pair: the body + 2; 1 of walls and images */
+    int8_t right, up; /* by how many cells */
+    vec shift;        /* from the part */
+} dem_image;
+
+/* Two parts that may touch. */
 typedef struct dem_pair {
-    uint32_t a, b;          /* parts */
-    float shift_x, shift_y; /* added to B's position */
-    uint32_t hint;          /* narc's */
+    uint32_t a, b;  /* parts, a < b */
+    uint32_t image; /* where B is */
+    uint32_t slot;  /* narc's */
 } dem_pair;
 
-/* The memory of a pair that touches. It counts only if `step` is the step before. */
+/* The memory of a pair that touches, in its slot. It counts only if `step` is the step before. */
 typedef struct dem_memory {
     double slide;                /* of the tangential spring */
     double spring;               /* its force */
@@ -183,13 +196,6 @@ typedef struct dem_memory {
     double roll, rolling_spring; /* used only if there is rolling friction */
     uint64_t step;
 } dem_memory;
-
-/* In the order of (a, b). No pair stands there twice. */
-typedef struct dem_list {
-    size_t count;
-    dem_pair *pairs;
-    dem_memory *memory;
-} dem_list;
 
 /* The force of a contact on B, on A the opposite, and its torques. */
 typedef struct dem_force {
@@ -223,13 +229,6 @@ typedef struct dem_block {
     size_t too_deep;    /* the first pair that is, or SIZE_MAX */
 } dem_block;
 
-/* What a box is of: a part, or its image, which is some way from it. */
-typedef struct dem_image {
-    uint32_t part, group; /* the body + 1 */
-    float x, y;
-    uint8_t still; /* two of them form no pair */
-} dem_image;
-
 /* Arrays grow by dem_grow(). */
 typedef struct dem dem;
 struct dem {
@@ -251,30 +250,27 @@ struct dem {
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
 
     uint64_t step;
-    double time; /* step * time_step, summed over stages with their own steps */
-    uint64_t list_builds;
+    double time;       /* step * time_step, summed over stages with their own steps */
+    uint64_t renewals; /* how often images were made */
     dem_account account;
-    /* Of a sheared cell: how far the cell above is to the right of this one, and was when the pairs were found; what
+    /* Of a sheared cell: how far the cell above is to the right of this one, and was when the images were made; what
      * that cell's contacts pull; and the work done so. */
-    double offset, list_offset, pull, shear_work;
+    double offset, last_offset, pull, shear_work;
 
-    dem_list list, other_list; /* the other: memory for the next one */
-    dem_contact *contacts;     /* of the last step, in the order of the pairs */
+    dem_image *images; /* parts, too */
+    size_t image_count;
+    narc_contacts *near;
+    const narc_step_result *found; /* of the last step: its slots have a dem_memory */
+    dem_pair *pairs;               /* what may touch, in the order of (a, b). No pair stands there twice */
+    size_t pair_count;
+    dem_contact *contacts; /* what does, in the order of the pairs */
     size_t contact_count;
 
-    /* Memory of a step and of the search for pairs. */
-    narc_body *poses;    /* of all parts, when narc was last asked */
-    narc_contact *found; /* what may touch */
-    size_t found_count;
+    /* Memory of a step and of the search for images. */
+    narc_body *poses; /* of all images, when narc was last asked */
     dem_block *blocks;
     narc_workers workers;
-    narc_broad_phase *broad;
-    narc_box *boxes; /* parts, then images of parts */
-    dem_image *images;
-    size_t image_count;
-    dem_pair *extra; /* pairs that narc does not find: across a periodic border, or with a plate */
-    size_t extra_count;
-    uint32_t *match;
+    narc_box *boxes; /* of parts */
 
     char input_path[256];     /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
     char error[512];          /* what went wrong */
@@ -337,7 +333,7 @@ void dem_add_wall(dem *d, dem_wall wall);
 /* Makes walls bodies, behind all grains. */
 void dem_add_walls(dem *d);
 
-/* All parts where they are now, for narc, until the next call. */
+/* All images where they are now, for narc, until the next call. */
 narc_bodies dem_make_poses(dem *d);
 
 /* The box around all grains: squares as large as they reach; and the places where walls start. */
@@ -351,16 +347,13 @@ unsigned dem_team(const dem *d); /* threads */
 vec dem_cell_size(const dem *d);
 
 /* The bodies of a pair. */
-static inline dem_body *dem_body_a(const dem *d, size_t pair) {
-    return &d->bodies[d->parts[d->list.pairs[pair].a].body];
-}
-static inline dem_body *dem_body_b(const dem *d, size_t pair) {
-    return &d->bodies[d->parts[d->list.pairs[pair].b].body];
+static inline dem_body *dem_body_a(const dem *d, size_t pair) { return &d->bodies[d->parts[d->pairs[pair].a].body]; }
+static inline dem_body *dem_body_b(const dem *d, size_t pair) { return &d->bodies[d->parts[d->pairs[pair].b].body]; }
+static inline const dem_image *dem_image_b(const dem *d, size_t pair) { return &d->images[d->pairs[pair].image]; }
+static inline dem_memory *dem_memory_of(const dem *d, size_t pair) {
+    return (dem_memory *)d->found->user + d->pairs[pair].slot;
 }
 static inline bool dem_is_wall(const dem_body *b) { return !(b->inverse_mass > 0); }
-
-/* By how many cells the B of a pair is above A: its image. */
-static inline int dem_find_lift(const dem_pair *pair) { return (pair->shift_y > 0) - (pair->shift_y < 0); }
 
 /* A rotation is a unit vector, and turns within a step by 2 atan(angle / 2), which is the angle to the third order and
  * needs no sine. What rounding takes from its length is given back each time. */
@@ -385,9 +378,9 @@ const char *dem_explain_depth(const dem *d); /* why bodies overlap too far */
 void dem_set_shear(dem *d, double rate);
 
 void dem_wrap_bodies(dem *d);
-void dem_shear_cell(dem *d);                            /* the way of a step */
-vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
-double dem_find_drift(const dem *d);                    /* the speed of the cell above */
+void dem_shear_cell(dem *d);                           /* the way of a step */
+vec dem_find_shift(const dem *d, const dem_image *of); /* of an image across a border */
+double dem_find_drift(const dem *d);                   /* the speed of the cell above */
 
 /* ---------------------------------------------------------------------------------------------------------- filling.c */
 
@@ -425,7 +418,10 @@ void dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
 
 /* ----------------------------------------------------------------------------------------------------- neighbours.c */
 
-void dem_renew_lists(dem *d);
+void dem_renew_images(dem *d);
+
+/* What may touch where bodies are now. */
+void dem_find_pairs(dem *d);
 
 /* ---------------------------------------------------------------------------------------------------------- walls.c */
 

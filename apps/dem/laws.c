@@ -106,8 +106,8 @@ INLINE vec find_velocity(const contact *c, vec at_a, vec at_b) {
 INLINE vec find_arm_b(const contact *c, vec at_a) { return plus(at_a, minus(c->arm_b, c->point)); }
 
 /* Where B is from A. A plate's shift is rounded: what of it is across the plate is left out. */
-INLINE vec find_way(const dem *d, const dem_pair *pair, const dem_body *a, const dem_body *b) {
-    vec shift = dem_find_shift(d, pair);
+INLINE vec find_way(const dem *d, const dem_image *image, const dem_body *a, const dem_body *b) {
+    vec shift = image->shift;
     if (dem_is_wall(b)) {
         const vec n = d->walls[b - d->bodies - (ptrdiff_t)d->grain_count].normal; /* 0 of a box */
         shift = minus(shift, times(dot(shift, n), n));
@@ -126,16 +126,17 @@ INLINE void join_ends(const touch_end *end, contact *c) {
 }
 
 /* Are both in contact? Of two ends, `t` is what they are. */
-INLINE bool load_contact(const dem *d, const narc_contact *row, contact *c, touch *t) {
-    const dem_pair *pair = &d->list.pairs[row->pair];
-    c->a = dem_body_a(d, row->pair);
-    c->b = dem_body_b(d, row->pair);
-    const vec way = find_way(d, pair, c->a, c->b);
+INLINE bool load_contact(const dem *d, size_t index, contact *c, touch *t) {
+    const dem_pair *pair = &d->pairs[index];
+    const dem_image *image = dem_image_b(d, index);
+    c->a = dem_body_a(d, index);
+    c->b = dem_body_b(d, index);
+    const vec way = find_way(d, image, c->a, c->b);
     if (c->a->disc > 0 && c->b->disc > 0)
         put_point(meet_discs(c->a->disc, c->b->disc, way.x, way.y), t);
     else {
         const touch_grain of_a = look_at(d, pair->a, c->a), of_b = look_at(d, pair->b, c->b);
-        find_touch(&of_a, &of_b, way.x, way.y, row->feature, t);
+        find_touch(&of_a, &of_b, way.x, way.y, d->found->contacts[pair->slot].feature, t);
     }
     c->depth = t->depth;
     if (t->count == 0)
@@ -144,7 +145,7 @@ INLINE bool load_contact(const dem *d, const narc_contact *row, contact *c, touc
     c->point = (vec){t->end[0].x, t->end[0].y};
     if (t->count == 2)
         join_ends(t->end, c);
-    c->drift = d->settings.sheared ? dem_find_lift(pair) * dem_find_drift(d) : 0;
+    c->drift = d->settings.sheared ? image->up * dem_find_drift(d) : 0;
     c->arm_b = minus(c->point, way);
     const vec v = find_velocity(c, c->point, c->arm_b);
     c->vn = dot(v, c->normal);
@@ -220,11 +221,10 @@ static double push_ends(contact c, const touch *t, double stiffness, double dash
 
 /* One contact, and its row. Where `hertz` and `rolls` are constants all that they do not want is left out. Returns
  * false if both are apart after all. */
-INLINE bool apply_law(dem *d, const narc_contact *found, dem_contact *out_row, bool hertz, bool rolls,
-                      dem_block *block) {
+INLINE bool apply_law(dem *d, size_t pair, dem_contact *out_row, bool hertz, bool rolls, dem_block *block) {
     contact c;
     touch t;
-    if (!load_contact(d, found, &c, &t))
+    if (!load_contact(d, pair, &c, &t))
         return false;
     const double dt = d->settings.time_step, depth = c.depth;
     const dem_contact_law *law = &d->laws[c.a->material][c.b->material];
@@ -238,7 +238,7 @@ INLINE bool apply_law(dem *d, const narc_contact *found, dem_contact *out_row, b
     const double dashpot_t = by_ratio ? law->tangential_share * dashpot_n : law->gamma_t * mass;
 
     dem_account *account = &block->account;
-    dem_memory memory = d->list.memory[found->pair];
+    dem_memory memory = *dem_memory_of(d, pair);
     const bool is_old = memory.step + 1 == d->step;
     memory = is_old ? memory : (dem_memory){.slide = 0};
     memory.step = d->step;
@@ -271,12 +271,12 @@ INLINE bool apply_law(dem *d, const narc_contact *found, dem_contact *out_row, b
         on.torque_a += torque;
         on.torque_b -= torque;
     }
-    d->list.memory[found->pair] = memory;
-    *out_row = (dem_contact){found->pair, c.normal, c.point, depth, on};
+    *dem_memory_of(d, pair) = memory;
+    *out_row = (dem_contact){pair, c.normal, c.point, depth, on};
     if (dem_team(d) == 1) /* several threads add up when all is found */
         add_to_bodies(c.a, c.b, on);
     if (block->too_deep == SIZE_MAX && is_too_deep(d, &c))
-        block->too_deep = found->pair;
+        block->too_deep = pair;
     return true;
 }
 
@@ -284,12 +284,12 @@ INLINE bool apply_law(dem *d, const narc_contact *found, dem_contact *out_row, b
 INLINE dem_block apply_laws(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
     dem_block block = {.too_deep = SIZE_MAX};
     for (size_t k = first; k < end; k++)
-        block.count += apply_law(d, &d->found[k], &d->contacts[first + block.count], hertz, rolls, &block);
+        block.count += apply_law(d, k, &d->contacts[first + block.count], hertz, rolls, &block);
     return block;
 }
 
 __attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {
-    const size_t a = d->parts[d->list.pairs[pair].a].body, b = d->parts[d->list.pairs[pair].b].body;
+    const size_t a = d->parts[d->pairs[pair].a].body, b = d->parts[d->pairs[pair].b].body;
     const dem_contact *row = d->contacts;
     while (row->pair != pair)
         row++;
@@ -326,7 +326,7 @@ static void join_blocks(dem *d, size_t count) {
 }
 
 void dem_apply_laws(dem *d) {
-    const size_t count = d->found_count, block_count = (count + DEM_BLOCK - 1) / DEM_BLOCK;
+    const size_t count = d->pair_count, block_count = (count + DEM_BLOCK - 1) / DEM_BLOCK;
     const bool hertz = d->settings.law == DEM_HERTZ;
     const unsigned team = dem_team(d);
     bool rolls = false;
@@ -349,5 +349,5 @@ void dem_apply_laws(dem *d) {
         add_to_bodies(dem_body_a(d, c->pair), dem_body_b(d, c->pair), c->on);
     d->pull = 0;
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count && d->settings.sheared; c++)
-        d->pull += dem_find_lift(&d->list.pairs[c->pair]) * c->on.force.x;
+        d->pull += dem_image_b(d, c->pair)->up * c->on.force.x;
 }

@@ -148,7 +148,7 @@ static void report(const run *r) {
         fprintf(stderr, "\r\033[K");
     if (r->total_steps == r->first_step)
         fprintf(stderr, "dem: nothing was left to run: all stages of the input were over\n");
-    printf("steps %" PRIu64 ", time %g, lists %" PRIu64 "\n", r->world.step, r->world.time, r->world.list_builds);
+    printf("steps %" PRIu64 ", time %g, renewals %" PRIu64 "\n", r->world.step, r->world.time, r->world.renewals);
     printf("grains %zu, walls %zu, contacts %zu, coordination %.3f\n", r->world.grain_count, r->world.wall_count,
            m.contacts, m.coordination);
     printf("kinetic %.6g, potential %.6g, elastic %.6g, damping %.6g, friction %.6g, walls %.6g\n", m.energy.kinetic,

@@ -65,13 +65,12 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
     m.energy = measure_energies(d, &m.fastest);
     double ends = 0;
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count; c++) {
-        const dem_pair *pair = &d->list.pairs[c->pair];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
         const bool is_wall = dem_is_wall(b);
         ends += is_wall ? 1 : 2;
         m.deepest = fmax(m.deepest, c->depth / (is_wall ? a->extent : fmin(a->extent, b->extent)));
         /* From the centre of A to that of B; of a wall, to the contact. */
-        const vec shift = dem_find_shift(d, pair);
+        const vec shift = dem_image_b(d, c->pair)->shift;
         if (is_inside(d, r, plus(a->position, c->point)))
             add_stress(&m.stress, c->on.force, is_wall ? c->point : plus(minus(b->position, a->position), shift));
     }
@@ -121,9 +120,8 @@ dem_load *dem_find_loads(const dem *d) {
     dem_grow(&loads, d->body_count, sizeof *loads);
     memset(loads, 0, d->body_count * sizeof *loads);
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count; c++) {
-        const dem_pair *pair = &d->list.pairs[c->pair];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
-        const vec shift = dem_find_shift(d, pair);
+        const vec shift = dem_image_b(d, c->pair)->shift;
         add_load(d, loads, a, times(-1, c->on.force), c->point);
         add_load(d, loads, b, c->on.force, plus(c->point, minus(minus(a->position, b->position), shift)));
     }
@@ -146,9 +144,9 @@ uint64_t dem_hash(const dem *d) {
     const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,  a->normal,
                            a->tangential,   a->rolling, d->offset,  d->shear_work};
     uint64_t hash = dem_hash_bytes(DEM_HASH_START, d->bodies, d->body_count * sizeof *d->bodies);
-    for (size_t k = 0; k < d->list.count; k++)
-        if (d->list.memory[k].step == d->step)
-            hash = dem_hash_bytes(hash, &d->list.memory[k], sizeof d->list.memory[k]);
+    for (size_t k = 0; k < d->pair_count; k++)
+        if (dem_memory_of(d, k)->step == d->step)
+            hash = dem_hash_bytes(hash, dem_memory_of(d, k), sizeof(dem_memory));
     for (size_t w = 0; w < d->wall_count; w++)
         hash = dem_hash_bytes(hash, &d->walls[w].work, sizeof d->walls[w].work);
     return dem_hash_bytes(hash, sums, sizeof sums);

@@ -4,7 +4,7 @@
  *
  *     "narc-dem" | version | byte order mark | size of what follows the header | its checksum | input hash
  *     counts, sums, progress of the run, laws
- *     walls, bodies, the pair list with its hints and histories, the contacts with their forces
+ *     walls, bodies, images, histories of pairs, the contacts with their forces
  *
  * Shapes, materials and settings are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is.
@@ -21,11 +21,17 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 6, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 7, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
-    uint64_t bodies, walls, pairs, contacts, extra;
+    uint64_t bodies, walls, images, pairs, contacts; /* images that are no parts */
 } counts;
+
+/* What is known of a pair. */
+typedef struct history {
+    uint32_t a, b;
+    dem_memory memory;
+} history;
 
 /* Writing, to `file`; reading, from `bytes`. */
 typedef struct stream {
@@ -70,14 +76,14 @@ static void pass_body(stream *s, dem_body *b) {
     *b = s->ok ? now : *b;
 }
 
-static void pass_all(stream *s, dem *d, dem_progress *progress) {
+static void pass_all(stream *s, dem *d, const counts *n, dem_progress *progress, history *histories) {
     PASS(*progress);
     PASS(d->step);
     PASS(d->time);
-    PASS(d->list_builds);
+    PASS(d->renewals);
     PASS(d->account);
     PASS(d->offset);
-    PASS(d->list_offset);
+    PASS(d->last_offset);
     PASS(d->pull);
     PASS(d->shear_work);
     PASS(d->settings.shear);
@@ -87,21 +93,26 @@ static void pass_all(stream *s, dem *d, dem_progress *progress) {
         pass_wall(s, d, w);
     for (size_t k = 0; k < d->body_count; k++)
         pass_body(s, &d->bodies[k]);
-    PASS_ALL(d->list.pairs, d->list.count);
-    PASS_ALL(d->list.memory, d->list.count);
-    PASS_ALL(d->contacts, d->contact_count); /* a run that has no more steps is asked for them */
+    PASS_ALL(d->images + d->part_count, n->images);
+    PASS_ALL(histories, n->pairs);
+    PASS_ALL(d->contacts, n->contacts); /* a run that has no more steps is asked for them */
 }
 
 void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
-    counts n = {d->body_count, d->wall_count, d->list.count, d->contact_count, d->extra_count};
+    counts n = {d->body_count, d->wall_count, d->image_count - d->part_count, d->pair_count, d->contact_count};
+    history *histories = NULL;
     dem_progress where = *progress;
     header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = progress->input};
     dem_file file = dem_open_file(d, path);
     stream out = {.file = file.file, .checksum = DEM_HASH_START, .ok = true};
     memcpy(head.magic, MAGIC, sizeof head.magic);
+    dem_grow(&histories, d->pair_count, sizeof *histories);
+    for (size_t k = 0; k < d->pair_count; k++)
+        histories[k] = (history){d->pairs[k].a, d->pairs[k].b, *dem_memory_of(d, k)};
     fwrite(&head, 1, sizeof head, file.file); /* room for it */
     pass(&out, &n, sizeof n);
-    pass_all(&out, d, &where);
+    pass_all(&out, d, &n, &where, histories);
+    dem_release(histories);
     head.size = out.used;
     head.checksum = out.checksum;
     rewind(file.file);
@@ -133,12 +144,22 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
     return false;
 }
 
-static bool check_indices(const dem *d) {
+/* Takes what was read beside bodies: the pairs must be found again, and get their histories. */
+static bool take_pairs(dem *d, const counts *n, const history *histories) {
     bool ok = true;
-    for (const dem_pair *p = d->list.pairs; p < d->list.pairs + d->list.count && ok; p++)
-        ok = p->a < p->b && p->b < d->part_count && d->parts[p->a].body < d->grain_count;
-    for (size_t k = 0; k < d->contact_count && ok; k++)
-        ok = d->contacts[k].pair < d->list.count;
+    d->image_count = d->part_count + n->images;
+    d->contact_count = n->contacts;
+    for (size_t k = d->part_count; k < d->image_count; k++)
+        ok = ok && d->images[k].part < d->part_count;
+    for (size_t k = 0; k < n->contacts; k++)
+        ok = ok && d->contacts[k].pair < n->pairs;
+    if (ok)
+        dem_find_pairs(d);
+    ok = ok && d->pair_count == n->pairs;
+    for (size_t k = 0; k < n->pairs && ok; k++) {
+        ok = histories[k].a == d->pairs[k].a && histories[k].b == d->pairs[k].b;
+        *dem_memory_of(d, k) = histories[k].memory;
+    }
     return ok;
 }
 
@@ -149,17 +170,18 @@ void dem_read_restart(dem *d, dem_progress *progress, const char *path) {
     if (ok) {
         stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
         counts n = {0};
+        history *histories = NULL;
         pass(&in, &n, sizeof n);
-        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.pairs <= in.size / sizeof(dem_pair) &&
-             n.contacts <= n.pairs;
-        d->list.count = ok ? n.pairs : 0;
-        d->contact_count = ok ? n.contacts : 0;
-        d->extra_count = n.extra;
-        dem_grow(&d->list.pairs, d->list.count, sizeof *d->list.pairs);
-        dem_grow(&d->list.memory, d->list.count, sizeof *d->list.memory);
-        dem_grow(&d->contacts, d->contact_count, sizeof *d->contacts);
-        pass_all(&in, d, progress);
-        ok = ok && in.ok && in.used == in.size && check_indices(d);
+        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.images <= in.size / sizeof(dem_image) &&
+             n.pairs <= in.size / sizeof(history) && n.contacts <= n.pairs;
+        if (ok) {
+            dem_grow(&d->images, d->part_count + n.images, sizeof *d->images);
+            dem_grow(&histories, n.pairs, sizeof *histories);
+            dem_grow(&d->contacts, n.contacts, sizeof *d->contacts);
+            pass_all(&in, d, &n, progress, histories);
+            ok = in.ok && in.used == in.size && take_pairs(d, &n, histories);
+        }
+        dem_release(histories);
     }
     dem_release(bytes);
     if (!ok)

@@ -12,11 +12,11 @@
 
 #include "dem.h"
 
-/* Has a point of the body moved by the limit since the pairs were found? A turn moves it by at most the body's reach
+/* Has a point of the body moved by the limit since the images were made? A turn moves it by at most the body's reach
  * times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below the
  * limit so has not moved. A NaN has moved. */
 static inline bool has_moved(const dem_body *b, double limit) {
-    const vec way = minus(b->position, b->list_position), turn = minus(b->turn, b->list_turn);
+    const vec way = minus(b->position, b->last_position), turn = minus(b->turn, b->last_turn);
     const double p = dot(way, way), q = b->reach * b->reach * dot(turn, turn);
     return !(2 * (p + q) <= limit * limit) && !(sqrt(p) + sqrt(q) <= limit);
 }
@@ -30,7 +30,7 @@ static inline void kick(dem_body *b, double half, vec gravity) {
 /* Half of the change of grains' velocities, and the way, of walls too. Has anything moved by half of the skin, or of
  * what shear has left of it? */
 static bool begin_step(dem *d) {
-    const double dt = d->settings.time_step, limit = 0.5 * (d->settings.skin - fabs(d->offset - d->list_offset));
+    const double dt = d->settings.time_step, limit = 0.5 * (d->settings.skin - fabs(d->offset - d->last_offset));
     int moved = !(limit > 0);
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1) reduction(| : moved)
     for (size_t k = 0; k < d->grain_count; k++) {
@@ -52,36 +52,12 @@ static void end_step(dem *d) {
         kick(&d->bodies[k], 0.5 * d->settings.time_step, d->settings.gravity);
 }
 
-static void find_contacts(dem *d) {
-    const narc_bodies bodies = dem_make_poses(d);
-    const dem_pair *p = d->list.pairs;
-    narc_pairs pairs = {.count = d->list.count, .a = NARC_COLUMN(p, a), .b = NARC_COLUMN(p, b)};
-    if (d->extra_count > 0) {
-        pairs.shift_x = NARC_COLUMN(p, shift_x);
-        pairs.shift_y = NARC_COLUMN(p, shift_y);
-    }
-    size_t skipped = 0;
-    /* touch.h decides. Shifts are rounded: those of a sheared cell, and along plates, which may be long. */
-    const double rounding = 2e-7 * (d->settings.sheared ? dem_cell_size(d).x : d->wall_count > 0 ? d->diagonal : 0);
-    const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
-                              .workers = &d->workers,
-                              .out_skipped = &skipped};
-    narc_error error;
-    dem_grow(&d->contacts, d->list.count, sizeof *d->contacts);
-    dem_grow(&d->found, d->list.count, sizeof *d->found);
-    const narc_status status =
-        narc_find_contacts(d->store, &bodies, &pairs, &query, d->found, d->list.count, &d->found_count, &error);
-    dem_demand(d, status, "contacts", &error);
-    if (skipped > 0)
-        dem_fail_lost(d);
-}
-
 /* With a time step of 0 no spring stretches and no work is done. */
 void dem_find_first_forces(dem *d) {
     const double time_step = d->settings.time_step;
     d->settings.time_step = 0;
     dem_move_walls(d); /* walls get their velocities */
-    find_contacts(d);
+    dem_find_pairs(d);
     dem_apply_laws(d);
     d->settings.time_step = time_step;
 }
@@ -92,8 +68,8 @@ void dem_step(dem *d) {
     dem_steer_walls(d);
     dem_shear_cell(d);
     if (begin_step(d))
-        dem_renew_lists(d);
-    find_contacts(d);
+        dem_renew_images(d);
+    dem_find_pairs(d);
     dem_count_work(d);
     dem_apply_laws(d);
     dem_count_work(d);

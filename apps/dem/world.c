@@ -13,33 +13,18 @@ const dem_settings dem_defaults = {
 void dem_create(dem *d, dem_settings settings) {
     memset(d, 0, sizeof *d);
     d->settings = settings;
-    if (narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_broad_phase(NULL, &d->broad) != NARC_OK)
+    const narc_contacts_settings kept = {.rows = NARC_CONTACT_ROWS, .user_size = sizeof(dem_memory)};
+    if (narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_contacts(&kept, &d->near, NULL) != NARC_OK)
         dem_quit("not enough memory");
-    dem_grow(&d->list.pairs, 0, sizeof *d->list.pairs); /* columns are of an array, which may be empty */
 }
 
 void dem_destroy(dem *d) {
-    void *const arrays[] = {d->outlines,
-                            d->shapes,
-                            d->bodies,
-                            d->parts,
-                            d->walls,
-                            d->contacts,
-                            d->list.pairs,
-                            d->list.memory,
-                            d->other_list.pairs,
-                            d->other_list.memory,
-                            d->poses,
-                            d->found,
-                            d->blocks,
-                            d->boxes,
-                            d->images,
-                            d->extra,
-                            d->match};
+    void *const arrays[] = {d->outlines, d->shapes,   d->bodies, d->parts,  d->walls, d->images,
+                            d->pairs,    d->contacts, d->poses,  d->blocks, d->boxes};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         dem_release(arrays[i]);
     narc_destroy_shapes(d->store);
-    narc_destroy_broad_phase(d->broad);
+    narc_destroy_contacts(d->near);
     memset(d, 0, sizeof *d);
 }
 
@@ -82,6 +67,6 @@ void dem_start(dem *d) {
     d->shear_work = 0; /* grains begin so */
     const dem_region all = dem_bound(d, true);
     d->diagonal = hypot(all.high.x - all.low.x, all.high.y - all.low.y);
-    dem_renew_lists(d);
+    dem_renew_images(d);
     dem_find_first_forces(d);
 }

@@ -61,7 +61,7 @@ TEST(test_parts_are_one_body) {
     dem_start(&d);
     assert_int_equal(d.part_count, 4);
     assert_int_equal(d.contact_count, 0);
-    for (size_t p = 0; p < d.list.count; p++)
+    for (size_t p = 0; p < d.pair_count; p++)
         assert_ptr_not_equal(dem_body_a(&d, p), dem_body_b(&d, p));
     dem_destroy(&d);
 }

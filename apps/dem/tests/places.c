@@ -59,19 +59,17 @@ TEST(test_free_places) {
     assert_int_equal(d.grain_count, 150);
     dem_start(&d);
     const narc_bodies bodies = dem_make_poses(&d);
-    const narc_pairs pairs = {.count = d.list.count,
-                              .a = NARC_COLUMN(d.list.pairs, a),
-                              .b = NARC_COLUMN(d.list.pairs, b),
-                              .shift_x = NARC_COLUMN(d.list.pairs, shift_x),
-                              .shift_y = NARC_COLUMN(d.list.pairs, shift_y)};
-    const narc_query query = {.margin = (float)gap - 1e-4f};
+    const narc_query query = {
+        .margin = (float)gap - 1e-4f, .selection = NARC_ARRAY(d.found->order), .selection_count = d.found->count};
+    const uint32_t *b = d.found->pairs.b.base;
     size_t count = 99, walls = 0, images = 0;
-    for (size_t k = 0; k < d.list.count; k++) {
-        walls += dem_is_wall(dem_body_b(&d, k));
-        images += !dem_is_wall(dem_body_b(&d, k)) && d.list.pairs[k].shift_x != 0;
+    for (size_t k = 0; k < d.found->count; k++) {
+        const dem_image *image = &d.images[b[d.found->order[k]]];
+        walls += d.parts[image->part].body >= d.grain_count;
+        images += d.parts[image->part].body < d.grain_count && image->right != 0;
     }
-    assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, &query, NULL, 0, &count, NULL), NARC_OK);
-    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.list.count, walls, images);
+    assert_int_equal(narc_find_contacts(d.store, &bodies, &d.found->pairs, &query, NULL, 0, &count, NULL), NARC_OK);
+    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.found->count, walls, images);
     assert_int_equal(count, 0);
     assert_true(walls > 5 && images > 0);
     dem_destroy(&d);

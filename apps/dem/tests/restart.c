@@ -63,8 +63,8 @@ TEST(test_bit_for_bit) {
         step(&again, 100);
         assert_true(dem_hash(&d) == dem_hash(&again));
     }
-    assert_true(d.list_builds > 10 && d.walls[0].work != 0 && d.account.rolling > 0);
-    assert_true(d.list_builds == again.list_builds);
+    assert_true(d.renewals > 10 && d.walls[0].work != 0 && d.account.rolling > 0);
+    assert_true(d.renewals == again.renewals);
     dem_destroy(&d);
     dem_destroy(&again);
 }
