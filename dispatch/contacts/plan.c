@@ -272,6 +272,7 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
     const unsigned special = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED;
     narc_contacts *const c = s->contacts;
     const pair_view v = *given; /* what loops use, in variables: what is written in bytes might be any of it */
+    const uint8_t *const state = c->state;
     uint8_t *const flags = c->flags;
     uint32_t *asked = c->asked + c->asked_count, *known = c->known + c->known_count,
              *candidates = c->candidates + c->candidate_count;
@@ -289,8 +290,10 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
             break;
         if (!(changed | stale))
             continue;
-        const unsigned apart = are_apart(&v, a, b);
-        if (apart & c->state[slot])
+        /* one that touches is better asked */
+        const bool looks = !(state[slot] & NARC_TOUCHING) || was & follow;
+        const unsigned apart = looks && are_apart(&v, a, b);
+        if (apart & state[slot])
             break;
         const unsigned own = was & (changed & NARC_RESHAPED ? NARC_SLOT_CROSSED : 0xffu - NARC_SLOT_STALE);
         const unsigned follows = stale | apart ? 0 : own & follow;
