@@ -107,9 +107,12 @@ static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, u
         const uint32_t slot = slots[i];
         const unsigned was = state[slot], touches = narc_count_points(contact_rows, rows + slot * row_stride) > 0;
         const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
-        unsigned own = flags[slot] & (0xffu - NARC_SLOT_KEPT);
+        const unsigned before = flags[slot], kind = NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY;
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        if ((own & (NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY)) != usual) {
+        if ((before & (kind | NARC_SLOT_KEPT)) == usual && !(crosses | recycles))
+            continue;
+        unsigned own = before & (0xffu - NARC_SLOT_KEPT);
+        if ((own & kind) != usual) {
             if (own & NARC_SLOT_SEEN)
                 again[again_count++] = slot;
             else if (!narc_are_smooth(s, c->a[slot], c->b[slot]))

@@ -158,17 +158,15 @@ static bool is_list_kept(const narc_contact_step *s) {
     return s->list->kept && !s->contacts->broad->marked && !s->contacts->again;
 }
 
-static bool has_any_changed(const uint8_t *changed, size_t count) {
-    uint64_t any = 0;
-    size_t k = 0;
-    for (; k + sizeof any <= count; k += sizeof any) {
-        uint64_t some;
+/* The first body from `k` on that has changed in one of these ways, or `count`. Eight at a time, as most have not. */
+static size_t find_body(const uint8_t *changed, uint8_t how, size_t k, size_t count) {
+    const uint64_t any = how * UINT64_C(0x0101010101010101);
+    uint64_t some = 0;
+    for (; count - k >= sizeof some && !(some & any); k += sizeof some)
         memcpy(&some, changed + k, sizeof some);
-        any |= some;
-    }
-    for (; k < count; k++)
-        any |= changed[k];
-    return any;
+    for (k -= some & any ? sizeof some : 0; k < count && !(changed[k] & how);)
+        k++;
+    return k;
 }
 
 /* Where a pair has parted, rows of the same body may have been merged with its row. */
@@ -187,12 +185,11 @@ static void note_lost_ground(const narc_contact_step *s) {
 void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
-    const size_t count = s->list->pairs.count;
+    const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
     c->work_count = 0;
-    c->changed = !is_list_kept(s) || has_any_changed(v.changed, s->step->bodies->count);
-    for (size_t k = 0; k < s->step->bodies->count && c->changed; k++)
-        if (v.changed[k] & NARC_RESHAPED)
-            c->room[k] = find_room(s, (uint32_t)k);
+    c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
+    for (size_t k = 0; c->changed && (k = find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies; k++)
+        c->room[k] = find_room(s, (uint32_t)k);
     for (size_t slot = 0; slot < c->slot_count && c->again; slot++)
         c->flags[slot] |= NARC_SLOT_STALE;
     if (s->has_ground && !s->list->kept)
@@ -273,6 +270,7 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
     const unsigned special = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED;
     narc_contacts *const c = s->contacts;
     const pair_view v = *given; /* what loops use, in variables: what is written in bytes might be any of it */
+    const uint8_t *const state = c->state;
     uint8_t *const flags = c->flags;
     uint32_t *asked = c->asked + c->asked_count, *known = c->known + c->known_count,
              *candidates = c->candidates + c->candidate_count;
@@ -282,12 +280,18 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
     for (; k < count; k++) {
         const uint32_t a = v.a[k], b = v.b[k], slot = v.order[k];
         const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], stale = was & NARC_SLOT_STALE;
-        if ((v.marks[k] & special) | (was & NARC_SENSOR) || (kept && !changed))
+        if (kept && !changed) {
+            k = find_changed(&s->list->pairs, v.changed, k) - 1;
+            continue;
+        }
+        if ((v.marks[k] & special) | (was & NARC_SENSOR))
             break;
         if (!(changed | stale))
             continue;
-        const unsigned apart = are_apart(&v, a, b);
-        if (apart & c->state[slot])
+        /* one that touches is better asked */
+        const bool looks = !(state[slot] & NARC_TOUCHING) || was & follow;
+        const unsigned apart = looks && are_apart(&v, a, b);
+        if (apart & state[slot])
             break;
         const unsigned own = was & (changed & NARC_RESHAPED ? NARC_SLOT_CROSSED : 0xffu - NARC_SLOT_STALE);
         const unsigned follows = stale | apart ? 0 : own & follow;

@@ -139,12 +139,11 @@ INLINE void write_followed(const struct followed *f, const vf word[ENTRY_WORDS],
 INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, const narc_entry *entries,
                            const narc_entry_ends *ends, const narc_rows *out, uint32_t *left, bool manifold) {
     const struct call call = {.batch = batch, .margin = batch->query->margin, .margins = batch->query->margins};
-    const size_t size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
     const narc_rows rows = *out;
     struct sources given = copy_sources(batch);
     const enum pose_layout layout = find_layout(&given);
     given.a.scale.base = given.b.scale.base = NULL; /* entries know them */
-    _Alignas(64) char some[V_WIDTH * sizeof(narc_manifold)];
+    _Alignas(64) char room[sizeof(narc_manifold)], *place[V_WIDTH];
     struct pair_indices indices;
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
@@ -152,7 +151,7 @@ INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, 
         load_bodies_of(&given, first + block, n, &indices);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = indices.number + k;
-            const bool in_line = !given.selection.base && k + V_WIDTH <= n;
+            const bool in_line = are_in_line(number);
             const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
             const vm live = vm_front(n - k);
             vf word[ENTRY_WORDS];
@@ -160,20 +159,11 @@ INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, 
             const struct followed f = follow_circles(word, &placement, vm_and(live, placement.in_range));
             for (uint32_t lanes = vm_bits(vm_and_not(live, f.known)); lanes; lanes &= lanes - 1)
                 left[open++] = (uint32_t)number[FIND_LOWEST(lanes)];
-            /* Rows that don't all go side by side are written apart. */
-            const bool direct = in_line && vm_bits(f.known) == vm_bits(vm_front(V_WIDTH));
-            char *const to = direct ? rows.base + (ptrdiff_t)(uint32_t)*number * rows.stride : some, *place[V_WIDTH];
-            const ptrdiff_t stride = direct ? rows.stride : (ptrdiff_t)size;
-            for (int lane = 0; lane < V_WIDTH; lane++)
-                place[lane] = to + lane * stride;
+            find_places(rows.base, rows.stride, number, vm_bits(f.known), room, place);
             vf end[END_WORDS];
             if (manifold)
                 load_items(ends, END_WORDS, number, in_line, end);
             write_followed(&f, word, manifold ? end : NULL, &placement, number, place);
-            for (uint32_t lanes = direct ? 0 : vm_bits(f.known); lanes; lanes &= lanes - 1) {
-                const int lane = FIND_LOWEST(lanes);
-                memcpy(rows.base + (ptrdiff_t)(uint32_t)number[lane] * rows.stride, place[lane], size);
-            }
         }
     }
     return open;

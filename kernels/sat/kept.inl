@@ -15,6 +15,19 @@
 #include "column.h"
 #include "simd/simd.h"
 
+/* Do the numbers in a vector follow each other? */
+INLINE bool are_in_line(const int32_t *number) {
+    const vi all = vi_load(number), next = vi_add(vi_set(*number), vi_lanes());
+    return vm_bits(vm_or(vi_lt(all, next), vi_lt(next, all))) == 0;
+}
+
+/* Where items of an array lie; those of lanes that are not wanted have `room`. */
+INLINE void find_places(char *base, ptrdiff_t stride, const int32_t *number, uint32_t lanes, char *room, char **place) {
+    UNROLL
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = lanes >> lane & 1 ? base + (ptrdiff_t)(uint32_t)number[lane] * stride : room;
+}
+
 /* The items of an array for the pairs in a vector, `words` of four bytes each. `in_line`: they follow each other. */
 INLINE void load_items(const void *items, int words, const int32_t *number, bool in_line, vf *word) {
     static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -39,6 +52,18 @@ INLINE void load_bodies_of(const struct sources *given, size_t first, int count,
             vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
             vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
             vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
+        }
+        return;
+    }
+    const narc_index_column list = given->selection;
+    if (LIKELY(selected && count == BLOCK && list.stride == sizeof *list.base && a.stride == sizeof *a.base &&
+               b.stride == sizeof *b.base && a.base && b.base)) {
+        UNROLL_FEW
+        for (int k = 0; k < BLOCK; k++) {
+            const uint32_t number = list.base[first + (size_t)k];
+            out->number[k] = (int32_t)number;
+            out->a[k] = (int32_t)a.base[number];
+            out->b[k] = (int32_t)b.base[number];
         }
         return;
     }

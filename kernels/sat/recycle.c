@@ -60,12 +60,6 @@ INLINE struct rows_of load_rows(const narc_rows *rows, const int32_t *number, bo
                             .second = vm_front(0)};
 }
 
-/* The places of items in lanes; of lanes that are not wanted, room of their own. */
-INLINE void find_places(char *base, ptrdiff_t stride, const int32_t *number, uint32_t lanes, char *room, char **place) {
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        place[lane] = lanes >> lane & 1 ? base + (ptrdiff_t)(uint32_t)number[lane] * stride : room;
-}
-
 INLINE void store_rows(const struct rows_of *rows, char *const *place, bool manifold) {
     if (manifold) {
         v_put_rows(place, 0, rows->head);
@@ -145,9 +139,10 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
         const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = items + k;
+            const bool in_line = are_in_line(number);
             const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
             vf word[WORDS];
-            load_items(kept, WORDS, number, false, word);
+            load_items(kept, WORDS, number, in_line, word);
             const vec2 span[2] = {find_span(word, &placement.pose, 0), find_span(word, &placement.pose, 1)};
             const vm live = vm_front(n - k);
             const vm follows = vm_and(vm_and(live, placement.in_range),
