@@ -54,23 +54,6 @@ INLINE vm probe(const struct search *search, const struct call *call, struct que
     return vm_and_not(live, v.settled);
 }
 
-/* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
- * without an answer. Where it came near a local maximum, that one's becomes the DIRECTION of rows. */
-INLINE vm climb_to(const struct search *search, const struct call *call, struct queue *queues, struct queue *queue,
-                   int k, vm live) {
-    const vf margin = search->rows ? get_margins(call, queue, k) : v_set(0);
-    const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
-    const struct local_maximum *m = &top.maximum;
-    const vm wanted =
-        vm_and(top.certain, search->rows ? is_below(top.separation, margin) : v_lt(top.separation, margin));
-    if (vm_any(wanted))
-        search->settle(call, queues, queue, k, wanted, top.separation, top.normal, m->record_a, m->record_b);
-    if (search->rows)
-        store_vec2(queue, DIRECTION, k,
-                   v2_select(vm_or(m->found, m->turned), m->direction, get_vec2(queue, DIRECTION, k)));
-    return vm_and_not(live, vm_or(top.apart, top.certain));
-}
-
 /* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
  * other pairs go to the climb, which begins along the axis again. */
 INLINE void probe_axis(const struct search *search, const struct call *call, struct queue *queues, int begin) {
@@ -98,13 +81,25 @@ INLINE void probe_again(const struct search *search, const struct call *call, st
                 &queues[CLIMB]);
 }
 
-/* Climbs from the arcs that hold DIRECTION. */
+/* Climbs from the arcs that hold DIRECTION, which becomes that of a local maximum where rows are wanted and one is near. */
 INLINE void climb_from(const struct search *search, const struct call *call, struct queue *queues, int begin) {
     struct queue *const queue = &queues[CLIMB];
-    look_up_arcs(call->batch->shapes->records, queue, begin);
-    for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, climb_to(search, call, queues, queue, k, vm_front(queue->count - k)), search->fields,
-                &queues[DECIDE]);
+    const narc_record *const records = call->batch->shapes->records;
+    look_up_arcs(records, queue, begin);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const vf margin = search->rows ? get_margins(call, queue, k) : v_set(0);
+        const struct certified_maximum top = climb_and_certify(records, queue, k, live, margin);
+        const struct local_maximum *m = &top.maximum;
+        const vm wanted =
+            vm_and(top.certain, search->rows ? is_below(top.separation, margin) : v_lt(top.separation, margin));
+        if (vm_any(wanted))
+            search->settle(call, queues, queue, k, wanted, top.separation, top.normal, m->record_a, m->record_b);
+        if (search->rows)
+            store_vec2(queue, DIRECTION, k,
+                       v2_select(vm_or(m->found, m->turned), m->direction, get_vec2(queue, DIRECTION, k)));
+        pass_on(queue, k, vm_and_not(live, vm_or(top.apart, top.certain)), search->fields, &queues[DECIDE]);
+    }
 }
 
 #endif
