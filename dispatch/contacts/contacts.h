@@ -57,8 +57,11 @@ typedef struct narc_row_array {
 /* Which arrays grow together, to hold one item for each of something. */
 typedef enum narc_growth {
     NARC_OF_SLOTS,
+    NARC_OF_SLOTS_AHEAD, /* of steps with margins of their own */
     NARC_OF_PAIRS,
-    NARC_OF_ENDS, /* of pairs that ended */
+    NARC_OF_FILTERED_PAIRS, /* of steps with a filter */
+    NARC_OF_GROUND_PAIRS,   /* of steps with ground */
+    NARC_OF_EVENTS,         /* one for each pair that there is or was, as it begins or ends at most once in a step */
     NARC_OF_BODIES,
     NARC_OF_MORE,
     NARC_OF_NEXT_MORE,
@@ -75,7 +78,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 37 };
+enum { NARC_ARRAYS = 35 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -99,16 +102,16 @@ struct narc_contacts {
     uint32_t *a, *b;                  /* the pair's bodies */
     uint8_t *state, *flags;
     uint32_t *free, *parted; /* `free`, `parted`: lists of slots */
-    float *margins;          /* that it was asked with */
+    float *margins;          /* that it is asked with, if there are several */
     void *own_rows, *user;   /* own_rows: NULL if rows lie in `user` */
     void *rows;              /* where they lie, `row_stride` bytes each */
-    narc_kept_row *kept;
-    narc_entry *entries;
-    narc_entry_ends *ends; /* of manifolds */
+    narc_entry *entries;     /* NARC_SLOT_ENTRY: of smooth shapes, not of ground */
+    narc_kept_row *kept;     /* NARC_SLOT_KEPT: of all others, in the same memory */
+    narc_entry_ends *ends;   /* of entries of manifolds */
     narc_more_rows *more_of;
-    size_t free_count, end_capacity;
+    size_t free_count, ahead_capacity;
 
-    size_t order_capacity; /* of pairs: */
+    size_t order_capacity, filtered_capacity, ground_capacity, event_capacity; /* of pairs: */
     uint32_t *order, *next_order;
     narc_pair_work *work;           /* what is to be done with pairs of ground, in the order of pairs */
     uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide */
@@ -116,9 +119,9 @@ struct narc_contacts {
     uint32_t *sensors_asked, *ground_asked, *touching, *sensors;
     float *ground_margins;
     uint64_t *bits;
-    narc_touch_event *began, *ended;
+    narc_touch_event *events; /* what began, and then what ended */
     size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, parted_count,
-        crossed_count;
+        crossed_count, event_count;
 
     unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
@@ -149,9 +152,9 @@ static inline narc_pairs narc_view_slots(const narc_contacts *c) {
 
 /* ------------------------------------------------------------------------------------------------ slots.c */
 
-/* Room for a list of pairs and its slots, and for bodies; what is known of slots stays. NARC_ERROR_MEMORY: all is as it
+/* Room for the pairs of a step, their slots, and bodies; what is known of slots stays. NARC_ERROR_MEMORY: all is as it
  * was. */
-narc_status narc_reserve_slots(narc_contacts *contacts, const narc_pair_list *list, size_t bodies);
+narc_status narc_reserve_slots(const narc_contact_step *s);
 
 /* All arrays; returns NARC_ARRAYS. */
 size_t narc_list_arrays(narc_contacts *contacts, narc_array out[NARC_ARRAYS]);

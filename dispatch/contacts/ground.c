@@ -73,7 +73,8 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
     while (end < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, end)) == k)
         end++;
     narc_zero_row(c, slot);
-    c->flags[slot] = (uint8_t)((c->flags[slot] & ~NARC_SLOT_KEPT) | (end > at ? NARC_SLOT_KEPT : 0));
+    c->flags[slot] =
+        (uint8_t)((c->flags[slot] & ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY)) | (end > at ? NARC_SLOT_KEPT : 0));
     if (end > at)
         put_row(s, slot, narc_row_at(c, c->ground.rows, at), c->rows, c->kept, slot);
     const size_t more = end > at ? end - at - 1 : 0;

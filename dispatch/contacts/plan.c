@@ -247,7 +247,7 @@ static void do_work(const narc_contact_step *s, const pair_view *v, size_t k, un
     const unsigned now =
         (c->flags[slot] & stays) | (v->marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
     c->flags[slot] = (uint8_t)now;
-    if (what == NARC_ASK || what == NARC_FOLLOW)
+    if (s->step->ahead.base && (what == NARC_ASK || what == NARC_FOLLOW))
         c->margins[slot] = narc_find_margin(s, a, b);
     if (what == NARC_ASK) {
         c->more_of[slot].count = 0; /* it may have been ground */

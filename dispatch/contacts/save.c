@@ -157,6 +157,7 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     r->sensor_count = (size_t)at->sensors;
     r->began_count = (size_t)at->began;
     r->ended_count = (size_t)at->ended;
+    c->event_count = r->began_count + r->ended_count;
     r->more_count = c->more.count = (size_t)at->more;
     l->body_count = (size_t)at->bodies;
     b->known.count = (size_t)at->known;
@@ -327,8 +328,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         return "flags";
     if (!are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
         !are_below(bytes_of(s, &c->sensors), c->result.sensor_count, slots) ||
-        !are_events_fine(s, bytes_of(s, &c->began), c->result.began_count) ||
-        !are_events_fine(s, bytes_of(s, &c->ended), c->result.ended_count))
+        !are_events_fine(s, bytes_of(s, &c->events), c->event_count))
         return "lists";
     return NULL;
 }
@@ -396,11 +396,12 @@ static narc_status reserve(narc_contacts *c, const start *at) {
     if (status == NARC_OK)
         status = narc_reserve_arrays(c, NARC_OF_BODIES, &c->body_capacity, (size_t)at->bodies);
     if (status == NARC_OK)
-        status = narc_reserve_arrays(c, NARC_OF_ENDS, &c->end_capacity, (size_t)at->ended);
+        status = narc_reserve_arrays(c, NARC_OF_FILTERED_PAIRS, &c->filtered_capacity, (size_t)at->sensors);
+    if (status == NARC_OK)
+        status = narc_reserve_arrays(c, NARC_OF_EVENTS, &c->event_capacity, (size_t)(at->began + at->ended));
     if (status == NARC_OK)
         status = narc_reserve_arrays(c, NARC_OF_MORE, &c->more.capacity, (size_t)at->more);
     narc_show_arrays(c);
-    c->result.more = c->more.rows;
     if (status == NARC_OK)
         status = narc_reserve_pairs(c->broad, next, (size_t)at->pairs);
     if (status == NARC_OK && at->has_ids)
@@ -436,7 +437,6 @@ narc_status narc_load_contacts(narc_contacts *c, const narc_shapes *shapes, cons
             memcpy(*to.arrays[k].memory, from.bytes + from.offset[k], from.size[k]);
     c->broad->known.shapes = shapes;
     narc_show_arrays(c);
-    c->result.more = c->more.rows;
     if (out_result)
         *out_result = &c->result;
     return NARC_OK;

@@ -12,8 +12,8 @@
 
 #include <string.h>
 
-/* A quarter more than is needed, so that a scene that grows slowly does not allocate at every step. */
-static size_t with_room(size_t needed) { return needed + (needed / 4 < SIZE_MAX - needed ? needed / 4 : 0) + 256; }
+/* An eighth more than is needed, so that a scene that grows slowly does not allocate at every step. */
+static size_t with_room(size_t needed) { return needed + (needed / 8 < SIZE_MAX - needed ? needed / 8 : 0) + 256; }
 
 /* Makes room for `needed` items in all arrays that grow together, what is in them stays: in all or in none. */
 static narc_status grow(const narc_contacts *c, const narc_array *arrays, size_t array_count, narc_growth growth,
@@ -61,10 +61,9 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_SLOTS, c->b, sizeof *c->b, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->state, 1, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->flags, 1, &c->slot_count),
-                                 ARRAY(NARC_OF_SLOTS, c->margins, sizeof *c->margins, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS_AHEAD, c->margins, sizeof *c->margins, none),
                                  ARRAY(NARC_OF_SLOTS, c->own_rows, row_size, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->user, c->user_size, &c->slot_count),
-                                 ARRAY(NARC_OF_SLOTS, c->kept, sizeof *c->kept, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->entries, sizeof *c->entries, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->ends, c->contact_rows ? 0 : sizeof *c->ends, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->more_of, sizeof *c->more_of, &c->slot_count),
@@ -72,9 +71,8 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_SLOTS, c->parted, sizeof *c->parted, &c->parted_count),
                                  ARRAY(NARC_OF_PAIRS, c->order, sizeof *c->order, &r->count),
                                  ARRAY(NARC_OF_PAIRS, c->touching, sizeof *c->touching, &r->touching_count),
-                                 ARRAY(NARC_OF_PAIRS, c->sensors, sizeof *c->sensors, &r->sensor_count),
-                                 ARRAY(NARC_OF_PAIRS, c->began, sizeof *c->began, &r->began_count),
-                                 ARRAY(NARC_OF_ENDS, c->ended, sizeof *c->ended, &r->ended_count),
+                                 ARRAY(NARC_OF_FILTERED_PAIRS, c->sensors, sizeof *c->sensors, &r->sensor_count),
+                                 ARRAY(NARC_OF_EVENTS, c->events, sizeof *c->events, &c->event_count),
                                  ARRAY(NARC_OF_BODIES, c->room, sizeof *c->room, none),
                                  ARRAY(NARC_OF_MORE, c->more.rows, c->row_size, &c->more.count),
                                  ARRAY(NARC_OF_MORE, c->more.kept, sizeof *c->more.kept, &c->more.count),
@@ -83,15 +81,15 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_GROUND, c->ground.rows, c->row_size, none),
                                  ARRAY(NARC_OF_GROUND, c->ground.kept, sizeof *c->ground.kept, none),
                                  ARRAY(NARC_OF_PAIRS, c->next_order, sizeof *c->next_order, none),
-                                 ARRAY(NARC_OF_PAIRS, c->work, sizeof *c->work, none),
+                                 ARRAY(NARC_OF_GROUND_PAIRS, c->work, sizeof *c->work, none),
                                  ARRAY(NARC_OF_PAIRS, c->asked, sizeof *c->asked, none),
                                  ARRAY(NARC_OF_PAIRS, c->known, sizeof *c->known, none),
                                  ARRAY(NARC_OF_PAIRS, c->candidates, sizeof *c->candidates, none),
                                  ARRAY(NARC_OF_PAIRS, c->left, sizeof *c->left, none),
-                                 ARRAY(NARC_OF_PAIRS, c->sensors_asked, sizeof *c->sensors_asked, none),
-                                 ARRAY(NARC_OF_PAIRS, c->ground_asked, sizeof *c->ground_asked, none),
-                                 ARRAY(NARC_OF_PAIRS, c->ground_margins, sizeof *c->ground_margins, none),
-                                 ARRAY(NARC_OF_PAIRS, c->bits, 1, none),
+                                 ARRAY(NARC_OF_FILTERED_PAIRS, c->sensors_asked, sizeof *c->sensors_asked, none),
+                                 ARRAY(NARC_OF_GROUND_PAIRS, c->ground_asked, sizeof *c->ground_asked, none),
+                                 ARRAY(NARC_OF_GROUND_PAIRS, c->ground_margins, sizeof *c->ground_margins, none),
+                                 ARRAY(NARC_OF_FILTERED_PAIRS, c->bits, 1, none),
                                  ARRAY(NARC_OF_PARTNERS, c->partners, sizeof *c->partners, none),
                                  ARRAY(NARC_OF_PARTNER_ENDS, c->partner_ends, sizeof *c->partner_ends, none)};
 #undef ARRAY
@@ -117,23 +115,33 @@ void narc_show_arrays(narc_contacts *c) {
     r->manifolds = c->contact_rows ? NULL : rows;
     r->contacts = c->contact_rows ? rows : NULL;
     r->user = c->user;
+    r->more = c->more.rows;
     r->touching = c->touching;
     r->sensors = c->sensors;
-    r->began = c->began;
-    r->ended = c->ended;
+    r->began = c->events;
+    r->ended = c->events ? c->events + r->began_count : NULL;
+    c->kept = (narc_kept_row *)(void *)c->entries;
 }
 
-narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, size_t bodies) {
+narc_status narc_reserve_slots(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const narc_pair_list *const list = s->list;
     const size_t free_count = c->free_count + c->parted_count, fresh = list->kept ? 0 : list->added_count;
     const size_t slots = c->slot_count + (fresh > free_count ? fresh - free_count : 0), pairs = list->pairs.count;
-    /* One more than slots: what is listed without a branch may write behind the last one. */
-    narc_status status = narc_reserve_arrays(c, NARC_OF_SLOTS, &c->slot_capacity, slots + 1);
-    if (status == NARC_OK)
-        status = narc_reserve_arrays(c, NARC_OF_PAIRS, &c->order_capacity, pairs);
-    if (status == NARC_OK)
-        status = narc_reserve_arrays(c, NARC_OF_BODIES, &c->body_capacity, bodies);
-    if (status == NARC_OK) /* what ended: at most all pairs that are, and all that were */
-        status = narc_reserve_arrays(c, NARC_OF_ENDS, &c->end_capacity, pairs + list->lost_count);
+    const struct {
+        narc_growth growth;
+        size_t *capacity, count;
+    } needed[] = {{NARC_OF_SLOTS, &c->slot_capacity,
+                   slots + 1}, /* what is listed without a branch may be written behind the last */
+                  {NARC_OF_SLOTS_AHEAD, &c->ahead_capacity, s->step->ahead.base ? slots : 0},
+                  {NARC_OF_PAIRS, &c->order_capacity, pairs},
+                  {NARC_OF_FILTERED_PAIRS, &c->filtered_capacity, s->step->filter ? pairs : 0},
+                  {NARC_OF_GROUND_PAIRS, &c->ground_capacity, s->has_ground ? pairs : 0},
+                  {NARC_OF_EVENTS, &c->event_capacity, pairs + (list->kept ? 0 : list->lost_count)},
+                  {NARC_OF_BODIES, &c->body_capacity, s->step->bodies->count}};
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k < sizeof needed / sizeof *needed && status == NARC_OK; k++)
+        status = narc_reserve_arrays(c, needed[k].growth, needed[k].capacity, needed[k].count);
     narc_show_arrays(c); /* the result of the last step shows arrays that moved */
     return status;
 }

@@ -41,14 +41,33 @@ static uint64_t id_of(const narc_contact_step *s, uint32_t body) {
     return s->step->id.base ? narc_word_at(s->step->id, body) : body;
 }
 
+/* What begins is listed from the front of the memory, what ends from its end, and then turned round. */
+static void add_event(narc_contacts *c, bool begins, narc_touch_event event) {
+    narc_step_result *const r = &c->result;
+    c->events[begins ? r->began_count++ : c->event_capacity - ++r->ended_count] = event;
+}
+
+static void gather_events(narc_contacts *c) {
+    narc_step_result *const r = &c->result;
+    if (r->ended_count > 0) {
+        narc_touch_event *const ended = c->events + c->event_capacity - r->ended_count;
+        for (size_t k = 0, last = r->ended_count - 1; k < last; k++, last--) {
+            const narc_touch_event moved = ended[k];
+            ended[k] = ended[last];
+            ended[last] = moved;
+        }
+        memmove(c->events + r->began_count, ended, r->ended_count * sizeof *ended);
+    }
+    c->event_count = r->began_count + r->ended_count;
+}
+
 static void list_parted(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     for (size_t k = 0; k < s->list->lost_count; k++) {
         const narc_lost_pair *const lost = &s->list->lost[k];
         const uint32_t slot = c->parted[k];
         if (c->state[slot] & NARC_TOUCHING)
-            c->ended[c->result.ended_count++] =
-                (narc_touch_event){slot, (uint8_t)lost->marks, 1, 0, lost->id_a, lost->id_b};
+            add_event(c, false, (narc_touch_event){slot, (uint8_t)lost->marks, 1, 0, lost->id_a, lost->id_b});
     }
 }
 
@@ -70,10 +89,7 @@ static void make_lists(const narc_contact_step *s) {
             flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
             const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
                                             0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
-            if (touches)
-                c->began[r->began_count++] = event;
-            else
-                c->ended[r->ended_count++] = event;
+            add_event(c, touches, event);
         }
         if (marks & NARC_SENSOR && touches)
             c->sensors[sensor_count++] = slot;
@@ -131,7 +147,7 @@ static narc_status prepare(narc_contact_step *s) {
     narc_status status = narc_update_pairs(c->broad, s->shapes, step, &s->list, s->error);
     if (status != NARC_OK)
         return status;
-    if (narc_reserve_slots(c, s->list, step->bodies->count) != NARC_OK)
+    if (narc_reserve_slots(s) != NARC_OK)
         status = narc_fail(s->error, NARC_ERROR_MEMORY, 0, (double)s->list->pairs.count,
                            "not enough memory for %zu contacts", s->list->pairs.count);
     if (status != NARC_OK)
@@ -161,16 +177,15 @@ static narc_status carry_out(const narc_contact_step *s) {
     if (status != NARC_OK)
         return status;
     narc_take_ground(s);
-    r->pairs = pairs;
-    r->order = c->order;
     r->count = s->list->pairs.count;
-    r->more = c->more.rows;
     r->more_count = c->more.count;
     r->began_count = r->ended_count = 0;
     if (!s->list->kept)
         list_parted(s);
     if (c->crossed_count > 0 || c->broad->marked)
         make_lists(s);
+    gather_events(c);
+    narc_show_arrays(c);
     r->skipped = s->list->skipped;
     r->asked_count = c->asked_count + c->known_count + c->sensor_count + c->ground_count;
     return NARC_OK;
