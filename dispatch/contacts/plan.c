@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing.
+ * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing. Pairs of
+ * ground are planned first, as their rows may need memory, all others once each has its slot.
  */
 #include "column.h"
 #include "compiler.h"
