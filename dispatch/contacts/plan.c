@@ -287,10 +287,11 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
             k = find_changed(&s->list->pairs, v.changed, k) - 1;
             continue;
         }
-        if ((v.marks[k] & special) | (was & NARC_SENSOR))
-            break;
-        if (!(changed | stale))
+        const unsigned marks = v.marks[k];
+        if (!(changed | stale | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR)))
             continue;
+        if ((marks & special) | (was & NARC_SENSOR))
+            break;
         /* one that touches is better asked */
         const bool looks = !(state[slot] & NARC_TOUCHING) || was & follow;
         const unsigned apart = looks && are_apart(&v, a, b);
