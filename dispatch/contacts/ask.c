@@ -220,7 +220,7 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     const size_t left = ask_left(c, run_slots(&job, c->known, c->known_count));
     const narc_query query = make_query(s, c->margins, c->asked, c->asked_count);
     narc_batch batch;
-    if (s->step->moved.base) /* bodies that were not looked at in this step may have any shape */
+    if (s->step->moved.base || s->step->moved.stride) /* bodies that were not looked at may have any shape */
         status = narc_begin_batch(s->shapes, s->step->bodies, pairs, &query, &batch, s->error);
     if (status != NARC_OK)
         return status;

@@ -5,9 +5,9 @@
  *     update.c   the call: pairs, what of them is to be asked, rows, lists
  *     slots.c    memory, and which slot belongs to which pair
  *     plan.c     what is to be done with each pair
- *     ask.c      rows of pairs that are asked; entries.c makes what answers smooth ones again
+ *     ask.c      rows of pairs that follow or are asked; entries.c makes what answers smooth ones again
  *     ground.c   bodies on pieces of chains, whose rows are asked for and merged together
- *     recycle.c  rows that follow their bodies
+ *     recycle.c  single rows that are kept, and follow their bodies
  *     save.c     all of it as bytes
  */
 #ifndef NARC_CONTACTS_INTERNAL_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing.
+ * plan.c - what a step does with each pair whose bodies are others than in the last one: ask, follow, or nothing. Pairs of
+ * ground are planned first, as their rows may need memory, all others once each has its slot.
  */
 #include "column.h"
 #include "compiler.h"
@@ -284,10 +285,11 @@ NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, 
             k = find_changed(&s->list->pairs, v.changed, k) - 1;
             continue;
         }
-        if ((v.marks[k] & special) | (was & NARC_SENSOR))
-            break;
-        if (!(changed | stale))
+        const unsigned marks = v.marks[k];
+        if (!(changed | stale | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR)))
             continue;
+        if ((marks & special) | (was & NARC_SENSOR))
+            break;
         /* one that touches is better asked */
         const bool looks = !(state[slot] & NARC_TOUCHING) || was & follow;
         const unsigned apart = looks && are_apart(&v, a, b);

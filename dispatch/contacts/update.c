@@ -91,10 +91,12 @@ static void make_lists(const narc_contact_step *s) {
                                             0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
             add_event(c, touches, event);
         }
-        if (marks & NARC_SENSOR && touches)
+        if (touches && marks & NARC_SENSOR) {
             c->sensors[sensor_count++] = slot;
-        if (marks & NARC_SENSOR || (marks & NARC_AT_REST && !narc_is_tested(s, c->a[slot], c->b[slot])))
             touches = 0;
+        } else if (touches && marks & NARC_AT_REST) {
+            touches = narc_is_tested(s, c->a[slot], c->b[slot]);
+        }
         touching[touching_count] = slot; /* as chance has it: without a branch */
         touching_count += touches;
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * follow.c - pairs of smooth shapes that are answered from their entries, and all others anew, against plain calls: the same
- * bits at all poses, and most of them are decided where bodies move little.
+ * bits at all poses, and most of them are decided where bodies move little. Rows that are kept, and follow: the same bits as
+ * in plain C.
  */
 #include <math.h>
 #include <stdio.h>
@@ -344,6 +345,113 @@ TEST(test_made_up_rows) {
             guard_release(ends);
         destroy_scene(&world.scene);
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ rows with edges */
+
+/* Keeps the rows of some pairs by these kernels, at the pairs' numbers, and again at others: the same, and no more. */
+static void keep_rows(const narc_kernel_table *kernels, const narc_batch *batch, const narc_rows *rows,
+                      narc_kept_row *kept) {
+    const size_t count = batch->count, size = batch->row_size;
+    uint32_t *const item = guard_allocate((count + 1) * sizeof *item);
+    narc_kept_row *const others = guard_allocate((count + 1) * sizeof *others);
+    char *const copies = guard_allocate((count + 1) * size);
+    const narc_rows from = {.base = copies, .stride = (ptrdiff_t)size};
+    for (size_t first = 0, part; first < count; first += part) {
+        part = first == 0 && count > 11 ? 11 : count - first;
+        kernels->keep(batch, first, part, NULL, rows, kept);
+    }
+    for (size_t i = 0; i < count; i++) {
+        item[i] = (uint32_t)(count - 1 - i);
+        memcpy(copies + item[i] * size, rows->base + (ptrdiff_t)narc_pair_at(batch, i) * rows->stride, size);
+    }
+    kernels->keep(batch, 0, count, item, &from, others);
+    for (size_t i = 0; i < count; i++)
+        assert_memory_equal(&others[item[i]], &kept[narc_pair_at(batch, i)], sizeof *kept);
+    guard_release(item);
+    guard_release(others);
+    guard_release(copies);
+}
+
+/* Lets rows follow their bodies, in any split; returns how many do not. */
+static size_t follow_rows(const narc_kernel_table *kernels, const narc_batch *batch, const narc_kept_row *kept,
+                          float tolerance, const narc_rows *rows, uint32_t *left) {
+    size_t count = 0;
+    for (size_t first = 0, part; first < batch->count; first += part) {
+        part = first == 0 && batch->count > 13 ? 13 : batch->count - first;
+        count += kernels->recycle(batch, first, part, NULL, kept, tolerance, rows, left + count);
+    }
+    return count;
+}
+
+/* What is kept, and rows that follow, have the same bits as those of plain C; where nothing has moved rows stay as they were,
+ * and all follow. */
+TEST(test_rows_are_kept) {
+    struct test_random random = test_random_named("kept rows");
+    size_t followed = 0, all_left = 0;
+    for (size_t round = 0; round < test_trials(40); round++) {
+        static struct world world;
+        struct question q = make_question(&random, 1);
+        const size_t size = q.manifolds ? sizeof(narc_manifold) : sizeof(narc_contact), stride = size + q.more;
+        make_world(&world, &random, random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32, SMOOTH_AND_OTHERS, 1,
+                   random_below(&random, 2), 0);
+        char *const rows = guard_allocate(PAIRS * stride), *const same = guard_allocate(PAIRS * stride);
+        narc_kept_row *const kept = guard_allocate(PAIRS * sizeof *kept), *const right =
+                                                                              guard_allocate(PAIRS * sizeof *kept);
+        uint32_t list[PAIRS], left[PAIRS], right_left[PAIRS];
+        size_t touching = 0, found;
+        narc_error error;
+        narc_status status;
+        for (size_t frame = 0; frame < 3; frame++) {
+            struct columns columns = create_columns(&world.scene, q.layout, 0, PAIRS);
+            narc_query query = {.margin = 0.05f, .dense = 1, .row_stride = (ptrdiff_t)stride};
+            if (frame == 0)
+                expect_ok(
+                    ask(world.scene.store, &columns.bodies, &columns.pairs, &query, q.manifolds, rows, &found, &error),
+                    &error);
+            for (uint32_t k = 0; k < PAIRS && frame == 0; k++) {
+                narc_contact contact;
+                narc_manifold manifold;
+                memcpy(q.manifolds ? (void *)&manifold : &contact, rows + k * stride, size);
+                if (q.manifolds ? manifold.count > 0 : contact.count > 0)
+                    list[touching++] = k;
+            }
+            query.selection = NARC_ARRAY(list);
+            query.selection_count = touching;
+            narc_batch batch;
+            expect_ok(narc_begin_batch(world.scene.store, &columns.bodies, &columns.pairs, &query, &batch, &error),
+                      &error);
+            batch.row_size = size;
+            const narc_kernel_table *const kernels = narc_kernels(&status, &error), *const plain =
+                                                                                        NARC_KERNELS_FOR(1, kernels);
+            const narc_rows of_rows = {.base = rows, .stride = (ptrdiff_t)stride},
+                            of_same = {.base = same, .stride = (ptrdiff_t)stride};
+            memcpy(same, rows, PAIRS * stride);
+            if (frame == 0) {
+                keep_rows(kernels, &batch, &of_rows, kept);
+                keep_rows(plain, &batch, &of_rows, right);
+                assert_memory_equal(kept, right, PAIRS * sizeof *kept);
+            }
+            const float tolerance = frame == 0 ? 1e-4f : 0.02f;
+            const size_t count = follow_rows(kernels, &batch, kept, tolerance, &of_rows, left);
+            assert_int_equal(follow_rows(plain, &batch, kept, tolerance, &of_same, right_left), count);
+            assert_memory_equal(left, right_left, count * sizeof *left);
+            assert_memory_equal(rows, same, PAIRS * stride);
+            assert_int_equal(plain->recycle(&batch, 0, touching, NULL, kept, tolerance, NULL, right_left), count);
+            assert_true(frame > 0 || count == 0);
+            followed += frame > 0 ? touching - count : 0;
+            all_left += count;
+            destroy_columns(&columns);
+            scene_move_bodies(&world.scene, &random, 0.005);
+        }
+        guard_release(rows);
+        guard_release(same);
+        guard_release(kept);
+        guard_release(right);
+        destroy_scene(&world.scene);
+    }
+    printf("%zu rows followed their bodies, %zu did not\n", followed, all_left);
+    assert_true(10 * followed > all_left && 10 * all_left > followed);
 }
 
 TEST_MAIN("follow")
