@@ -159,13 +159,17 @@ static bool is_list_kept(const narc_contact_step *s) {
     return s->list->kept && !s->contacts->broad->marked && !s->contacts->again;
 }
 
-/* The first body from `k` on that has changed in one of these ways, or `count`. Eight at a time, as most have not. */
-static size_t find_body(const uint8_t *changed, uint8_t how, size_t k, size_t count) {
-    const uint64_t any = how * UINT64_C(0x0101010101010101);
-    uint64_t some = 0;
-    for (; count - k >= sizeof some && !(some & any); k += sizeof some)
-        memcpy(&some, changed + k, sizeof some);
-    for (k -= some & any ? sizeof some : 0; k < count && !(changed[k] & how);)
+/* The first body from `k` on that has changed in one of these ways, or `count`. Many at a time, as most have not. */
+static size_t find_body(const uint8_t *changed, unsigned how, size_t k, size_t count) {
+    enum { MANY = 64 };
+    for (; count - k >= MANY; k += MANY) {
+        unsigned any = 0;
+        for (size_t i = 0; i < MANY; i++)
+            any |= changed[k + i];
+        if (any & how)
+            break;
+    }
+    while (k < count && !(changed[k] & how))
         k++;
     return k;
 }
