@@ -150,7 +150,6 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
 static bool take_histories(dem *d, const counts *n, const history *histories) {
     bool ok = true;
     d->image_count = d->part_count + n->images;
-    d->contact_count = n->contacts;
     for (size_t k = d->part_count; k < d->image_count; k++)
         ok = ok && d->images[k].part < d->part_count;
     if (ok)
@@ -161,6 +160,7 @@ static bool take_histories(dem *d, const counts *n, const history *histories) {
         if (ok)
             *dem_memory_of(d, pair) = histories[k].memory;
     }
+    d->contact_count = ok ? n->contacts : 0;
     return ok;
 }
 
