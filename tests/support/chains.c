@@ -10,6 +10,7 @@
 
 #include "everywhere.h"
 #include "expect.h"
+#include "merge.h"
 
 /* How steep open chains get: they go from right to left, the air above. */
 static const double steepest = 1.1;
