@@ -112,7 +112,7 @@ narc_status narc_reserve_arrays(narc_contacts *c, narc_growth growth, size_t *ca
 void narc_show_arrays(narc_contacts *c) {
     narc_step_result *const r = &c->result;
     void *const rows = c->rows_in_user ? NULL : c->own_rows;
-    c->rows = c->rows_in_user ? (char *)c->user + c->row_offset : c->own_rows;
+    c->rows = c->rows_in_user && c->user ? (char *)c->user + c->row_offset : c->own_rows;
     r->pairs = narc_view_slots(c);
     r->order = c->order;
     r->state = c->state;
