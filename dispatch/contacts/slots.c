@@ -231,7 +231,7 @@ narc_status narc_find_body_slots(narc_contacts *c, uint32_t body, const uint32_t
                              bodies);
         list_partners(c, bodies);
     }
-    *out_slots = c->partners + c->partner_ends[body];
     *out_count = c->partner_ends[body + 1] - c->partner_ends[body];
+    *out_slots = *out_count > 0 ? c->partners + c->partner_ends[body] : c->partners; /* without pairs there are none */
     return NARC_OK;
 }

@@ -608,6 +608,7 @@ TEST(test_first_step_without_memory) {
 TEST(test_slots_of_bodies) {
     struct row_of_discs d;
     narc_contacts *none;
+    const narc_step_result *r;
     const uint32_t *slots = NULL;
     size_t count = 7;
     narc_error error;
@@ -624,6 +625,11 @@ TEST(test_slots_of_bodies) {
     expect_error(narc_forget_bodies(d.contacts, NULL, 1, &error), NARC_ERROR_ARGUMENT, &error, "ids is NULL");
     expect_ok(narc_forget_bodies(d.contacts, NULL, 0, &error), &error);
     assert_true(!slots && count == 7);
+    d.bodies.count = 1; /* which has no pair */
+    expect_ok(narc_update_contacts(none, d.store, &(narc_step){.bodies = &d.bodies}, &r, &error), &error);
+    expect_ok(narc_find_body_slots(none, 0, &slots, &count, &error), &error);
+    assert_int_equal(count, 0);
+    d.bodies.count = 5;
     narc_destroy_contacts(none);
     tear_down_discs(&d);
 }
