@@ -24,6 +24,8 @@ struct object {
     bool given;                /* its pairs are the caller's of now */
     bool unknown;              /* anything may have changed */
     bool changed[ALL];
+    bool forgotten[IDS]; /* by id: it was taken out */
+    size_t touched;      /* so many pairs did in the last step */
 };
 
 struct world {
@@ -423,8 +425,34 @@ static void check_result(const struct world *w, const struct object *o, const na
         check_listed(w, r, &all, &query, margins);
 }
 
-/* The caller's bytes stay with the pair's ids. */
-static void check_marks(const struct world *w, const struct object *o) {
+static size_t count_touching(const narc_step_result *r) {
+    size_t count = 0;
+    for (size_t k = 0; k < r->count; k++)
+        count += r->state[r->order[k]] & NARC_TOUCHING;
+    return count;
+}
+
+/* What touches, began and ended. */
+static void check_lists(const struct world *w, struct object *o) {
+    const narc_step_result *const r = o->r;
+    const size_t before = o->touched;
+    size_t touching = 0, sensors = 0;
+    for (size_t k = 0; k < r->count; k++) {
+        const uint32_t slot = r->order[k], a = r->pairs.a.base[slot], b = r->pairs.b.base[slot];
+        if (!(r->state[slot] & NARC_TOUCHING))
+            continue;
+        if ((kind_of(w, a) | kind_of(w, b)) & NARC_SENSOR)
+            assert_true(sensors < r->sensor_count && r->sensors[sensors++] == slot);
+        else if (!is_at_rest(w, a) || !is_at_rest(w, b))
+            assert_true(touching < r->touching_count && r->touching[touching++] == slot);
+    }
+    assert_true(touching == r->touching_count && sensors == r->sensor_count);
+    o->touched = count_touching(r);
+    assert_int_equal(o->touched + r->ended_count, before + r->began_count);
+}
+
+/* The caller's bytes stay with the pair's ids, unless one was taken out. */
+static void check_marks(const struct world *w, struct object *o) {
     const narc_step_result *const r = o->r;
     for (size_t k = 0; k < r->count; k++) {
         const uint32_t slot = r->order[k], a = r->pairs.a.base[slot], b = r->pairs.b.base[slot];
@@ -434,8 +462,11 @@ static void check_marks(const struct world *w, const struct object *o) {
         uint64_t now;
         memcpy(&now, at, sizeof now);
         assert_true(r->state[slot] & NARC_NEW ? now == 0 : now == mark);
+        assert_true(r->state[slot] & NARC_NEW ||
+                    !((one < IDS && o->forgotten[one]) || (other < IDS && o->forgotten[other])));
         memcpy(at, &mark, sizeof mark);
     }
+    memset(o->forgotten, 0, sizeof o->forgotten);
 }
 
 /* ------------------------------------------------------------------------------------------------ calls */
@@ -485,6 +516,7 @@ static bool step_object(struct bytes *from, struct world *w, struct object *o, b
     memset(o->changed, 0, sizeof o->changed);
     if (!o->tainted) {
         check_result(w, o, &step);
+        check_lists(w, o);
         check_marks(w, o);
     }
     return true;
@@ -587,6 +619,8 @@ static void load(struct bytes *from, struct world *w, struct object *o) {
     }
     w->twins = false;
     o->tainted = damages > 0;
+    o->touched = damages > 0 ? 0 : count_touching(o->r);
+    memset(o->forgotten, 0, sizeof o->forgotten);
     o->unknown = true;
     o->given = false;
 }
@@ -609,9 +643,13 @@ static void forget(struct bytes *from, struct world *w, struct object *o) {
         narc_forget_contacts(o->contacts);
         o->tainted = o->given = false;
         o->unknown = true;
+        o->touched = 0;
     } else {
         const uint64_t ids[] = {take_below(from, IDS), take_below(from, IDS)};
-        assert_int_equal(narc_forget_bodies(o->contacts, ids, take_below(from, 3), NULL), NARC_OK);
+        const size_t count = take_below(from, 3);
+        assert_int_equal(narc_forget_bodies(o->contacts, ids, count, NULL), NARC_OK);
+        for (size_t k = 0; k < count; k++)
+            o->forgotten[ids[k]] = true;
     }
     w->twins = false;
 }
