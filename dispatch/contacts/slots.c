@@ -108,7 +108,7 @@ narc_status narc_reserve_arrays(narc_contacts *c, narc_growth growth, size_t *ca
 void narc_show_arrays(narc_contacts *c) {
     narc_step_result *const r = &c->result;
     void *const rows = c->rows_in_user ? NULL : c->own_rows;
-    c->rows = c->rows_in_user ? (char *)c->user + c->row_offset : c->own_rows;
+    c->rows = c->rows_in_user && c->user ? (char *)c->user + c->row_offset : c->own_rows;
     r->pairs = narc_view_slots(c);
     r->order = c->order;
     r->state = c->state;
@@ -252,7 +252,7 @@ narc_status narc_find_body_slots(narc_contacts *c, uint32_t body, const uint32_t
                              bodies);
         list_partners(c, bodies);
     }
-    *out_slots = c->partners + c->partner_ends[body];
     *out_count = c->partner_ends[body + 1] - c->partner_ends[body];
+    *out_slots = *out_count > 0 ? c->partners + c->partner_ends[body] : c->partners; /* without pairs there are none */
     return NARC_OK;
 }
