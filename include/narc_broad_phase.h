@@ -14,8 +14,9 @@
  *   SKIN. While all bodies stay inside their boxes, the list stays as it is: it has all pairs that are close, and some
  *   that are not. When one has left its box, it gets a new box, and so do all that have used up half of their skin; a
  *   new list has the pairs of these boxes, and each pair is told its index in the last list. In a scene at rest few
- *   bodies move, and only their pairs are looked for. What the caller knows of a pair (impulses, friction history) is carried over by that index with narc_gather(), or stays where it is if the list was kept. Pairs that
- *   are new or lost are listed: they begin and end what depends on being close.
+ *   bodies move, and only their pairs are looked for. What the caller knows of a pair (impulses, friction history) is
+ *   carried over by that index with narc_gather(), or stays where it is if the list was kept. Pairs that are new or lost
+ *   are listed: they begin and end what depends on being close.
  *
  *   The list is what the broad phase owns. It is valid until the next call of narc_update_pairs(),
  *   narc_update_box_pairs() or narc_forget_pairs() with this object, or until that is destroyed. A call that fails
@@ -95,9 +96,8 @@ typedef struct narc_pair_options {
  * Removal and insertion: take the body out of your arrays or put it in, in any way, with its id. If the last one fills
  * the gap (swap-with-last), its pairs have their `previous` index as all others have. Where bodies of a pair have
  * changed their order (a was b), its mark NARC_FLIPPED says so: normals, feature ids and impulses that you kept are
- * those of the pair (b, a). A lost pair names its bodies by their ids
- * and by their numbers in the last list, whether they still exist or not. Ids that come back, as those of pools without
- * a generation may, make one body of two.
+ * those of the pair (b, a). A lost pair names its bodies by their ids and by their numbers in the last list, whether they
+ * still exist or not. Ids that come back, as those of pools without a generation may, make one body of two.
  *
  * Sleep: see narc_pair_filter's table. Boxes of bodies at rest are looked at like others, so that a body that is static
  * or asleep may be put anywhere.
