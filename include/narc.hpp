@@ -502,11 +502,14 @@ inline narc_status create_contacts(const narc_allocator *allocator, narc_contact
 class contacts : public detail::owner<narc_contacts, detail::create_contacts, narc_destroy_contacts> {
   public:
     using owner::owner;
-    // With rows of the kind NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and bytes of the caller's in each slot.
-    static result<contacts> make(uint32_t rows, size_t user_size, const narc_allocator *allocator = nullptr) {
+    // With rows of the kind NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and bytes of the caller's in each slot; and, with
+    // NARC_ROWS_IN_USER, where the row lies in these.
+    static result<contacts> make(uint32_t rows, size_t user_size, size_t row_offset = 0,
+                                 const narc_allocator *allocator = nullptr) {
         narc_contacts_settings settings = {};
         settings.rows = rows;
         settings.user_size = user_size;
+        settings.row_offset = row_offset;
         settings.allocator = allocator;
         const auto made = detail::ask<narc_contacts *>(narc_create_contacts, &settings);
         return made ? result<contacts>(contacts(made.value())) : result<contacts>(made.error());

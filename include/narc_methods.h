@@ -125,8 +125,8 @@ typedef enum narc_outcome {
  *   out_outcomes  one narc_outcome for each pair of the batch; or NULL
  *   simplexes     gjk: a cache of one number for each pair of the batch, in and out, zeros at first: the simplex that a
  *                 pair's search ended with, which the next one starts from (a warm start). Its answers differ from a cold
- *                 start's, within the tolerance. Any value is safe. Pairs that are not asked of keep theirs, and other
- *                 methods leave all alone; or NULL */
+ *                 start's, within the tolerance. Any value is safe. Pairs that are not asked of keep theirs, other
+ *                 methods leave all alone, and so does an error other than NARC_ERROR_CAPACITY. Or NULL */
 typedef struct narc_method_options {
     narc_method method;
     float tolerance;
@@ -136,7 +136,7 @@ typedef struct narc_method_options {
     void *reserved[3]; /* NULL */
 } narc_method_options;
 
-/* narc_find_overlaps() by a method of choice.
+/* narc_find_overlaps() by a method of choice; `query` as there.
  * Further errors: NARC_ERROR_ARGUMENT (no such method, a negative tolerance, the store has changed, polygon-sat and a
  * pair whose shape is not a polygon: `error` names them), NARC_ERROR_NOT_FINITE (tolerance). */
 NARC_API narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies *bodies,

@@ -96,11 +96,11 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     const struct row_search *const search = &NARC_NAMED(search);
     const struct question *const question = given->question;
     const bool second = question->edges != NULL;
-    stage *const stages[STAGES] = {
-        search->stages[PROBE],  search->stages[PROBE_AGAIN],
-        search->stages[CLIMB],  second ? question->polygons : NARC_SHORTCUTS ? answer_rows_of_polygons : NULL,
-        search->stages[DECIDE], answer_rows,
-        question->edges};
+    stage *const polygons = second ? question->polygons : NARC_SHORTCUTS ? answer_rows_of_polygons : NULL;
+    stage *const stages[STAGES] = {search->stages[PROBE],  search->stages[PROBE_AGAIN],
+                                   search->stages[CLIMB],  polygons,
+                                   search->stages[DECIDE], answer_rows,
+                                   question->edges};
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,

@@ -3,10 +3,10 @@
  * search.c - the search of all questions that have rows: with which arcs two bodies touch, and along which normal.
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
- * to the last bit: a probe along the axis, another along u, a climb to a local maximum, a walk past the two
- * junctions beside it, and the formula itself. The normal n and the arcs are those of the
- * highest local maximum of the gap. Polygons of few corners go from the first probe to a stage that has the gap at all
- * junctions. What is certain goes to the last stage, which is the question's.
+ * to the last bit: a probe along the axis, another along u, a climb to a local maximum, a walk past the two junctions
+ * beside it, and the formula itself. The normal n and the arcs are those of the highest local maximum of the gap.
+ * Polygons of few corners go from the first probe to a stage that has the gap at all junctions. What is certain goes to
+ * the last stage, which is the question's.
  */
 #include <stdbool.h>
 #include <stddef.h>
