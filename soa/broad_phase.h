@@ -126,12 +126,13 @@ typedef struct narc_pair_list {
     narc_pairs pairs;         /* a < b, in the order of a and then b */
     const uint32_t *previous; /* for each pair: its index in the last list, or NARC_NO_MATCH if it is new */
     const uint8_t *marks;     /* for each pair: the kinds of both bodies together, and NARC_FLIPPED */
-    const uint32_t *added; /* the pairs that are new, rising */
+    const uint32_t *added;    /* the pairs that are new, rising */
     size_t added_count;
     const narc_lost_pair *lost; /* in the order of the last list */
     size_t lost_count;
-    size_t skipped; /* bodies without a box, in no pair: broken ones */
-    bool kept;      /* these are the last list's pairs: previous[k] is k, none is new, none is lost */
+    size_t skipped;  /* bodies without a box, in no pair: broken ones */
+    bool kept;       /* these are the last list's pairs: previous[k] is k, none is new, none is lost */
+    bool renumbered; /* bodies may have other numbers than in the last list */
 } narc_pair_list;
 
 /* A list of pairs that narc_update_pairs() made, and whose pairs they are. */
@@ -161,6 +162,7 @@ struct narc_broad_phase {
     bool is_sorted;       /* what is sorted below are the kept boxes, but for unsorted ones */
     bool has_filter;      /* `kinds` and `filters` are in use */
     bool has_sets;        /* `filters` may say other than that all bodies may form pairs */
+    bool has_other_kinds; /* marks that were taken over may be wrong */
     bool marked;          /* the last call made marks anew */
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */

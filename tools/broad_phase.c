@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * broad_phase.c - pairs of boxes in double precision: narc_update_box_pairs() for the boxes rounded outwards to single
+ * broad_phase.c - pairs of boxes in double precision: narc_find_pairs() for the boxes rounded outwards to single
  * precision, and then those of its pairs whose own boxes overlap.
  */
 #include "broad_phase.h"
@@ -17,8 +17,8 @@
 /* More of them may take a second on one thread. */
 enum { MANY_BOXES = 2000000 };
 
-/* Boxes that the middle is taken from. */
-enum { SAMPLES = 1000 };
+/* Boxes that the middle is taken from; room for pairs of each box, before they are counted. */
+enum { SAMPLES = 1000, LIKELY_PAIRS = 4 };
 
 static int compare_numbers(const void *left, const void *right) {
     const double *a = left, *b = right;
@@ -79,23 +79,30 @@ void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uin
     narc_broad_phase *broad = NULL;
     if (narc_create_broad_phase(NULL, &broad) != NARC_OK)
         fail("not enough memory");
-    const narc_pair_options options = {.workers = workers};
-    const narc_pair_list *list;
-    narc_error error;
-    const narc_status status = narc_update_box_pairs(broad, rounded, count, &options, &list, &error);
+    size_t capacity = LIKELY_PAIRS * count, found = 0;
+    uint32_t *a;
+    for (;; capacity = found) {
+        narc_error error;
+        a = allocate(capacity, 2 * sizeof *a);
+        const narc_status status =
+            narc_find_pairs(broad, rounded, count, NULL, workers, a, a + capacity, capacity, &found, &error);
+        if (status == NARC_ERROR_COUNT)
+            refuse(path, "more than ", UINT32_MAX, most);
+        if (status != NARC_OK && status != NARC_ERROR_CAPACITY)
+            fail("%s", error.message);
+        if (found > most)
+            refuse(path, "", found, most);
+        if (status == NARC_OK)
+            break;
+        free(a);
+    }
     free(rounded);
-    if (status == NARC_ERROR_COUNT)
-        refuse(path, "more than ", UINT32_MAX, most);
-    if (status != NARC_OK)
-        fail("%s", error.message);
-    const narc_pairs found = list->pairs;
-    if (found.count > most)
-        refuse(path, "", found.count, most);
-    out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, found.count, sizeof *out_pairs->items);
-    for (size_t k = 0; k < found.count; k++) {
-        const pair one = {found.a.base[k], found.b.base[k]};
+    out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, found, sizeof *out_pairs->items);
+    for (size_t k = 0; k < found; k++) {
+        const pair one = {a[k], a[capacity + k]};
         if (overlap(&boxes[one.a], &boxes[one.b]))
             out_pairs->items[out_pairs->count++] = one;
     }
+    free(a);
     narc_destroy_broad_phase(broad);
 }

@@ -16,7 +16,7 @@
  *       neighbours.c  images, pairs that may touch, history
  *       walls.c       motion of walls, servo control
  *       laws.c        forces of contacts and bodies
- *       step.c        velocity Verlet, the narrow phase
+ *       step.c        velocity Verlet
  *       world.c       a world's beginning and end
  *       measures.c    energies, stress, counts
  *       tables.c      tables of measures, and of grains; vtk.c: files for ParaView
@@ -175,10 +175,10 @@ typedef struct dem_image {
     uint64_t id;             /* as narc knows it: the part; of an image also its direction, or the grain's part */
     uint64_t category, mask; /* who may meet whom */
     uint32_t part;
-    uint32_t owner;   /* the only part that it may meet, or UINT32_MAX */
-    uint32_t group;   /* two of the same form no pair: the body + 2; 1 of walls and images */
-    int8_t right, up; /* by how many cells */
-    vec shift;        /* from the part */
+    uint32_t owner;    /* the only part that it may meet, or UINT32_MAX */
+    uint32_t group;    /* two of the same form no pair: the body + 2; 1 of walls and images */
+    int16_t right, up; /* by how many cells */
+    vec shift;         /* from the part */
 } dem_image;
 
 /* Two parts that may touch. */

@@ -144,9 +144,8 @@ uint64_t dem_hash(const dem *d) {
     const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,  a->normal,
                            a->tangential,   a->rolling, d->offset,  d->shear_work};
     uint64_t hash = dem_hash_bytes(DEM_HASH_START, d->bodies, d->body_count * sizeof *d->bodies);
-    for (size_t k = 0; k < d->pair_count; k++)
-        if (dem_memory_of(d, k)->step == d->step)
-            hash = dem_hash_bytes(hash, dem_memory_of(d, k), sizeof(dem_memory));
+    for (size_t k = 0; k < d->contact_count; k++)
+        hash = dem_hash_bytes(hash, dem_memory_of(d, d->contacts[k].pair), sizeof(dem_memory));
     for (size_t w = 0; w < d->wall_count; w++)
         hash = dem_hash_bytes(hash, &d->walls[w].work, sizeof d->walls[w].work);
     return dem_hash_bytes(hash, sums, sizeof sums);

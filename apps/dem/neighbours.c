@@ -100,8 +100,8 @@ static void add_images_across_borders(dem *d) {
             dem_image image = d->images[k];
             image.id |= (uint64_t)(i + 1) << 32;
             image.group = 1;
-            image.right = (int8_t)(i % 3 - 1);
-            image.up = (int8_t)(i / 3 - 1);
+            image.right = (int16_t)(i % 3 - 1);
+            image.up = (int16_t)(i / 3 - 1);
             image.shift = dem_find_shift(d, &image);
             if ((image.right || image.up) && (!image.right || s->periodic_x) && (!image.up || s->periodic_y) &&
                 is_near(d->boxes[k], image.shift, all))

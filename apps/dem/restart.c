@@ -4,7 +4,7 @@
  *
  *     "narc-dem" | version | byte order mark | size of what follows the header | its checksum | input hash
  *     counts, sums, progress of the run, laws
- *     walls, bodies, images, histories of pairs, the contacts with their forces
+ *     walls, bodies, images, the contacts with their forces, their histories by parts
  *
  * Shapes, materials and settings are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is.
@@ -24,10 +24,10 @@ static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
 enum { VERSION = 7, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
-    uint64_t bodies, walls, images, pairs, contacts; /* images that are no parts */
+    uint64_t bodies, walls, images, contacts; /* images that are no parts */
 } counts;
 
-/* What is known of a pair. */
+/* Of a contact: its parts, and what is known of them. */
 typedef struct history {
     uint32_t a, b;
     dem_memory memory;
@@ -94,21 +94,23 @@ static void pass_all(stream *s, dem *d, const counts *n, dem_progress *progress,
     for (size_t k = 0; k < d->body_count; k++)
         pass_body(s, &d->bodies[k]);
     PASS_ALL(d->images + d->part_count, n->images);
-    PASS_ALL(histories, n->pairs);
     PASS_ALL(d->contacts, n->contacts); /* a run that has no more steps is asked for them */
+    PASS_ALL(histories, n->contacts);
 }
 
 void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
-    counts n = {d->body_count, d->wall_count, d->image_count - d->part_count, d->pair_count, d->contact_count};
+    counts n = {d->body_count, d->wall_count, d->image_count - d->part_count, d->contact_count};
     history *histories = NULL;
     dem_progress where = *progress;
     header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = progress->input};
     dem_file file = dem_open_file(d, path);
     stream out = {.file = file.file, .checksum = DEM_HASH_START, .ok = true};
     memcpy(head.magic, MAGIC, sizeof head.magic);
-    dem_grow(&histories, d->pair_count, sizeof *histories);
-    for (size_t k = 0; k < d->pair_count; k++)
-        histories[k] = (history){d->pairs[k].a, d->pairs[k].b, *dem_memory_of(d, k)};
+    dem_grow(&histories, d->contact_count, sizeof *histories);
+    for (size_t k = 0; k < d->contact_count; k++) {
+        const size_t pair = d->contacts[k].pair;
+        histories[k] = (history){d->pairs[pair].a, d->pairs[pair].b, *dem_memory_of(d, pair)};
+    }
     fwrite(&head, 1, sizeof head, file.file); /* room for it */
     pass(&out, &n, sizeof n);
     pass_all(&out, d, &n, &where, histories);
@@ -144,22 +146,21 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
     return false;
 }
 
-/* Takes what was read beside bodies: the pairs must be found again, and get their histories. */
-static bool take_pairs(dem *d, const counts *n, const history *histories) {
+/* Finds the pairs again, and gives them their histories. */
+static bool take_histories(dem *d, const counts *n, const history *histories) {
     bool ok = true;
     d->image_count = d->part_count + n->images;
-    d->contact_count = n->contacts;
     for (size_t k = d->part_count; k < d->image_count; k++)
         ok = ok && d->images[k].part < d->part_count;
-    for (size_t k = 0; k < n->contacts; k++)
-        ok = ok && d->contacts[k].pair < n->pairs;
     if (ok)
         dem_find_pairs(d);
-    ok = ok && d->pair_count == n->pairs;
-    for (size_t k = 0; k < n->pairs && ok; k++) {
-        ok = histories[k].a == d->pairs[k].a && histories[k].b == d->pairs[k].b;
-        *dem_memory_of(d, k) = histories[k].memory;
+    for (size_t k = 0; k < n->contacts && ok; k++) {
+        const size_t pair = d->contacts[k].pair;
+        ok = pair < d->pair_count && histories[k].a == d->pairs[pair].a && histories[k].b == d->pairs[pair].b;
+        if (ok)
+            *dem_memory_of(d, pair) = histories[k].memory;
     }
+    d->contact_count = ok ? n->contacts : 0;
     return ok;
 }
 
@@ -173,13 +174,13 @@ void dem_read_restart(dem *d, dem_progress *progress, const char *path) {
         history *histories = NULL;
         pass(&in, &n, sizeof n);
         ok = n.bodies == d->body_count && n.walls == d->wall_count && n.images <= in.size / sizeof(dem_image) &&
-             n.pairs <= in.size / sizeof(history) && n.contacts <= n.pairs;
+             n.contacts <= in.size / sizeof(history);
         if (ok) {
             dem_grow(&d->images, d->part_count + n.images, sizeof *d->images);
-            dem_grow(&histories, n.pairs, sizeof *histories);
+            dem_grow(&histories, n.contacts, sizeof *histories);
             dem_grow(&d->contacts, n.contacts, sizeof *d->contacts);
             pass_all(&in, d, &n, progress, histories);
-            ok = in.ok && in.used == in.size && take_pairs(d, &n, histories);
+            ok = in.ok && in.used == in.size && take_histories(d, &n, histories);
         }
         dem_release(histories);
     }

@@ -89,6 +89,8 @@ static void take_over(const narc_kept_list *last, size_t first, size_t end, narc
     memcpy(made->a + to, last->a + first, count * sizeof *made->a);
     memcpy(made->b + to, last->b + first, count * sizeof *made->b);
     list_numbers(made->previous + to, (uint32_t)first, (uint32_t)count);
+    for (size_t k = 0; k < count; k++)
+        made->marks[to + k] = last->marks[first + k] & NARC_KINDS;
 }
 
 /* The first pair of a list from `at` on that has a fresh body, or is not before `next`; the number of pairs if there is
@@ -144,8 +146,15 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
+static void mark_pair(const uint8_t *kinds, narc_kept_list *made, size_t k) {
+    made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | kinds[made->a[k]] | kinds[made->b[k]]);
+}
+
 void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
-    const uint8_t *const kinds = broad->kinds;
-    for (size_t k = 0; k < made->list.pairs.count && broad->has_filter; k++)
-        made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | kinds[made->a[k]] | kinds[made->b[k]]);
+    if (!broad->has_filter)
+        return;
+    for (size_t k = 0; k < made->list.pairs.count && broad->has_other_kinds; k++)
+        mark_pair(broad->kinds, made, k);
+    for (size_t i = 0; i < made->list.added_count && !broad->has_other_kinds; i++)
+        mark_pair(broad->kinds, made, made->added[i]);
 }

@@ -209,7 +209,7 @@ static void keep_list(const update *u, bool rest) {
             last->previous[k] = (uint32_t)k;
             last->marks[k] &= NARC_KINDS;
         }
-    broad->renewed = false;
+    broad->renewed = last->list.renumbered = false;
     last->list.kept = true;
     last->list.added_count = last->list.lost_count = 0;
     broad->marked = rest;
@@ -217,6 +217,7 @@ static void keep_list(const update *u, bool rest) {
         return;
     for (size_t k = 0; k < u->count; k++)
         broad->kinds[k] = filter_of(u, k).kind;
+    broad->has_other_kinds = true;
     narc_mark_pairs(broad, last);
 }
 
@@ -303,6 +304,7 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
     broad->has_filter = u->step->filter;
     broad->has_sets = has_sets(u);
     broad->is_given = u->step->pairs;
+    broad->has_other_kinds = whole || found & REST;
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
         broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
@@ -315,6 +317,7 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         broad->known.moved[k] = 0;
         if (broad->has_filter) {
             broad->filters[k] = filter_of(u, k);
+            broad->has_other_kinds |= broad->kinds[k] != broad->filters[k].kind;
             broad->kinds[k] = broad->filters[k].kind;
         }
     }
@@ -405,12 +408,15 @@ static narc_status make_list(const update *u, bool same, unsigned found, size_t 
                          &fresh_pairs) &&
         fresh_pairs < UINT32_MAX - last->list.pairs.count)
         status = merge_lists(u, last, made, skipped, fresh_pairs, &lost_count);
-    else
+    else {
+        broad->has_other_kinds = true; /* no marks are taken over */
         status = find_all(u, same, last, made, skipped, &lost_count);
+    }
     if (status != NARC_OK)
         return status;
     if (narc_reserve_lost(broad, made, lost_count) != NARC_OK)
         return fail_memory(u, lost_count, "lost pairs");
+    made->list.renumbered = !same;
     narc_list_lost(last, made, lost_count);
     narc_mark_pairs(broad, made);
     return NARC_OK;

@@ -42,6 +42,16 @@ narc_status narc_ask_pairs(const narc_contact_step *s, const uint32_t *list, siz
     return status == NARC_OK ? answer(s, &batch, rows, capacity, out_count) : status;
 }
 
+const narc_kernel_table *narc_fill_slots(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
+                                         narc_batch *out) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    if (!kernels || narc_fill_batch(s->shapes, s->step->bodies, pairs, query, out, NULL) != NARC_OK)
+        return NULL;
+    out->row_size = s->contacts->row_size;
+    return NARC_KERNELS_FOR(query->selection_count, kernels);
+}
+
 /* ------------------------------------------------------------------------------------------------ parts */
 
 /* What is done with the slots of a list, part by part. Of each it lists the slots that it leaves, and returns how many. */
@@ -50,19 +60,9 @@ struct slot_job {
     size_t (*run)(slot_job *job, const uint32_t *list, size_t count, uint32_t *left);
     const narc_contact_step *step;
     const narc_pairs *pairs;
-    const narc_kernel_table *kernels;
     const uint32_t *list;
     atomic_size_t crossed; /* so many began or ended to touch */
 };
-
-/* A batch of some slots, which are known to be there. */
-static bool fill_batch(const slot_job *job, const narc_query *query, narc_batch *out) {
-    const narc_contact_step *const s = job->step;
-    if (narc_fill_batch(s->shapes, s->step->bodies, job->pairs, query, out, NULL) != NARC_OK)
-        return false;
-    out->row_size = s->contacts->row_size;
-    return query->selection_count > 0;
-}
 
 /* Behind the slots that are left of a part there is one that is none. */
 static void run_part(void *argument, size_t part, size_t first, size_t end) {
@@ -140,10 +140,10 @@ static size_t recycle_slots(slot_job *job, const uint32_t *list, size_t count, u
     const narc_rows rows = narc_view_rows(c, c->rows);
     uint8_t *const state = c->state;
     narc_batch batch;
-    if (!fill_batch(job, &query, &batch))
+    const narc_kernel_table *const kernels = narc_fill_slots(s, job->pairs, &query, &batch);
+    if (!kernels)
         return 0;
-    const size_t left_count = NARC_KERNELS_FOR(count, job->kernels)
-                                  ->recycle(&batch, 0, count, NULL, c->kept, s->step->recycling, &rows, left);
+    const size_t left_count = kernels->recycle(&batch, 0, count, NULL, c->kept, s->step->recycling, &rows, left);
     for (size_t i = 0; i < count; i++)
         state[list[i]] |= NARC_FOLLOWED;
     for (size_t i = 0; i < left_count; i++)
@@ -159,10 +159,11 @@ static size_t follow_slots(slot_job *job, const uint32_t *list, size_t count, ui
     const narc_rows rows = narc_view_rows(c, c->rows);
     narc_batch batch;
     size_t kept;
-    if (!fill_batch(job, &query, &batch))
+    const narc_kernel_table *const kernels = narc_fill_slots(s, job->pairs, &query, &batch);
+    if (!kernels)
         return 0;
-    const size_t left_count = NARC_KERNELS_FOR(count, job->kernels)
-                                  ->follow(&batch, 0, count, c->entries, c->contact_rows ? NULL : c->ends, &rows, left);
+    const size_t left_count =
+        kernels->follow(&batch, 0, count, c->entries, c->contact_rows ? NULL : c->ends, &rows, left);
     note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_ENTRY, left, c->candidates + (list - c->known), &kept);
     return left_count;
 }
@@ -177,7 +178,8 @@ static size_t ask_slots(slot_job *job, const uint32_t *list, size_t count, uint3
     size_t found, keep_count;
     query.dense = 1;
     query.row_stride = (ptrdiff_t)c->row_stride;
-    if (!fill_batch(job, &query, &batch) || answer(s, &batch, c->rows, c->slot_capacity, &found) != NARC_OK)
+    if (!narc_fill_slots(s, job->pairs, &query, &batch) ||
+        answer(s, &batch, c->rows, c->slot_capacity, &found) != NARC_OK)
         return 0;
     const size_t left = note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN, again, keep, &keep_count);
     narc_keep_rows(s, job->pairs, keep, NULL, keep_count, c->rows, c->kept);
@@ -185,12 +187,11 @@ static size_t ask_slots(slot_job *job, const uint32_t *list, size_t count, uint3
 }
 
 /* Makes entries of the first slots in `left`. */
-static void make_entries(const slot_job *job, size_t count) {
-    const narc_contact_step *const s = job->step;
+static void make_entries(const narc_contact_step *s, const narc_pairs *pairs, size_t count) {
     narc_contacts *const c = s->contacts;
     const narc_query query = make_query(s, c->margins, c->left, count);
     narc_batch batch;
-    if (!fill_batch(job, &query, &batch))
+    if (count == 0 || !narc_fill_slots(s, pairs, &query, &batch))
         return;
     for (size_t i = 0; i < count; i++)
         c->flags[c->left[i]] |= NARC_SLOT_ENTRY;
@@ -208,9 +209,7 @@ static size_t ask_left(narc_contacts *c, size_t left) {
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs) {
     narc_contacts *const c = s->contacts;
     narc_status status = NARC_OK;
-    slot_job job = {.run = recycle_slots, .step = s, .pairs = pairs, .kernels = narc_kernels(&status, s->error)};
-    if (status != NARC_OK)
-        return status;
+    slot_job job = {.run = recycle_slots, .step = s, .pairs = pairs};
     ask_left(c, run_slots(&job, c->candidates, c->candidate_count));
     for (size_t k = 0; k < c->candidate_count && c->more.count > 0; k++)
         if (c->state[c->candidates[k]] & NARC_FOLLOWED)
@@ -230,7 +229,7 @@ narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pair
     c->waits = !fails ? 0 : c->waits == 0 ? 1 : c->waits < MOST_STEPS ? 2 * c->waits : MOST_STEPS;
     c->wait = fails ? c->waits : c->wait > 0 ? c->wait - 1 : 0;
     if (c->wait == 0)
-        make_entries(&job, again);
+        make_entries(s, pairs, again);
     c->asked_count = plain_count; /* the others are among the known ones */
     return NARC_OK;
 }

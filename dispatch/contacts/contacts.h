@@ -254,6 +254,10 @@ void narc_take_ground(const narc_contact_step *s);
 
 /* ------------------------------------------------------------------------------------------------ ask.c */
 
+/* A batch of pairs that are known to be there, and the kernels for so many. NULL: there are none. */
+const narc_kernel_table *narc_fill_slots(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
+                                         narc_batch *out);
+
 /* Lets the rows of slots in `candidates` follow, and all that they have in `more`; those that may not join `asked`. Then rows
  * of the slots in `asked` and `known`, which are written now, and what touches. */
 narc_status narc_ask_contacts(const narc_contact_step *s, const narc_pairs *pairs);

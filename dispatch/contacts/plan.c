@@ -159,13 +159,17 @@ static bool is_list_kept(const narc_contact_step *s) {
     return s->list->kept && !s->contacts->broad->marked && !s->contacts->again;
 }
 
-/* The first body from `k` on that has changed in one of these ways, or `count`. Eight at a time, as most have not. */
-static size_t find_body(const uint8_t *changed, uint8_t how, size_t k, size_t count) {
-    const uint64_t any = how * UINT64_C(0x0101010101010101);
-    uint64_t some = 0;
-    for (; count - k >= sizeof some && !(some & any); k += sizeof some)
-        memcpy(&some, changed + k, sizeof some);
-    for (k -= some & any ? sizeof some : 0; k < count && !(changed[k] & how);)
+/* The first body from `k` on that has changed in one of these ways, or `count`. Many at a time, as most have not. */
+static size_t find_body(const uint8_t *changed, unsigned how, size_t k, size_t count) {
+    enum { MANY = 64 };
+    for (; count - k >= MANY; k += MANY) {
+        unsigned any = 0;
+        for (size_t i = 0; i < MANY; i++)
+            any |= changed[k + i];
+        if (any & how)
+            break;
+    }
+    while (k < count && !(changed[k] & how))
         k++;
     return k;
 }
@@ -216,114 +220,88 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
     narc_set_touching(c, slot, false);
 }
 
-/* What is to be done with pair k of the list, if it is stale or has changed. Ground: the next of what is planned. */
-static unsigned find_work(const narc_contact_step *s, const pair_view *v, size_t k, const narc_pair_work **work) {
+/* What is to be done with a pair of ground, the next of what is planned, or with one that is a sensor's, or of which not both
+ * move. `changed`: it has, or is stale. */
+NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, size_t k, const narc_pair_work **work,
+                               unsigned changed) {
     const narc_contacts *const c = s->contacts;
-    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
-    const unsigned marks = v->marks[k], changed = v->changed[a] | v->changed[b];
-    const bool stale = is_stale(v, k, slot);
+    const unsigned marks = v->marks[k];
     if (s->has_ground && is_ground(s, v, k))
         return *work < c->work + c->work_count && (*work)->pair == k ? (*work)++->what : NARC_NOTHING;
-    if (!stale && !changed)
+    if (!changed)
         return NARC_NOTHING;
-    if (marks & NARC_AT_REST && !narc_is_tested(s, a, b) && !(marks & NARC_FLIPPED))
+    if (marks & NARC_AT_REST && !narc_is_tested(s, v->a[k], v->b[k]) && !(marks & NARC_FLIPPED))
         return NARC_REST; /* one that is turned has the other bodies' row */
-    if (marks & NARC_SENSOR)
-        return NARC_ASK_SENSOR;
-    if (are_apart(v, a, b))
-        return NARC_APART;
-    return s->step->recycling > 0 && !stale && !(changed & NARC_RESHAPED) && v->flags[slot] & NARC_SLOT_KEPT
-               ? NARC_FOLLOW
-               : NARC_ASK;
+    return marks & NARC_SENSOR ? NARC_ASK_SENSOR : NARC_ASK;
 }
 
-/* Does it. */
-static void do_work(const narc_contact_step *s, const pair_view *v, size_t k, unsigned what) {
+/* What is done with few pairs, or in few scenes. */
+NOINLINE void do_rest(const narc_contact_step *s, const pair_view *v, size_t k, unsigned what) {
     narc_contacts *const c = s->contacts;
-    const uint32_t a = v->a[k], b = v->b[k], slot = v->order[k];
-    const unsigned gone = what == NARC_FOLLOW || what == NARC_REST ? 0 : NARC_SLOT_KEPT;
-    const unsigned stays = (v->changed[a] | v->changed[b]) & NARC_RESHAPED
-                               ? NARC_SLOT_CROSSED
-                               : 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | gone);
-    const unsigned now =
-        (c->flags[slot] & stays) | (v->marks[k] & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0);
-    c->flags[slot] = (uint8_t)now;
+    const uint32_t slot = v->order[k];
     if (s->step->ahead.base && (what == NARC_ASK || what == NARC_FOLLOW))
-        c->margins[slot] = narc_find_margin(s, a, b);
-    if (what == NARC_ASK) {
+        c->margins[slot] = narc_find_margin(s, v->a[k], v->b[k]);
+    if (what == NARC_ASK)
         c->more_of[slot].count = 0; /* it may have been ground */
-        if (now & NARC_SLOT_ENTRY)
-            c->known[c->known_count++] = slot;
-        else
-            c->asked[c->asked_count++] = slot;
-    } else if (what == NARC_APART && c->state[slot] & NARC_TOUCHING) {
+    if (what == NARC_APART)
         narc_clear_row(c, slot);
-    } else if (what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING) {
-        c->candidates[c->candidate_count++] = slot;
-    } else if (what == NARC_ASK_SENSOR) {
+    if (what == NARC_ASK_SENSOR)
         c->sensors_asked[c->sensor_count++] = slot;
-    }
 }
 
-/* Pairs from number `first` on as far as all bodies move, are none of ground, no sensors, and need no margin of their own:
- * the same for these in few instructions. Returns where that ends. */
-NOINLINE size_t sort_simple(const narc_contact_step *s, const pair_view *given, size_t first, bool kept) {
-    const unsigned special = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED;
+/* What the loop uses lies in variables of its own, as whatever is written in bytes might be any of it; what differs from
+ * pair to pair as chance has it is without a branch. */
+void narc_sort_pairs(const narc_contact_step *s) {
+    enum { SPECIAL = NARC_AT_REST | NARC_SENSOR, OURS = NARC_SLOT_STALE | NARC_SENSOR };
+    static const uint8_t stays[] = {[NARC_REST] = 0xff & ~OURS,
+                                    [NARC_FOLLOW] = 0xff & ~OURS,
+                                    [NARC_ASK] = 0xff & ~(OURS | NARC_SLOT_KEPT),
+                                    [NARC_ASK_GROUND] = 0xff & ~(OURS | NARC_SLOT_KEPT),
+                                    [NARC_ASK_SENSOR] = 0xff & ~(OURS | NARC_SLOT_KEPT),
+                                    [NARC_APART] = 0xff & ~(OURS | NARC_SLOT_KEPT)};
     narc_contacts *const c = s->contacts;
-    const pair_view v = *given; /* what loops use, in variables: what is written in bytes might be any of it */
+    const pair_view v = view_pairs(s);
+    const narc_pair_work *work = c->work;
     const uint8_t *const state = c->state;
     uint8_t *const flags = c->flags;
-    uint32_t *asked = c->asked + c->asked_count, *known = c->known + c->known_count,
-             *candidates = c->candidates + c->candidate_count;
+    uint32_t *asked = c->asked, *known = c->known, *candidates = c->candidates;
+    const bool kept = is_list_kept(s), ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
     const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
-    const size_t count = s->list->pairs.count;
-    size_t k = first;
-    for (; k < count; k++) {
+    const size_t count = c->changed ? s->list->pairs.count : 0;
+    c->sensor_count = 0;
+    for (size_t k = 0; k < count; k++) {
         const uint32_t a = v.a[k], b = v.b[k], slot = v.order[k];
-        const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], stale = was & NARC_SLOT_STALE;
+        const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], marks = v.marks[k];
         if (kept && !changed) {
             k = find_changed(&s->list->pairs, v.changed, k) - 1;
             continue;
         }
-        const unsigned marks = v.marks[k];
-        if (!(changed | stale | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR)))
+        const unsigned stale = (was & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR);
+        if (!(changed | stale) && !ground)
             continue;
-        if ((marks & special) | (was & NARC_SENSOR))
-            break;
-        /* one that touches is better asked */
-        const bool looks = !(state[slot] & NARC_TOUCHING) || was & follow;
-        const unsigned apart = looks && are_apart(&v, a, b);
-        if (apart & state[slot])
-            break;
-        const unsigned own = was & (changed & NARC_RESHAPED ? NARC_SLOT_CROSSED : 0xffu - NARC_SLOT_STALE);
-        const unsigned follows = stale | apart ? 0 : own & follow;
-        const unsigned asks = !(apart | follows), entry = asks & (own / NARC_SLOT_ENTRY);
-        flags[slot] = (uint8_t)((own & (0xffu - NARC_SLOT_KEPT)) | follows);
-        *asked = *known = *candidates = slot; /* as chance has it: without a branch */
+        unsigned what = NARC_ASK;
+        if (ground || marks & SPECIAL)
+            what = find_special(s, &v, k, &work, changed | stale);
+        const bool touches = state[slot] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
+        if (what == NARC_ASK) {
+            /* one that touches is better asked */
+            const bool looks = !touches || was & follow;
+            const unsigned follows = !stale & !reshaped & ((was & follow) != 0);
+            what = looks && are_apart(&v, a, b) ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK;
+        }
+        if (what == NARC_NOTHING)
+            continue;
+        const unsigned own = was & (reshaped ? NARC_SLOT_CROSSED : stays[what]);
+        const unsigned asks = what == NARC_ASK, entry = asks & (own / NARC_SLOT_ENTRY);
+        flags[slot] = (uint8_t)(own | (marks & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0));
+        *asked = *known = *candidates = slot;
         asked += asks - entry;
         known += entry;
-        candidates += follows / NARC_SLOT_KEPT;
+        candidates += (what == NARC_FOLLOW) & touches;
+        if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
+            do_rest(s, &v, k, what);
     }
     c->asked_count = (size_t)(asked - c->asked);
     c->known_count = (size_t)(known - c->known);
     c->candidate_count = (size_t)(candidates - c->candidates);
-    return k;
-}
-
-void narc_sort_pairs(const narc_contact_step *s) {
-    narc_contacts *const c = s->contacts;
-    const pair_view v = view_pairs(s);
-    const narc_pair_work *work = c->work;
-    const bool kept = is_list_kept(s), simple = !s->has_ground && !s->step->ahead.base && c->more.count == 0;
-    const size_t count = c->changed ? s->list->pairs.count : 0;
-    c->sensor_count = c->candidate_count = c->asked_count = c->known_count = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (kept)
-            k = find_changed(&s->list->pairs, v.changed, k);
-        if (simple)
-            k = sort_simple(s, &v, k, kept);
-        const unsigned what = k < count ? find_work(s, &v, k, &work) : NARC_NOTHING;
-        if (what != NARC_NOTHING)
-            do_work(s, &v, k, what);
-    }
 }

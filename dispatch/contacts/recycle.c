@@ -6,17 +6,6 @@
 #include "contacts.h"
 #include "dispatch.h"
 
-/* A batch of some pairs, which are known to be there. */
-static const narc_kernel_table *fill_batch(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,
-                                           narc_batch *out) {
-    narc_status status = NARC_OK;
-    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
-    if (!kernels || narc_fill_batch(s->shapes, s->step->bodies, pairs, query, out, NULL) != NARC_OK)
-        return NULL;
-    out->row_size = s->contacts->row_size;
-    return NARC_KERNELS_FOR(query->selection_count, kernels);
-}
-
 void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
                     size_t count, void *to, narc_kept_row *kept) {
     const narc_query query = {.selection = {slots, sizeof *slots}, .selection_count = count};
@@ -24,7 +13,7 @@ void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const u
     narc_batch batch;
     if (count == 0 || !(s->step->recycling > 0))
         return;
-    const narc_kernel_table *const kernels = fill_batch(s, pairs, &query, &batch);
+    const narc_kernel_table *const kernels = narc_fill_slots(s, pairs, &query, &batch);
     if (kernels)
         kernels->keep(&batch, 0, count, item, &rows, kept);
 }
@@ -36,7 +25,7 @@ static bool follow_row(const narc_contact_step *s, const narc_pairs *pairs, uint
     const narc_rows rows = narc_view_rows(s->contacts, to);
     narc_batch batch;
     uint32_t left;
-    const narc_kernel_table *const kernels = fill_batch(s, pairs, &query, &batch);
+    const narc_kernel_table *const kernels = narc_fill_slots(s, pairs, &query, &batch);
     return kernels && kernels->recycle(&batch, 0, 1, &item, kept, s->step->recycling, to ? &rows : NULL, &left) == 0;
 }
 

@@ -108,7 +108,7 @@ narc_status narc_reserve_arrays(narc_contacts *c, narc_growth growth, size_t *ca
 void narc_show_arrays(narc_contacts *c) {
     narc_step_result *const r = &c->result;
     void *const rows = c->rows_in_user ? NULL : c->own_rows;
-    c->rows = c->rows_in_user ? (char *)c->user + c->row_offset : c->own_rows;
+    c->rows = c->rows_in_user && c->user ? (char *)c->user + c->row_offset : c->own_rows;
     r->pairs = narc_view_slots(c);
     r->order = c->order;
     r->state = c->state;
@@ -159,6 +159,27 @@ static uint32_t open_slot(narc_contacts *c) {
     return slot;
 }
 
+/* The slots of pairs that were there; the bodies of some may have other numbers now. */
+static void take_old_slots(narc_contacts *c, const narc_pair_list *list) {
+    const uint32_t *const previous = list->previous, *const order = c->order;
+    uint32_t *const next = c->next_order;
+    const size_t count = list->pairs.count, last_count = c->result.count;
+    for (size_t k = 0; k < count; k++)
+        next[k] = previous[k] < last_count ? order[previous[k]] : 0;
+    for (size_t k = 0; k < count && list->renumbered; k++) {
+        if (previous[k] == NARC_NO_MATCH)
+            continue;
+        const uint32_t slot = next[k];
+        c->a[slot] = list->pairs.a.base[k];
+        c->b[slot] = list->pairs.b.base[k];
+        if (list->marks[k] & NARC_FLIPPED) {
+            c->flags[slot] |= NARC_SLOT_STALE;
+            c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
+            narc_mark_slot(c, slot, NARC_TURNED);
+        }
+    }
+}
+
 void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
     for (size_t k = 0; k < c->parted_count; k++)
         c->free[c->free_count++] = c->parted[k];
@@ -167,16 +188,12 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
         return;
     for (size_t k = 0; k < list->lost_count; k++)
         c->parted[c->parted_count++] = c->order[list->lost[k].pair];
-    for (size_t k = 0; k < list->pairs.count; k++) {
-        const uint32_t last = list->previous[k], slot = last == UINT32_MAX ? open_slot(c) : c->order[last];
+    take_old_slots(c, list);
+    for (size_t i = 0; i < list->added_count; i++) {
+        const uint32_t k = list->added[i], slot = open_slot(c);
         c->next_order[k] = slot;
         c->a[slot] = list->pairs.a.base[k];
         c->b[slot] = list->pairs.b.base[k];
-        if (list->marks[k] & NARC_FLIPPED) {
-            c->flags[slot] |= NARC_SLOT_STALE;
-            c->flags[slot] &= (uint8_t) ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY);
-            narc_mark_slot(c, slot, NARC_TURNED);
-        }
     }
     uint32_t *const made = c->next_order;
     c->next_order = c->order;
@@ -235,7 +252,7 @@ narc_status narc_find_body_slots(narc_contacts *c, uint32_t body, const uint32_t
                              bodies);
         list_partners(c, bodies);
     }
-    *out_slots = c->partners + c->partner_ends[body];
     *out_count = c->partner_ends[body + 1] - c->partner_ends[body];
+    *out_slots = *out_count > 0 ? c->partners + c->partner_ends[body] : c->partners; /* without pairs there are none */
     return NARC_OK;
 }

@@ -466,44 +466,23 @@ void test_broad_phase() {
     const narc_workers workers = narc_openmp_workers(1);
     narc_pair_filter filter = {};
     filter.kind = narc::column(scene.entities, &Entity::is_static);
-    const std::vector<uint64_t> ids = {9, 8, 7, 6, 5, 4, 3, 2, 1, 0};
-    const narc_float_column motion = narc::column(scene.entities, &Entity::motion);
-    const auto options = narc::pair_options()
-                             .margin(0.02f)
-                             .skin(0.05f)
-                             .motion(motion, motion)
-                             .reach(motion)
-                             .id(narc::column(ids))
-                             .filter(filter)
-                             .workers(workers);
-    const narc_pair_options &c = options;
-    CHECK(c.margin == 0.02f && c.skin == 0.05f && c.motion_x.base == motion.base && c.motion_y.base == motion.base);
-    CHECK(c.reach.base == motion.base && c.id.base == ids.data() && c.filter == &filter && c.workers == &workers);
-    const narc_pair_list *list = broad.update(scene.shapes, scene.bodies, options).value();
-    CHECK(list->pairs.count >= 9 && !list->kept && list->added_count == list->pairs.count);
-    narc_broad_phase *other = nullptr;
-    const narc_pair_list *expected = nullptr;
-    CHECK(!narc_create_broad_phase(nullptr, &other));
-    const narc::broad_phase owned(other);
-    CHECK(!narc_update_pairs(other, scene.shapes, &scene.bodies, &options, &expected, nullptr));
-    CHECK(expected->pairs.count == list->pairs.count && expected->contact_count == list->contact_count);
-    std::vector<narc_manifold> rows;
-    const auto query = narc::query().margin(0.02f).selection({list->contacts, list->contact_count});
-    CHECK(narc::find_manifolds(scene.shapes, scene.bodies, list->pairs, query, rows).value().size() > 3);
-    CHECK(broad.update(scene.shapes, scene.bodies, options).value()->kept);
-    CHECK(status_of(broad.update(scene.shapes, scene.bodies, narc::pair_options().skin(-1))) == NARC_ERROR_ARGUMENT);
-
     std::vector<narc_box> boxes(10);
     CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes) && boxes[9].min_x < boxes[9].max_x);
     CHECK(status_of(narc::compute_boxes(scene.shapes, scene.bodies, narc::span(boxes.data(), 9))) ==
           NARC_ERROR_CAPACITY);
-    narc_forget_pairs(broad);
-    CHECK(broad.update(boxes).value()->pairs.count >= 9);
+    std::vector<uint32_t> a, b(1);
+    const size_t count = broad.find_pairs(boxes, a, b, &filter, &workers).value();
+    CHECK(count >= 8 && a.size() >= count && b.size() >= count && a[0] < b[0]);
+    const size_t all = broad.find_pairs(boxes, a, b).value();
+    CHECK(all >= count);
+    std::vector<narc_manifold> rows;
+    const narc_pairs pairs = {all, narc::column(a), narc::column(b), nullptr, {}, {}, {}};
+    CHECK(narc::find_manifolds(scene.shapes, scene.bodies, pairs, {}, rows).value().size() > 3);
     const narc::broad_phase moved = std::move(broad);
-    CHECK(moved.get() && !broad.get());                           // NOLINT
-    CHECK(status_of(broad.update(boxes)) == NARC_ERROR_ARGUMENT); // NOLINT
+    CHECK(moved.get() && !broad.get());                                     // NOLINT
+    CHECK(status_of(broad.find_pairs(boxes, a, b)) == NARC_ERROR_ARGUMENT); // NOLINT
     broad = narc::broad_phase();
-    CHECK(broad.update(std::vector<narc_box>()).value()->pairs.count == 0);
+    CHECK(broad.find_pairs(std::vector<narc_box>(), a, b).value() == 0);
 }
 
 void test_contacts_that_stay() {
@@ -528,6 +507,8 @@ void test_contacts_that_stay() {
                     .run(narc::column(run))
                     .filter(filter)
                     .workers(workers);
+    const std::vector<uint32_t> low = {0, 1}, high = {2, 2};
+    const narc_pairs pairs = {2, narc::column(low), narc::column(high), nullptr, {}, {}, {}};
     const narc_step &c = step;
     CHECK(c.margin == 0.02f && c.second_margin == 0.03f && c.flat_angle == 0.4f && c.front_only && c.skin == 0.05f);
     CHECK(c.recycling == 0.01f && c.motion_x.base == motion.base && c.motion_y.base == motion.base);
@@ -539,9 +520,25 @@ void test_contacts_that_stay() {
     CHECK(contacts.update(scene.shapes, scene.bodies, step.moved(none)).value()->asked_count == 0);
     CHECK(status_of(contacts.update(scene.shapes, scene.bodies, narc::step().skin(-1))) == NARC_ERROR_ARGUMENT);
     CHECK(status_of(narc::contacts::make(2, 0)) == NARC_ERROR_ARGUMENT);
+    CHECK(contacts.update(scene.shapes, scene.bodies, step.pairs(pairs)).value()->count == 2);
+    CHECK(c.pairs == &pairs && !c.same_pairs);
+    const narc_step_result *kept = contacts.update(scene.shapes, scene.bodies, step.pairs(pairs, true)).value();
+    CHECK(c.same_pairs && kept->count == 2 && kept->began_count + kept->ended_count == 0);
+    const auto slots = contacts.slots_of(2).value();
+    CHECK(slots.size() == 2 && slots[0] == kept->order[0] && slots[1] == kept->order[1]);
+    CHECK(status_of(contacts.slots_of(10)) == NARC_ERROR_INDEX);
+    const std::vector<char> saved = contacts.save().value();
+    CHECK(contacts.forget(std::vector<uint64_t>{9}));
+    const narc_step_result *later = contacts.update(scene.shapes, scene.bodies, step).value();
+    CHECK(later->state[later->order[0]] & NARC_NEW && !(later->state[later->order[1]] & NARC_NEW));
+    CHECK(contacts.load(scene.shapes, saved).value()->count == 2 && contacts.save().value() == saved);
+    CHECK(status_of(contacts.load(scene.shapes, narc::span(saved.data(), 9))) == NARC_ERROR_FORMAT);
     narc::contacts plain;
     CHECK(plain.update(scene.shapes, scene.bodies).value()->count > 0);
-    narc_forget_contacts(plain);
+    CHECK(status_of(plain.load(scene.shapes, saved)) == NARC_ERROR_ARGUMENT);
+    plain.forget();
+    narc::contacts in_user = narc::contacts::make(NARC_ROWS_IN_USER, sizeof(narc_manifold)).value();
+    CHECK(!in_user.update(scene.shapes, scene.bodies).value()->manifolds);
 }
 
 // ---------------------------------------------------------------------------- questions to a scene

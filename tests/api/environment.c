@@ -14,6 +14,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 #include "narc_scene.h"
 #include "support.h"
 
@@ -107,7 +108,9 @@ static void all_calls_unknown(void) {
     const narc_points points = {.count = 1, .x = place, .y = place};
     const narc_rays rays = {
         .count = 1, .x = place, .y = place, .motion_x = NARC_ARRAY(&angle), .motion_y = NARC_ARRAY(&zero)};
-    const narc_pair_list *list;
+    const narc_step step = {.bodies = bodies};
+    const narc_step_result *r;
+    narc_contacts *contacts;
     narc_broad_phase *broad;
     narc_index *index;
     narc_box box = {0, 0, 1, 1};
@@ -121,15 +124,15 @@ static void all_calls_unknown(void) {
     uint32_t a, b;
     float cosine, sine;
     size_t count;
-    REQUIRE(narc_create_broad_phase(NULL, &broad) == NARC_OK && narc_create_index(NULL, &index) == NARC_OK);
+    REQUIRE(narc_create_broad_phase(NULL, &broad) == NARC_OK && narc_create_index(NULL, &index) == NARC_OK &&
+            narc_create_contacts(NULL, &contacts, NULL) == NARC_OK);
     REQUIRE(narc_find_overlaps(shapes, bodies, &batch.pairs, NULL, &bits, NULL) == unknown);
     REQUIRE(narc_find_contacts(shapes, bodies, &batch.pairs, NULL, &contact, 1, &count, NULL) == unknown);
     REQUIRE(narc_find_manifolds(shapes, bodies, &batch.pairs, NULL, &manifold, 1, &count, NULL) == unknown);
     REQUIRE(narc_compute_poses(&angle, 1, &cosine, &sine, NULL) == unknown);
     REQUIRE(narc_compute_boxes(shapes, bodies, NULL, &box, NULL) == unknown);
     REQUIRE(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, &count, NULL) == unknown);
-    REQUIRE(narc_update_pairs(broad, shapes, bodies, NULL, &list, NULL) == unknown);
-    REQUIRE(narc_update_box_pairs(broad, &box, 1, NULL, &list, NULL) == unknown);
+    REQUIRE(narc_update_contacts(contacts, shapes, &step, &r, NULL) == unknown);
     REQUIRE(narc_build_index(index, &box, 1, NULL, NULL) == unknown);
     REQUIRE(narc_refit_index(index, &box, 0, NULL, NULL, NULL) == unknown); /* it has no bodies yet */
     REQUIRE(narc_query_index(index, &box, 1, NULL, &pairs, NULL) == unknown);
@@ -140,6 +143,7 @@ static void all_calls_unknown(void) {
     REQUIRE(narc_cast_shapes(index, shapes, &none, bodies, &motions, NULL, NULL, &impact, 1, NULL) == unknown);
     REQUIRE(narc_find_nearest(index, shapes, &none, &points, NULL, &distance, 1, NULL) == unknown);
     REQUIRE(narc_get_isa() == NULL);
+    narc_destroy_contacts(contacts);
     narc_destroy_broad_phase(broad);
     narc_destroy_index(index);
     narc_destroy_shapes(batch.shapes);

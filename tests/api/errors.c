@@ -10,6 +10,8 @@
 
 #include "expect.h"
 #include "guard.h"
+#include "ledger.h"
+#include "narc_contacts.h"
 #include "questions.h"
 
 enum { PAIRS = 200, BODIES = 30 };
@@ -448,6 +450,221 @@ TEST(test_capacity) {
         release_shapes(shapes);
         destroy_scene(&scene);
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ contacts that stay */
+
+TEST(test_contact_settings) {
+    narc_contacts *contacts = NULL;
+    narc_error error;
+    const struct {
+        narc_contacts_settings settings;
+        const char *words;
+    } cases[] = {
+        {{.rows = 4}, "settings.rows is 4"},
+        {{.row_offset = 4}, "settings.row_offset is 4, without NARC_ROWS_IN_USER"},
+        {{.rows = NARC_ROWS_IN_USER}, "settings.user_size is 0: no room for rows of 64 bytes at 0"},
+        {{.rows = NARC_ROWS_IN_USER, .user_size = 66}, "in multiples of 4"},
+        {{.rows = NARC_ROWS_IN_USER, .user_size = 80, .row_offset = 2}, "at 2, in multiples of 4"},
+        {{.rows = 3, .user_size = 40, .row_offset = 8}, "settings.user_size is 40: no room for rows of 36 bytes at 8"},
+        {{.rows = 3, .user_size = 40, .row_offset = SIZE_MAX - 3}, "no room"},
+        {{.rows = 3, .user_size = SIZE_MAX - 3}, "no room"},
+        {{.allocator = &(const narc_allocator){NULL, NULL, NULL}}, "settings.allocator's function is NULL"},
+        {{.reserved = {NULL, NULL, NULL, &contacts}}, "settings.reserved[3]"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        expect_error(narc_create_contacts(&cases[k].settings, &contacts, &error), NARC_ERROR_ARGUMENT, &error,
+                     cases[k].words);
+    expect_error(narc_create_contacts(NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_contacts is NULL");
+    assert_null(contacts);
+    const narc_contacts_settings tight = {.rows = 3, .user_size = 40, .row_offset = 4};
+    expect_ok(narc_create_contacts(&tight, &contacts, &error), &error);
+    narc_destroy_contacts(contacts);
+}
+
+/* Five discs in a row, each touching the next; and contacts of them. */
+struct row_of_discs {
+    narc_shapes *store;
+    narc_body body[5];
+    narc_bodies bodies;
+    narc_contacts *contacts;
+    const narc_step_result *r;
+};
+
+static void set_up_discs(struct row_of_discs *d) {
+    narc_error error;
+    d->store = empty_store();
+    store_shape(d->store, circle_of(0.5));
+    for (size_t k = 0; k < 5; k++)
+        d->body[k] = (narc_body){.x = 0.9 * (double)k, .cosine = 1, .scale = 1};
+    d->bodies = narc_view_bodies(d->body, 5);
+    expect_ok(narc_create_contacts(&(narc_contacts_settings){.user_size = 4}, &d->contacts, &error), &error);
+    const narc_step step = {.bodies = &d->bodies};
+    expect_ok(narc_update_contacts(d->contacts, d->store, &step, &d->r, &error), &error);
+    assert_int_equal(d->r->touching_count, 4);
+}
+
+/* After an error all is as it was, and goes on from there. */
+static void tear_down_discs(struct row_of_discs *d) {
+    const narc_step step = {.bodies = &d->bodies};
+    narc_error error;
+    assert_int_equal(d->r->began_count, 4);
+    expect_ok(narc_update_contacts(d->contacts, d->store, &step, &d->r, &error), &error);
+    assert_int_equal(d->r->touching_count, 4);
+    assert_int_equal(d->r->began_count + d->r->ended_count, 0);
+    narc_destroy_contacts(d->contacts);
+    narc_destroy_shapes(d->store);
+}
+
+TEST(test_steps) {
+    static const uint32_t a[] = {0, 1, 1, 4}, same[] = {3, 1}, far[] = {0, 5}, once[] = {1, 2, 2, 3}, turned[] = {1, 0};
+    static const uint64_t ids[] = {9, 3, 2, 7, 3};
+    static const float zero = 0;
+    struct row_of_discs d;
+    set_up_discs(&d);
+#define PAIRS_OF(...) (&(const narc_pairs){__VA_ARGS__})
+    const narc_pair_filter reserved = {.reserved = {NULL, &d}};
+    const struct {
+        narc_step step;
+        narc_status status;
+        const char *words;
+    } cases[] =
+    { {{.skin = -1}, NARC_ERROR_ARGUMENT, "step.skin is -1, less than 0"},
+      {{.skin = INFINITY}, NARC_ERROR_NOT_FINITE, "step.skin is inf"},
+      {{.filter = &reserved}, NARC_ERROR_ARGUMENT, "filter.reserved[1]"},
+      {{.id = NARC_ARRAY(ids)}, NARC_ERROR_ARGUMENT, "body 4: id 3 is also that of a body before it"},
+      {{.pairs = PAIRS_OF(.count = 2)}, NARC_ERROR_ARGUMENT, "step.pairs.a is NULL"},
+      {{.pairs = PAIRS_OF(.count = 2, .a = NARC_ARRAY(a))}, NARC_ERROR_ARGUMENT, "step.pairs.b is NULL"},
+      {{.pairs = PAIRS_OF(.other_bodies = &d.bodies)}, NARC_ERROR_ARGUMENT, "step.pairs with other_bodies"},
+      {{.pairs = PAIRS_OF(.shift_x = {&zero, 0})}, NARC_ERROR_ARGUMENT, "step.pairs with shifts"},
+      {{.pairs = PAIRS_OF(.shift_y = {&zero, 0})}, NARC_ERROR_ARGUMENT, "step.pairs with shifts"},
+      {{.pairs = PAIRS_OF(.reserved = {&d})}, NARC_ERROR_ARGUMENT, "step.pairs.reserved[0]"},
+      {{.pairs = PAIRS_OF(.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(same))},
+       NARC_ERROR_ARGUMENT,
+       "pair 1: both are body 1"},
+      {{.pairs = PAIRS_OF(.count = 2, .a = NARC_ARRAY(once), .b = NARC_ARRAY(far))},
+       NARC_ERROR_INDEX,
+       "pair 1: body 5, but there are 5 bodies"},
+      {{.pairs = PAIRS_OF(.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(once))},
+       NARC_ERROR_ARGUMENT,
+       "step.pairs has bodies 1 and 2 twice"},
+      {{.pairs = PAIRS_OF(.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(turned))},
+       NARC_ERROR_ARGUMENT,
+       "step.pairs has bodies 0 and 1 twice"},
+#if SIZE_MAX > UINT32_MAX
+      {{.pairs = PAIRS_OF(.count = UINT32_MAX, .a = {a, 0}, .b = {once, 0})}, NARC_ERROR_ARGUMENT, "4294967295 pairs"},
+#endif
+    };
+    narc_error error;
+    const narc_step_result *r = NULL;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        narc_step step = cases[k].step;
+        step.bodies = &d.bodies;
+        expect_error(narc_update_contacts(d.contacts, d.store, &step, &r, &error), cases[k].status, &error,
+                     cases[k].words);
+        assert_null(r);
+    }
+    expect_error(narc_update_contacts(d.contacts, d.store, &(narc_step){.bodies = &d.bodies}, NULL, &error),
+                 NARC_ERROR_ARGUMENT, &error, "out_result is NULL");
+    tear_down_discs(&d);
+}
+
+/* The first step has memory for so many arrays alone: rows in the caller's bytes are nowhere yet. */
+TEST(test_first_step_without_memory) {
+    struct row_of_discs d;
+    set_up_discs(&d);
+    for (size_t left = 0, failures = 1; failures > 0; left++) {
+        struct ledger ledger = {0};
+        const narc_allocator allocator = ledger_allocator(&ledger);
+        const narc_contacts_settings settings = {
+            .rows = NARC_ROWS_IN_USER, .user_size = 72, .row_offset = 8, .allocator = &allocator};
+        const narc_step step = {.bodies = &d.bodies};
+        narc_contacts *contacts;
+        const narc_step_result *r = NULL;
+        narc_error error;
+        expect_ok(narc_create_contacts(&settings, &contacts, &error), &error);
+        ledger.limited = true;
+        ledger.left = left;
+        for (failures = 0; narc_update_contacts(contacts, d.store, &step, &r, &error) != NARC_OK; failures++) {
+            expect_error(error.status, NARC_ERROR_MEMORY, &error, "not enough memory");
+            assert_null(r);
+            ledger.limited = false;
+        }
+        assert_int_equal(r->touching_count, 4);
+        narc_destroy_contacts(contacts);
+        assert_int_equal(ledger.live, 0);
+    }
+    tear_down_discs(&d);
+}
+
+TEST(test_slots_of_bodies) {
+    struct row_of_discs d;
+    narc_contacts *none;
+    const narc_step_result *r;
+    const uint32_t *slots = NULL;
+    size_t count = 7;
+    narc_error error;
+    set_up_discs(&d);
+    expect_ok(narc_create_contacts(NULL, &none, &error), &error);
+    expect_error(narc_find_body_slots(none, 0, &slots, &count, &error), NARC_ERROR_INDEX, &error,
+                 "body 0, but the last step had 0 bodies");
+    expect_error(narc_find_body_slots(d.contacts, 5, &slots, &count, &error), NARC_ERROR_INDEX, &error,
+                 "body 5, but the last step had 5 bodies");
+    expect_error(narc_find_body_slots(NULL, 0, &slots, &count, &error), NARC_ERROR_ARGUMENT, &error, "contacts");
+    expect_error(narc_find_body_slots(none, 0, NULL, &count, &error), NARC_ERROR_ARGUMENT, &error, "out_slots");
+    expect_error(narc_find_body_slots(none, 0, &slots, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_count");
+    expect_error(narc_forget_bodies(NULL, NULL, 0, &error), NARC_ERROR_ARGUMENT, &error, "contacts is NULL");
+    expect_error(narc_forget_bodies(d.contacts, NULL, 1, &error), NARC_ERROR_ARGUMENT, &error, "ids is NULL");
+    expect_ok(narc_forget_bodies(d.contacts, NULL, 0, &error), &error);
+    assert_true(!slots && count == 7);
+    d.bodies.count = 1; /* which has no pair */
+    expect_ok(narc_update_contacts(none, d.store, &(narc_step){.bodies = &d.bodies}, &r, &error), &error);
+    expect_ok(narc_find_body_slots(none, 0, &slots, &count, &error), &error);
+    assert_int_equal(count, 0);
+    d.bodies.count = 5;
+    narc_destroy_contacts(none);
+    tear_down_discs(&d);
+}
+
+/* Bytes of which any one is another are refused, and so are those of other settings. */
+TEST(test_saved_contacts) {
+    struct row_of_discs d;
+    narc_contacts *other;
+    const narc_step_result *r = NULL;
+    narc_error error;
+    set_up_discs(&d);
+    const size_t size = narc_count_contact_bytes(d.contacts);
+    char *const bytes = guard_allocate(size), *const junk = make_junk(size);
+    assert_int_equal(narc_count_contact_bytes(NULL), 0);
+    expect_error(narc_save_contacts(NULL, bytes, size, &error), NARC_ERROR_ARGUMENT, &error, "contacts is NULL");
+    expect_error(narc_save_contacts(d.contacts, NULL, size, &error), NARC_ERROR_ARGUMENT, &error, "out_bytes is NULL");
+    expect_error(narc_save_contacts(d.contacts, junk, size - 1, &error), NARC_ERROR_CAPACITY, &error, "there is room");
+    assert_true(is_junk(junk, size));
+    expect_ok(narc_save_contacts(d.contacts, bytes, size, &error), &error);
+#define LOAD(contacts, store, from, count) narc_load_contacts(contacts, store, from, count, &r, &error)
+    expect_error(LOAD(NULL, d.store, bytes, size), NARC_ERROR_ARGUMENT, &error, "contacts is NULL");
+    expect_error(LOAD(d.contacts, NULL, bytes, size), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(LOAD(d.contacts, d.store, NULL, size), NARC_ERROR_ARGUMENT, &error, "bytes is NULL");
+    for (size_t k = 0; k < size; k++) {
+        bytes[k] = (char)(bytes[k] ^ 1 << k % 8);
+        expect_error(LOAD(d.contacts, d.store, bytes, size), NARC_ERROR_FORMAT, &error, "not contacts that were saved");
+        bytes[k] = (char)(bytes[k] ^ 1 << k % 8);
+        expect_error(LOAD(d.contacts, d.store, bytes, k), NARC_ERROR_FORMAT, &error, "not contacts that were saved");
+    }
+    static const narc_contacts_settings others[] = {
+        {.rows = NARC_CONTACT_ROWS, .user_size = 4}, {.user_size = 8}, {.rows = NARC_ROWS_IN_USER, .user_size = 64}};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        expect_ok(narc_create_contacts(&others[k], &other, &error), &error);
+        expect_error(LOAD(other, d.store, bytes, size), NARC_ERROR_ARGUMENT, &error, "other settings");
+        narc_destroy_contacts(other);
+    }
+    assert_null(r);
+    expect_ok(LOAD(d.contacts, d.store, bytes, size), &error);
+    assert_int_equal(r->began_count, 4);
+    expect_ok(narc_load_contacts(d.contacts, d.store, bytes, size, NULL, NULL), &error);
+    guard_release(bytes);
+    free(junk);
+    tear_down_discs(&d);
 }
 
 TEST_MAIN("errors")

@@ -8,6 +8,7 @@
 #include "narc.h"
 #include "narc_broad_phase.h"
 #include "narc_chains.h"
+#include "narc_contacts.h"
 #include "narc_files.h"
 #include "narc_fit.h"
 #include "narc_methods.h"
@@ -52,7 +53,8 @@ static void check_numbers(void) {
     LAYOUT(narc_aabb, 32, AT(min_x, 0) && AT(min_y, 8) && AT(max_x, 16) && AT(max_y, 24));
     LAYOUT(narc_body, 32, AT(x, 0) && AT(y, 8) && AT(cosine, 16) && AT(sine, 20) && AT(scale, 24) && AT(shape, 28));
     LAYOUT(narc_box, 16, AT(min_x, 0) && AT(min_y, 4) && AT(max_x, 8) && AT(max_y, 12));
-    LAYOUT(narc_lost_pair, 32, AT(pair, 0) && AT(a, 4) && AT(b, 8) && AT(marks, 12) && AT(id_a, 16) && AT(id_b, 24));
+    LAYOUT(narc_touch_event, 24,
+           AT(slot, 0) && AT(marks, 4) && AT(parted, 5) && AT(unused, 6) && AT(id_a, 8) && AT(id_b, 16));
     LAYOUT(narc_curve_arc, 64, AT(start, 0) && AT(end, 16) && AT(center, 32) && AT(radius, 48) && AT(turn, 56));
 }
 
@@ -82,10 +84,19 @@ static void check_pointers(void) {
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
     LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48) && AT(reserved, 64));
-    LAYOUT(narc_pair_list, 192,
-           AT(pairs, 0) && AT(previous, 96) && AT(marks, 104) && AT(contacts, 112) && AT(contact_count, 120) &&
-               AT(sensors, 128) && AT(sensor_count, 136) && AT(added, 144) && AT(added_count, 152) && AT(lost, 160) &&
-               AT(lost_count, 168) && AT(skipped, 176) && AT(kept, 184));
+    LAYOUT(narc_contacts_settings, 64,
+           AT(rows, 0) && AT(user_size, 8) && AT(row_offset, 16) && AT(allocator, 24) && AT(reserved, 32));
+    LAYOUT(narc_step, 216,
+           AT(bodies, 0) && AT(margin, 8) && AT(second_margin, 12) && AT(flat_angle, 16) && AT(front_only, 20) &&
+               AT(skin, 24) && AT(recycling, 28) && AT(pairs, 32) && AT(same_pairs, 40) && AT(motion_x, 48) &&
+               AT(motion_y, 64) && AT(reach, 80) && AT(ahead, 96) && AT(id, 112) && AT(run, 128) && AT(filter, 144) &&
+               AT(moved, 152) && AT(moved_count, 168) && AT(workers, 176) && AT(reserved, 184));
+    LAYOUT(narc_step_result, 240,
+           AT(pairs, 0) && AT(order, 96) && AT(count, 104) && AT(state, 112) && AT(manifolds, 120) &&
+               AT(contacts, 128) && AT(more, 136) && AT(more_count, 144) && AT(user, 152) && AT(touching, 160) &&
+               AT(sensors, 168) && AT(touching_count, 176) && AT(sensor_count, 184) && AT(began, 192) &&
+               AT(ended, 200) && AT(began_count, 208) && AT(ended_count, 216) && AT(skipped, 224) &&
+               AT(asked_count, 232));
     LAYOUT(narc_query, 144,
            AT(margin, 0) && AT(second_margin, 4) && AT(flat_angle, 8) && AT(dense, 12) && AT(margins, 16) &&
                AT(selection, 32) && AT(selection_count, 48) && AT(first, 56) && AT(count, 64) && AT(row_stride, 72) &&
@@ -93,9 +104,6 @@ static void check_pointers(void) {
     LAYOUT(narc_refinement, 176,
            AT(arcs, 0) && AT(cosine, 8) && AT(sine, 32) && AT(other_cosine, 56) && AT(other_sine, 80) &&
                AT(shift_x, 104) && AT(shift_y, 128) && AT(workers, 152) && AT(reserved, 160));
-    LAYOUT(narc_pair_options, 120,
-           AT(margin, 0) && AT(skin, 4) && AT(motion_x, 8) && AT(motion_y, 24) && AT(reach, 40) && AT(id, 56) &&
-               AT(filter, 72) && AT(workers, 80) && AT(reserved, 88));
     LAYOUT(narc_box_options, 104,
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
                AT(out_skipped, 64) && AT(reserved, 72));

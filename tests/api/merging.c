@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
  * merging.c - narc_merge_manifolds() and narc_merge_contacts(): what stays of rows that entries of one chain tell of a
- * body.
+ * body. Internal.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "guard.h"
-#include "narc_chains.h"
+#include "merge.h"
 #include "support.h"
 
 enum { MOST = 16 };

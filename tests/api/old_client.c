@@ -73,27 +73,8 @@ struct filter {
     struct column kind, category, mask, group;
     void *reserved[2];
 };
-struct pair_options {
-    float margin, skin;
-    struct column motion_x, motion_y, reach, id;
-    const struct filter *filter;
-    const struct workers *workers;
-    void *reserved[4];
-};
-struct pair_list {
-    struct pairs pairs;
-    const uint32_t *previous;
-    const uint8_t *marks;
-    struct {
-        const uint32_t *item;
-        size_t count;
-    } contacts, sensors, added;
-    const struct lost_pair {
-        uint32_t pair, a, b, marks;
-        uint64_t id_a, id_b;
-    } * lost;
-    size_t lost_count, skipped;
-    bool kept;
+struct box {
+    float min_x, min_y, max_x, max_y;
 };
 enum { ERROR_ARGUMENT = 1, ERROR_INDEX = 3, ERROR_CAPACITY = 4, STATIC = 1, FEATURE_EDGE = 0x40 };
 
@@ -108,8 +89,10 @@ int narc_build_box(double width, double height, double radius, void *out_arcs, s
 int narc_add_shape(void *shapes, const void *arcs, size_t count, uint32_t *out_shape, struct error *);
 int narc_find_overlaps(const void *shapes, const struct bodies *, const struct pairs *, const struct query *,
                        uint64_t *out_bits, struct error *);
-int narc_update_pairs(void *broad, const void *shapes, const struct bodies *, const struct pair_options *,
-                      const struct pair_list **out_list, struct error *);
+int narc_compute_boxes(const void *shapes, const struct bodies *, const void *options, struct box *out_boxes,
+                       struct error *);
+int narc_find_pairs(void *broad, const struct box *, size_t count, const struct filter *, const struct workers *,
+                    uint32_t *out_a, uint32_t *out_b, size_t capacity, size_t *out_count, struct error *);
 
 /* ------------------------------------------------------------------------------------------------ the client */
 
@@ -117,9 +100,8 @@ int narc_update_pairs(void *broad, const void *shapes, const struct bodies *, co
 enum { BODIES = 5, PAIRS = 4, MANY = 100000 };
 static struct body {
     double x, y;
-    float cosine, sine, motion;
+    float cosine, sine;
     uint32_t shape;
-    uint64_t id;
     uint8_t kind;
 } body[BODIES];
 static const uint32_t pair[PAIRS][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 4}};
@@ -210,21 +192,16 @@ static void ask_manifolds(const struct pairs *listed) {
 
 static void ask_pairs(void) {
     const struct filter filter = {.kind = FIELD(kind)};
-    const struct pair_options options = {
-        0.2f, 0.05f, FIELD(motion), .id = FIELD(id), .filter = &filter, .workers = &workers};
+    struct box box[BODIES];
+    uint32_t a[PAIRS], b[PAIRS];
     void *broad = NULL;
-    const struct pair_list *list = NULL;
     assert(!narc_create_broad_phase(NULL, &broad));
-    assert(!narc_update_pairs(broad, shapes, &bodies, &options, &list, &error) && !list->kept);
-    assert(list->pairs.count == PAIRS && list->added.count == PAIRS && list->contacts.count == PAIRS);
-    assert(list->previous[0] == UINT32_MAX && list->marks[3] == STATIC && list->sensors.count == 0);
-    ask_manifolds(&list->pairs);
-    assert(!narc_update_pairs(broad, shapes, &bodies, &options, &list, &error) && list->kept);
-    assert(list->lost_count == 0 && list->added.count == 0 && list->previous[2] == 2);
-    body[0].x = -50;
-    assert(!narc_update_pairs(broad, shapes, &bodies, &options, &list, &error) && !list->kept);
-    assert(list->pairs.count == PAIRS - 1 && list->lost_count == 1 && list->skipped == 0);
-    assert(list->lost[0].pair == 0 && list->lost[0].id_a == 100 && list->lost[0].id_b == 101 && list->lost[0].b == 1);
+    assert(!narc_compute_boxes(shapes, &bodies, NULL, box, &error) && near(box[0].max_x, 1));
+    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, PAIRS, &found, &error) && found == PAIRS - 1);
+    box[4].min_x -= 0.2f;
+    assert(narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, 1, &found, &error) == ERROR_CAPACITY);
+    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, found, &found, &error) && found == PAIRS);
+    ask_manifolds(&(struct pairs){PAIRS, {a, sizeof *a}, {b, sizeof *b}, .other_bodies = NULL});
     narc_destroy_broad_phase(broad);
 }
 
@@ -235,7 +212,7 @@ int main(void) {
     assert(!narc_create_shapes(NULL, &shapes) && !narc_build_box(2, 2, 0.25, arcs, &arc_count, &error));
     assert(arc_count == 4 && !narc_add_shape(shapes, arcs, arc_count, &shape, &error) && shape == 0);
     for (uint32_t k = 0; k < BODIES; k++)
-        body[k] = (struct body){k < 4 ? 1.5 * k : 6.6, .cosine = 1, .id = 100 + k, .kind = k == 4 ? STATIC : 0};
+        body[k] = (struct body){k < 4 ? 1.5 * k : 6.6, .cosine = 1, .kind = k == 4 ? STATIC : 0};
     ask_overlaps();
     ask_contacts();
     ask_manifolds(&pairs);

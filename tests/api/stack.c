@@ -7,6 +7,8 @@
 #include <stdlib.h>
 
 #include "narc_broad_phase.h"
+#include "narc_chains.h"
+#include "narc_contacts.h"
 #include "narc_scene.h"
 #include "scene.h"
 #include "stacks.h"
@@ -23,11 +25,9 @@ static narc_pairs pairs;
 static const narc_pairs one = {.count = 1};
 static narc_query query, dense, selected, range;
 static narc_box_options box_options;
-static narc_pair_options pair_options;
 static narc_broad_phase *broad;
-static const narc_pair_list *pair_list;
 static float margins[PAIRS], shifts[PAIRS], cosines[PAIRS], sines[PAIRS];
-static uint32_t selection[PAIRS], indices[2][PAIRS * 2], match[PAIRS], shape;
+static uint32_t selection[PAIRS], indices[2][PAIRS * 2], shape;
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
 static narc_refined_contact refined[PAIRS];
@@ -75,7 +75,6 @@ static narc_status keep_shapes(narc_error *error) {
     return TRUE(fine);
 }
 
-/* A chain, and rows as of its entries. */
 static narc_status add_chain(narc_error *error) {
     enum { ARCS = 4000 };
     static narc_chain_entry entries[ARCS];
@@ -84,11 +83,44 @@ static narc_status add_chain(narc_error *error) {
     for (int k = 0; k < ARCS; k++)
         walk_arc(&t, 2, k % 2 ? -1 : 1);
     const bool fine = narc_create_shapes(NULL, &shapes) == NARC_OK &&
-                      narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ARCS, &count, error) == NARC_OK &&
-                      narc_merge_contacts(&one, (narc_index_column){0}, contacts, 1) <= 1 &&
-                      narc_merge_manifolds(&one, (narc_index_column){0}, manifolds, 1) <= 1;
+                      narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ARCS, &count, error) == NARC_OK;
     narc_destroy_shapes(shapes);
     free(t.arcs);
+    return TRUE(fine);
+}
+
+/* Steps that ask all and keep their rows, of all pairs and of given ones, some as of ground, whose rows are merged. */
+static narc_status keep_contacts(narc_error *error) {
+    enum { FEW = 90 };
+    static const uint32_t runs[FEW] = {[1] = NARC_NO_RUN, [2] = NARC_NO_RUN};
+    static const uint64_t ids[] = {3, 5};
+    uint32_t all[FEW];
+    for (uint32_t k = 0; k < FEW; k++)
+        all[k] = k;
+    const narc_pairs given = {.count = FEW - 1, .a = NARC_ARRAY(all), .b = NARC_ARRAY(all + 1)};
+    narc_bodies few = bodies;
+    few.count = FEW;
+    narc_step step = {.bodies = &few, .margin = 0.1f, .skin = 0.05f, .recycling = 0.01f, .workers = query.workers};
+    narc_contacts *slots = NULL;
+    const narc_step_result *r;
+    const uint32_t *of_body;
+    bool fine = narc_create_contacts(NULL, &slots, error) == NARC_OK;
+    for (int k = 0; k < 6 && fine; k++) {
+        step.margin += k == 1 ? 0.01f : 0;
+        step.run = (narc_index_column){k == 2 ? runs : NULL, sizeof *runs};
+        step.pairs = k > 3 ? &given : NULL;
+        fine = narc_update_contacts(slots, store, &step, &r, error) == NARC_OK &&
+               narc_find_body_slots(slots, 3, &of_body, &count, error) == NARC_OK &&
+               (k < 4 || narc_forget_bodies(slots, ids, 2, error) == NARC_OK);
+    }
+    const size_t size = narc_count_contact_bytes(slots);
+    char *const saved = malloc(size + 1);
+    fine = fine && saved && narc_save_contacts(slots, saved, size, error) == NARC_OK &&
+           narc_load_contacts(slots, store, saved, size, &r, error) == NARC_OK &&
+           narc_load_contacts(slots, store, saved, size - 8, &r, error) == NARC_ERROR_FORMAT;
+    narc_forget_contacts(slots);
+    narc_destroy_contacts(slots);
+    free(saved);
     return TRUE(fine);
 }
 
@@ -151,9 +183,7 @@ static narc_status ask_index(narc_error *error) {
     CALL(boxes, narc_compute_boxes(store, &bodies, &box_options, boxes, error))                                        \
     CALL(find_pairs, narc_find_pairs(broad, spread, BODIES, NULL, query.workers, indices[0], indices[1], PAIRS * 2,    \
                                      &count, error))                                                                   \
-    CALL(match_pairs, narc_match_pairs(broad, &pairs, &pairs, query.workers, match, error))                            \
-    CALL(update_pairs, narc_update_pairs(broad, store, &bodies, &pair_options, &pair_list, error))                     \
-    CALL(update_box_pairs, narc_update_box_pairs(broad, spread, BODIES, &pair_options, &pair_list, error))             \
+    CALL(keep_contacts, keep_contacts(error))                                                                          \
     CALL(validate_bodies, narc_validate_bodies(store, &bodies, error))                                                 \
     CALL(refuse_bodies, TRUE(narc_validate_bodies(store, &broken, error) != NARC_OK))                                  \
     CALL(refuse_box, TRUE(narc_build_box(1e300, 1, 0, arcs, &arc_count, error) != NARC_OK))                            \
@@ -197,8 +227,8 @@ CALLS(DEFINE)
 static const struct stack_call calls[] = {CALLS(LIST_CALL)};
 
 static void set_workers(const narc_workers *workers) {
-    query.workers = dense.workers = selected.workers = range.workers = box_options.workers = pair_options.workers =
-        cast_options.workers = search.workers = workers;
+    query.workers = dense.workers = selected.workers = range.workers = box_options.workers = cast_options.workers =
+        search.workers = workers;
 }
 
 TEST(test_calls) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "fuzz.h"
+#include "merge.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "narc_scene.h"

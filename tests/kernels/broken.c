@@ -9,6 +9,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 #include "scene.h"
 
 /* ------------------------------------------------------------------------------------------------ what calls say */
@@ -164,15 +165,18 @@ static void ask_scene(struct trial *t) {
     const size_t count = t->count;
     const narc_bodies tried = narc_view_bodies(t->tried, count), mates = narc_view_bodies(t->mate, count),
                       both = narc_view_bodies(t->both, 2 * count);
-    const narc_pair_list *list = NULL;
-    narc_broad_phase *broad = NULL;
+    const narc_step step = {.bodies = &both};
+    const narc_step_result *r = NULL;
+    narc_contacts *contacts = NULL;
     size_t broken = 0, skipped = 0;
     narc_index *const index = index_bodies(t->store, &tried, NULL, boxes), *const mate_index = index_bodies(
                                                                                t->store, &mates, NULL, mate_boxes);
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    assert_int_equal(narc_update_pairs(broad, t->store, &both, NULL, &list, NULL), NARC_OK);
-    for (size_t k = 0; k < list->pairs.count; k++)
-        t->fine[PAIR][list->pairs.a.base[k] / 2] |= list->pairs.a.base[k] + 1 == list->pairs.b.base[k];
+    assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
+    assert_int_equal(narc_update_contacts(contacts, t->store, &step, &r, NULL), NARC_OK);
+    for (size_t k = 0; k < r->count; k++) {
+        const uint32_t a = r->pairs.a.base[r->order[k]];
+        t->fine[PAIR][a / 2] |= a + 1 == r->pairs.b.base[r->order[k]];
+    }
     for (size_t k = 0; k < count; k++) {
         t->fine[BOX][k] = boxes[k].min_x <= boxes[k].max_x;
         broken += !t->fine[BOX][k];
@@ -212,7 +216,7 @@ static void ask_scene(struct trial *t) {
     assert_int_equal(skipped, broken);
     for (size_t k = 0; k < count; k++)
         t->fine[MOVER][k] = impacts[k].count == NARC_CAST_HIT && impacts[k].body == k;
-    narc_destroy_broad_phase(broad);
+    narc_destroy_contacts(contacts);
     narc_destroy_index(index);
     narc_destroy_index(mate_index);
 }

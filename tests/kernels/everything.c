@@ -16,6 +16,7 @@
 #include "guard.h"
 #include "layouts.h"
 #include "narc_broad_phase.h"
+#include "narc_contacts.h"
 
 static void run_backwards(void *context, unsigned count, void (*task)(void *argument, unsigned index), void *argument) {
     (void)context;
@@ -221,22 +222,22 @@ TEST(answers_the_same_elsewhere) {
 /* The pairs of near bodies in a list that is kept while the others fly away, come back and fly away again. */
 static size_t keep_list(struct scene *scene, const struct body *at_home, size_t near, struct pair *out) {
     enum { STEPS = 3 };
-    const narc_pair_options options = {.margin = 0.125f, .skin = 0.25f};
     const narc_bodies bodies = scene_bodies(scene);
-    const narc_pair_list *list = NULL;
-    narc_broad_phase *broad = NULL;
+    const narc_step moves = {.bodies = &bodies, .margin = 0.125f, .skin = 0.25f};
+    const narc_step_result *r = NULL;
+    narc_contacts *contacts = NULL;
     size_t count = 0;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
     for (int step = 0; step < STEPS; step++) {
         for (size_t k = near; k < scene->body_count; k++)
             scene->bodies[k] = step == 1 ? at_home[k] : fly_away(at_home[k], k - near, scene->precision);
-        assert_int_equal(narc_update_pairs(broad, scene->store, &bodies, &options, &list, NULL), NARC_OK);
-        assert_int_equal(list->skipped, 0);
+        assert_int_equal(narc_update_contacts(contacts, scene->store, &moves, &r, NULL), NARC_OK);
+        assert_int_equal(r->skipped, 0);
     }
-    for (size_t k = 0; k < list->pairs.count; k++)
-        if (list->pairs.b.base[k] < near)
-            out[count++] = (struct pair){list->pairs.a.base[k], list->pairs.b.base[k]};
-    narc_destroy_broad_phase(broad);
+    for (size_t k = 0; k < r->count; k++)
+        if (r->pairs.b.base[r->order[k]] < near)
+            out[count++] = (struct pair){r->pairs.a.base[r->order[k]], r->pairs.b.base[r->order[k]]};
+    narc_destroy_contacts(contacts);
     return count;
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "golden_scene.h"
+#include "merge.h"
 #include "narc_broad_phase.h"
 #include "narc_chains.h"
 

@@ -9,6 +9,7 @@
 
 #include "chains.h"
 #include "expect.h"
+#include "merge.h"
 #include "narc_broad_phase.h"
 #include "plain_kernels.h"
 

@@ -14,6 +14,7 @@
 #include "chains.h"
 #include "check.h"
 #include "expect.h"
+#include "merge.h"
 #include "narc_broad_phase.h"
 
 enum { SHOWN = 3, BODIES = 160, MOVERS, SHAPES = 16, MOST_TOLD = 1024 };

@@ -79,3 +79,22 @@ TEST(test_wall_across_border) {
         dem_destroy(&d);
     }
 }
+
+/* Pairs come in the order of both parts, and once, wherever the image of B is. */
+TEST(test_pairs_in_order) {
+    dem d = make_busy_world(1);
+    size_t images = 0;
+    dem_start(&d);
+    for (int i = 0; i < 100; i++) {
+        step(&d, 50);
+        for (size_t k = 0; k < d.pair_count; k++) {
+            const dem_pair *p = &d.pairs[k], *last = &d.pairs[k > 0 ? k - 1 : 0];
+            images += dem_image_b(&d, k)->right != 0;
+            assert_true(p->a < p->b && p->b == dem_image_b(&d, k)->part);
+            assert_true(k == 0 || last->a < p->a || (last->a == p->a && last->b < p->b));
+        }
+    }
+    print_message("%zu pairs across the border\n", images);
+    assert_true(images > 10);
+    dem_destroy(&d);
+}

@@ -161,3 +161,17 @@ TEST(test_conveyor) {
     assert_true(fabs(d.bodies[1].position.x) < 1e-12); /* the plate's body stays */
     dem_destroy(&d);
 }
+
+/* Two grains side by side on a plate, of one category: each has an image of the plate's block that the other one overlaps. */
+TEST(test_one_pair_with_a_plate) {
+    dem d = plain_world();
+    add_plate(&d, "floor", 0, 0, 0, 1);
+    for (int k = 0; k <= 63; k++)
+        add_grain(&d, DISC, k % 63 == 0 ? k / 25.0 : 10 * k, k % 63 == 0 ? 0.999 : 50, 0, 0);
+    dem_start(&d);
+    step(&d, 1);
+    assert_int_equal(d.pair_count, 2);
+    assert_int_equal(d.contact_count, 2);
+    assert_true(d.pairs[0].a == 0 && d.pairs[1].a == 63);
+    dem_destroy(&d);
+}
