@@ -597,13 +597,16 @@ static void load(struct bytes *from, struct world *w, struct object *o) {
         return;
     char *const bytes = malloc(w->saved_size);
     memcpy(bytes, w->saved, w->saved_size);
-    for (unsigned k = 0; k < damages; k++) {
-        const uint32_t at = take_below(from, 2) ? take_byte(from) * 4 : take_word(from) & ~(uint32_t)3;
-        const unsigned what = take_below(from, 4);
-        char *const word = bytes + at % w->saved_size;
-        *word = what == 0 ? (char)take_byte(from) : what == 1 ? (char)(*word ^ 1 << take_below(from, 8)) : *word;
-        if (what > 1 && (size_t)(word - bytes) + 4 <= w->saved_size)
-            memset(word, what == 2 ? 0 : 0xff, 4);
+    for (unsigned k = 0; k < damages; k++) { /* any bits, none, all, those of another word */
+        const uint32_t words = (uint32_t)(w->saved_size / 4), at = take_word(from) % words;
+        const uint32_t with[] = {take_word(from), 0, UINT32_MAX};
+        const unsigned what = take_below(from, 5);
+        if (what < 3)
+            memcpy(bytes + 4 * at, &with[what], sizeof *with);
+        else if (what == 3)
+            memcpy(bytes + 4 * at, bytes + 4 * (with[0] % words), sizeof *with);
+        else
+            bytes[4 * at] = (char)(bytes[4 * at] ^ 1 << take_below(from, 8));
     }
     sum_up(bytes, w->saved_size);
     const size_t size = take_below(from, 8) ? w->saved_size : take_word(from) % w->saved_size;
@@ -700,7 +703,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             forget(&from, &w, o);
         else if (what == 3)
             make_twins(&w, o == &w.object[1]);
-        else if (what == 4)
+        else if (what == 4 || what == 7)
             load(&from, &w, o);
         else if (what == 5)
             ask_slots(&from, &w, o);
