@@ -628,7 +628,7 @@ static void load(struct bytes *from, struct world *w, struct object *o) {
     o->given = false;
 }
 
-static void ask_slots(struct bytes *from, const struct world *w, const struct object *o) {
+static void ask_slots(struct bytes *from, const struct object *o) {
     const uint32_t body = take_below(from, ALL), *slots;
     size_t count;
     if (narc_find_body_slots(o->contacts, body, &slots, &count, NULL) != NARC_OK || o->tainted || !o->r)
@@ -638,7 +638,6 @@ static void ask_slots(struct bytes *from, const struct world *w, const struct ob
         if (o->r->pairs.a.base[o->r->order[k]] == body || o->r->pairs.b.base[o->r->order[k]] == body)
             assert_true(at < count && slots[at++] == o->r->order[k]);
     assert_int_equal(at, count);
-    (void)w;
 }
 
 static void forget(struct bytes *from, struct world *w, struct object *o) {
@@ -710,7 +709,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                     step_object(&from, &w, o, false, false, false);
             }
         else if (what == 5)
-            ask_slots(&from, &w, o);
+            ask_slots(&from, o);
         else if (what == 6 && !o->tainted)
             save(&w, o);
         make_step(&from, &w);
