@@ -61,12 +61,13 @@ struct narc_contacts {
     bool again;          /* all pairs are to be asked: they are asked differently */
     bool marked;         /* `state` has marks of the last step */
     bool changed;        /* something is to be done with pairs */
+    bool marks_known;    /* `marks` are those of the list */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies */
-    uint8_t *state, *flags;
-    uint32_t *hints, *free, *parted; /* `free`, `parted`: lists of slots */
-    float *margins;                  /* that it was asked with */
+    uint8_t *state, *flags, *marks;   /* `marks`: those of the list's pair, or NARC_GONE */
+    uint32_t *hints, *free, *parted;  /* `free`, `parted`: lists of slots */
+    float *margins;                   /* that it was asked with */
     void *rows, *user;
     narc_kept_row *kept;
     narc_entry *entries;
@@ -177,7 +178,7 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Does one of both move? Only where a pair's marks say that one of them does not it must be asked. */
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP };
+enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP, NARC_GONE = 64 };
 
 /* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);

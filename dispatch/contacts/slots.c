@@ -69,6 +69,7 @@ narc_status narc_reserve_slots(narc_contacts *c, const narc_pair_list *list, siz
                               ARRAY(c->b, sizeof *c->b),
                               ARRAY(c->state, 1),
                               ARRAY(c->flags, 1),
+                              ARRAY(c->marks, 1),
                               ARRAY(c->hints, sizeof *c->hints),
                               ARRAY(c->free, sizeof *c->free),
                               ARRAY(c->margins, sizeof *c->margins),
@@ -167,12 +168,13 @@ static void release(narc_contacts *c, void *memory) {
 
 void narc_free_slots(narc_contacts *c) {
     void *const memory[] = {
-        c->candidates, c->entries,   c->ends,           c->known,          c->left,         c->a,
-        c->b,          c->state,     c->flags,          c->hints,          c->free,         c->margins,
-        c->rows,       c->user,      c->kept,           c->more_of,        c->order,        c->next_order,
-        c->work,       c->asked,     c->sensors_asked,  c->parted,         c->ground_asked, c->touching,
-        c->sensors,    c->bits,      c->ground_margins, c->began,          c->ended,        c->room,
-        c->more.rows,  c->more.kept, c->next_more.rows, c->next_more.kept, c->ground.rows,  c->ground.kept};
+        c->marks,      c->candidates, c->entries,   c->ends,           c->known,          c->left,
+        c->a,          c->b,          c->state,     c->flags,          c->hints,          c->free,
+        c->margins,    c->rows,       c->user,      c->kept,           c->more_of,        c->order,
+        c->next_order, c->work,       c->asked,     c->sensors_asked,  c->parted,         c->ground_asked,
+        c->touching,   c->sensors,    c->bits,      c->ground_margins, c->began,          c->ended,
+        c->room,       c->more.rows,  c->more.kept, c->next_more.rows, c->next_more.kept, c->ground.rows,
+        c->ground.kept};
     for (size_t k = 0; k < COUNT_OF(memory); k++)
         release(c, memory[k]);
 }
