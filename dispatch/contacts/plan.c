@@ -250,7 +250,7 @@ NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, u
 /* What is done with few slots, or in few scenes. */
 NOINLINE void do_rest(const narc_contact_step *s, uint32_t slot, unsigned what) {
     narc_contacts *const c = s->contacts;
-    if (what == NARC_ASK)
+    if (what == NARC_ASK || what == NARC_FOLLOW)
         c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
     if (what == NARC_ASK)
         c->more_of[slot].count = 0; /* it may have been ground */
