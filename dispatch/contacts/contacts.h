@@ -78,7 +78,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 35 };
+enum { NARC_ARRAYS = 36 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -94,20 +94,21 @@ struct narc_contacts {
     narc_broad_phase *broad;
     narc_step_result result;
     narc_asked last;
-    bool again;   /* all pairs are to be asked: they are asked differently */
-    bool marked;  /* `state` has marks of the last step */
-    bool changed; /* something is to be done with pairs */
+    bool again;       /* all pairs are to be asked: they are asked differently */
+    bool marked;      /* `state` has marks of the last step */
+    bool changed;     /* something is to be done with pairs */
+    bool marks_known; /* `marks` are those of the list */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
-    uint32_t *a, *b;                  /* the pair's bodies */
-    uint8_t *state, *flags;
-    uint32_t *free, *parted; /* `free`, `parted`: lists of slots */
-    float *margins;          /* that it is asked with, if there are several */
-    void *own_rows, *user;   /* own_rows: NULL if rows lie in `user` */
-    void *rows;              /* where they lie, `row_stride` bytes each */
-    narc_entry *entries;     /* NARC_SLOT_ENTRY: of smooth shapes, not of ground */
-    narc_kept_row *kept;     /* NARC_SLOT_KEPT: of all others, in the same memory */
-    narc_entry_ends *ends;   /* of entries of manifolds */
+    uint32_t *a, *b;                  /* the pair's bodies; 0 without a pair */
+    uint8_t *state, *flags, *marks;   /* `marks`: those of the list's pair, or NARC_GONE */
+    uint32_t *free, *parted;          /* `free`, `parted`: lists of slots */
+    float *margins;                   /* that it is asked with, if there are several */
+    void *own_rows, *user;            /* own_rows: NULL if rows lie in `user` */
+    void *rows;                       /* where they lie, `row_stride` bytes each */
+    narc_entry *entries;              /* NARC_SLOT_ENTRY: of smooth shapes, not of ground */
+    narc_kept_row *kept;              /* NARC_SLOT_KEPT: of all others, in the same memory */
+    narc_entry_ends *ends;            /* of entries of manifolds */
     narc_more_rows *more_of;
     size_t free_count, ahead_capacity;
 
@@ -238,7 +239,7 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Does one of both move? Only where a pair's marks say that one of them does not it must be asked. */
 bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP };
+enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP, NARC_GONE = 64 };
 
 /* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);

@@ -220,69 +220,91 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
     narc_set_touching(c, slot, false);
 }
 
-/* What is to be done with a pair of ground, the next of what is planned, or with one that is a sensor's, or of which not both
- * move. `changed`: it has, or is stale. */
-NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, size_t k, const narc_pair_work **work,
-                               unsigned changed) {
-    const narc_contacts *const c = s->contacts;
-    const unsigned marks = v->marks[k];
-    if (s->has_ground && is_ground(s, v, k))
-        return *work < c->work + c->work_count && (*work)->pair == k ? (*work)++->what : NARC_NOTHING;
-    if (!changed)
+/* The marks of slots, in their order; those that are no pair have bodies that are there. */
+static void mark_slots(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    uint8_t *const marks = c->marks;
+    memset(marks, NARC_GONE, c->slot_count);
+    for (size_t k = 0; k < s->list->pairs.count; k++)
+        marks[c->order[k]] = s->list->marks[k];
+    for (size_t slot = 0; slot < c->slot_count; slot++)
+        if (marks[slot] == NARC_GONE)
+            c->a[slot] = c->b[slot] = 0;
+    c->marks_known = true;
+}
+
+/* What is to be done with a slot whose bodies have changed, or are `stale`, and not both of which move, or which are no
+ * plain bodies? Ground has been planned. */
+NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, uint32_t slot, bool changed) {
+    const unsigned marks = v->marks[slot];
+    if (marks & NARC_GONE || (s->has_ground && is_ground(s, v, slot)) || !changed)
         return NARC_NOTHING;
-    if (marks & NARC_AT_REST && !narc_is_tested(s, v->a[k], v->b[k]) && !(marks & NARC_FLIPPED))
+    s->contacts->marks[slot] = (uint8_t)(marks & ~(unsigned)NARC_FLIPPED); /* but once */
+    if (marks & NARC_AT_REST && !narc_is_tested(s, v->a[slot], v->b[slot]) && !(marks & NARC_FLIPPED))
         return NARC_REST; /* one that is turned has the other bodies' row */
     return marks & NARC_SENSOR ? NARC_ASK_SENSOR : NARC_ASK;
 }
 
-/* What is done with few pairs, or in few scenes. */
-NOINLINE void do_rest(const narc_contact_step *s, const pair_view *v, size_t k, unsigned what) {
+/* What is done with few slots, or in few scenes. */
+NOINLINE void do_rest(const narc_contact_step *s, uint32_t slot, unsigned what) {
     narc_contacts *const c = s->contacts;
-    const uint32_t slot = v->order[k];
     if (s->step->ahead.base && (what == NARC_ASK || what == NARC_FOLLOW))
-        c->margins[slot] = narc_find_margin(s, v->a[k], v->b[k]);
+        c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
     if (what == NARC_ASK)
         c->more_of[slot].count = 0; /* it may have been ground */
-    if (what == NARC_APART)
+    if (what == NARC_APART && c->state[slot] & NARC_TOUCHING)
         narc_clear_row(c, slot);
     if (what == NARC_ASK_SENSOR)
         c->sensors_asked[c->sensor_count++] = slot;
 }
 
-/* What the loop uses lies in variables of its own, as whatever is written in bytes might be any of it; what differs from
- * pair to pair as chance has it is without a branch. */
+/* What of its flags a slot keeps. */
+static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
+                                [NARC_FOLLOW] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
+                                [NARC_ASK] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
+                                [NARC_ASK_GROUND] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
+                                [NARC_ASK_SENSOR] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
+                                [NARC_APART] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT)};
+
+static inline unsigned find_flags(unsigned was, bool reshaped, unsigned marks, unsigned what) {
+    return (was & (reshaped ? NARC_SLOT_CROSSED : stays[what])) | (marks & NARC_SENSOR) |
+           (what == NARC_REST ? NARC_SLOT_STALE : 0);
+}
+
+/* Slots are gone through in their own order, in which all that is kept of them lies, and not in that of pairs. What the loop
+ * uses lies in variables of its own, as whatever is written in bytes might be any of it; what differs from slot to slot as
+ * chance has it is without a branch. */
 void narc_sort_pairs(const narc_contact_step *s) {
-    enum { SPECIAL = NARC_AT_REST | NARC_SENSOR, OURS = NARC_SLOT_STALE | NARC_SENSOR };
-    static const uint8_t stays[] = {[NARC_REST] = 0xff & ~OURS,
-                                    [NARC_FOLLOW] = 0xff & ~OURS,
-                                    [NARC_ASK] = 0xff & ~(OURS | NARC_SLOT_KEPT),
-                                    [NARC_ASK_GROUND] = 0xff & ~(OURS | NARC_SLOT_KEPT),
-                                    [NARC_ASK_SENSOR] = 0xff & ~(OURS | NARC_SLOT_KEPT),
-                                    [NARC_APART] = 0xff & ~(OURS | NARC_SLOT_KEPT)};
+    enum { SPECIAL = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
     narc_contacts *const c = s->contacts;
-    const pair_view v = view_pairs(s);
-    const narc_pair_work *work = c->work;
+    const bool kept = is_list_kept(s), ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
+    if (!kept || !c->marks_known)
+        mark_slots(s);
+    pair_view v = view_pairs(s);
+    v.a = c->a;
+    v.b = c->b;
+    v.marks = c->marks;
+    const narc_pairs pairs = narc_view_slots(c);
     const uint8_t *const state = c->state;
     uint8_t *const flags = c->flags;
     uint32_t *asked = c->asked, *known = c->known, *candidates = c->candidates;
-    const bool kept = is_list_kept(s), ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
     const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
-    const size_t count = c->changed ? s->list->pairs.count : 0;
+    const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
     c->sensor_count = 0;
     for (size_t k = 0; k < count; k++) {
-        const uint32_t a = v.a[k], b = v.b[k], slot = v.order[k];
-        const unsigned changed = v.changed[a] | v.changed[b], was = flags[slot], marks = v.marks[k];
+        const uint32_t a = v.a[k], b = v.b[k], slot = (uint32_t)k;
+        const unsigned changed = v.changed[a] | v.changed[b], was = flags[k], marks = v.marks[k];
         if (kept && !changed) {
-            k = find_changed(&s->list->pairs, v.changed, k) - 1;
+            k = find_changed(&pairs, v.changed, k) - 1;
             continue;
         }
         const unsigned stale = (was & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR);
-        if (!(changed | stale) && !ground)
+        if (!(changed | stale))
             continue;
         unsigned what = NARC_ASK;
         if (ground || marks & SPECIAL)
-            what = find_special(s, &v, k, &work, changed | stale);
-        const bool touches = state[slot] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
+            what = find_special(s, &v, slot, changed | stale);
+        const bool touches = state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
         if (what == NARC_ASK) {
             /* one that touches is better asked */
             const bool looks = !touches || was & follow;
@@ -291,15 +313,23 @@ void narc_sort_pairs(const narc_contact_step *s) {
         }
         if (what == NARC_NOTHING)
             continue;
-        const unsigned own = was & (reshaped ? NARC_SLOT_CROSSED : stays[what]);
-        const unsigned asks = what == NARC_ASK, entry = asks & (own / NARC_SLOT_ENTRY);
-        flags[slot] = (uint8_t)(own | (marks & NARC_SENSOR) | (what == NARC_REST ? NARC_SLOT_STALE : 0));
+        const unsigned now = find_flags(was, reshaped, marks, what), asks = what == NARC_ASK;
+        const unsigned entry = asks & (now / NARC_SLOT_ENTRY);
+        flags[k] = (uint8_t)now;
         *asked = *known = *candidates = slot;
         asked += asks - entry;
         known += entry;
         candidates += (what == NARC_FOLLOW) & touches;
         if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
-            do_rest(s, &v, k, what);
+            do_rest(s, slot, what);
+    }
+    for (size_t i = 0; i < c->work_count; i++) {
+        const uint32_t slot = c->order[c->work[i].pair], what = c->work[i].what;
+        const bool reshaped = (v.changed[v.a[slot]] | v.changed[v.b[slot]]) & NARC_RESHAPED;
+        flags[slot] = (uint8_t)find_flags(flags[slot], reshaped, 0, what);
+        *candidates = slot;
+        candidates += what == NARC_FOLLOW && state[slot] & NARC_TOUCHING;
+        do_rest(s, slot, what);
     }
     c->asked_count = (size_t)(asked - c->asked);
     c->known_count = (size_t)(known - c->known);

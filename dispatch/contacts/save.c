@@ -182,6 +182,7 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     b->is_sorted = false;
     b->renewed = true; /* `previous` is not saved */
     c->crossed_count = 0;
+    c->marks_known = false;
     c->partners_listed = false;
 }
 
@@ -266,6 +267,15 @@ static bool uses_each_once(const saved *s, const char *slots, size_t count, uint
     return true;
 }
 
+/* Slots without a pair have none. */
+static bool have_no_pairs(const saved *s, const char *slots, size_t count) {
+    const char *const a = bytes_of(s, &s->contacts.a), *const b = bytes_of(s, &s->contacts.b);
+    bool fine = true;
+    for (size_t k = 0; k < count; k++)
+        fine &= (word_at(a, word_at(slots, k)) | word_at(b, word_at(slots, k))) == 0;
+    return fine;
+}
+
 /* Pairs in their order, of bodies that there are; slots that know them; further rows one behind the other. */
 static bool are_pairs_fine(const saved *s) {
     const narc_contacts *const c = &s->contacts;
@@ -317,7 +327,8 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         !uses_each_once(s, bytes_of(s, &c->free), c->free_count, used) ||
         !uses_each_once(s, bytes_of(s, &c->parted), c->parted_count, used))
         return "slots";
-    if (!are_pairs_fine(s))
+    if (!are_pairs_fine(s) || !have_no_pairs(s, bytes_of(s, &c->free), c->free_count) ||
+        !have_no_pairs(s, bytes_of(s, &c->parted), c->parted_count))
         return "pairs";
     if (!are_rows_fine(s, rows, c->row_stride, slots) ||
         !are_rows_fine(s, bytes_of(s, &c->more.rows), c->row_size, c->more.count))

@@ -61,6 +61,7 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_SLOTS, c->b, sizeof *c->b, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->state, 1, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->flags, 1, &c->slot_count),
+                                 ARRAY(NARC_OF_SLOTS, c->marks, 1, none),
                                  ARRAY(NARC_OF_SLOTS_AHEAD, c->margins, sizeof *c->margins, none),
                                  ARRAY(NARC_OF_SLOTS, c->own_rows, row_size, &c->slot_count),
                                  ARRAY(NARC_OF_SLOTS, c->user, c->user_size, &c->slot_count),
@@ -186,8 +187,11 @@ void narc_take_slots(narc_contacts *c, const narc_pair_list *list) {
     c->parted_count = 0;
     if (list->kept)
         return;
-    for (size_t k = 0; k < list->lost_count; k++)
-        c->parted[c->parted_count++] = c->order[list->lost[k].pair];
+    for (size_t k = 0; k < list->lost_count; k++) {
+        const uint32_t slot = c->order[list->lost[k].pair];
+        c->parted[c->parted_count++] = slot;
+        c->a[slot] = c->b[slot] = 0;
+    }
     take_old_slots(c, list);
     for (size_t i = 0; i < list->added_count; i++) {
         const uint32_t k = list->added[i], slot = open_slot(c);

@@ -205,6 +205,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     status = prepare(&s);
     if (status != NARC_OK) {
         narc_take_back_pairs(contacts->broad, s.list && !s.list->kept);
+        contacts->marks_known = false;
         return status;
     }
     status = carry_out(&s);

@@ -11,6 +11,7 @@
 
 #include "expect.h"
 #include "guard.h"
+#include "merge.h"
 #include "narc.h"
 #include "step_world.h"
 

@@ -403,9 +403,10 @@ enum { IN_FRONT = 16, BEHIND = 64 };
 
 static void *allocate(size_t size, void *context) {
     (void)context;
-    char *const memory = allowed == SIZE_MAX || allowed-- > 0 ? malloc(IN_FRONT + size + BEHIND) : NULL;
+    char *const memory = allowed > 0 ? malloc(IN_FRONT + size + BEHIND) : NULL;
     if (!memory)
         return NULL;
+    allowed -= allowed < SIZE_MAX;
     memcpy(memory, &size, sizeof size);
     memset(memory + IN_FRONT + size, GUARD_JUNK, BEHIND);
     return memory + IN_FRONT;
