@@ -13,6 +13,19 @@
 #include "common.h"
 #include "peers.h"
 
+/* Box2D 3.2 lets contacts serve again; 3.1 does not, and takes two transforms where 3.2 takes that of B in A. */
+#ifdef B2_CONTACT_RECYCLE_DISTANCE
+#define RECYCLES            true
+#define MANIFOLD            b2LocalManifold
+#define COLLIDE(what, a, b) what(a, b, b2InvMulTransforms(at_a, at_b))
+#define TREE_ROOM(count)    (int)(count)
+#else
+#define RECYCLES            false
+#define MANIFOLD            b2Manifold
+#define COLLIDE(what, a, b) what(a, at_a, b, at_b)
+#define TREE_ROOM(count)
+#endif
+
 static b2Polygon polygon_of(const struct outline *given) {
     const bool round = given->count > 2 && given->arcs[0].radius > 0;
     const struct outline large = round ? replace_outline(FORM_LARGE, given) : *given, *const outline = &large;
@@ -61,7 +74,7 @@ static void *create(struct scene *scene) {
 }
 
 /* Points that are within b2_speculativeDistance of touching are told as well. */
-static bool touches(const b2Manifold *manifold) {
+static bool touches(const MANIFOLD *manifold) {
     return (manifold->pointCount > 0 && manifold->points[0].separation < 0) ||
            (manifold->pointCount > 1 && manifold->points[1].separation < 0);
 }
@@ -73,9 +86,8 @@ static size_t collide(void *context, const struct asked *asked, void *out) {
         const uint32_t a = asked->pairs[k].a, b = asked->pairs[k].b;
         const union shape *shape_a = &posed->shapes[posed->shape[a]], *shape_b = &posed->shapes[posed->shape[b]];
         const b2Transform at_a = posed->transforms[a], at_b = posed->transforms[b];
-        const b2Manifold manifold = posed->capsules
-                                        ? b2CollideCapsules(&shape_a->capsule, at_a, &shape_b->capsule, at_b)
-                                        : b2CollidePolygons(&shape_a->polygon, at_a, &shape_b->polygon, at_b);
+        const MANIFOLD manifold = posed->capsules ? COLLIDE(b2CollideCapsules, &shape_a->capsule, &shape_b->capsule)
+                                                  : COLLIDE(b2CollidePolygons, &shape_a->polygon, &shape_b->polygon);
         colliding[k] = touches(&manifold);
     }
     return 0;
@@ -90,10 +102,18 @@ static size_t overlap(void *context, const struct asked *asked, void *out) {
     uint8_t *colliding = out;
     for (size_t k = 0; k < asked->count; k++) {
         const uint32_t a = asked->pairs[k].a, b = asked->pairs[k].b;
-        const b2DistanceInput input = {.proxyA = proxy_of(&posed->shapes[posed->shape[a]]),
-                                       .proxyB = proxy_of(&posed->shapes[posed->shape[b]]),
-                                       .transformA = posed->transforms[a],
-                                       .transformB = posed->transforms[b]};
+        const b2Transform at_a = posed->transforms[a], at_b = posed->transforms[b];
+        const b2DistanceInput input = {
+            .proxyA = proxy_of(&posed->shapes[posed->shape[a]]),
+            .proxyB = proxy_of(&posed->shapes[posed->shape[b]]),
+#if RECYCLES
+            .transform = b2InvMulTransforms(at_a, at_b)
+        };
+#else
+            .transformA = at_a,
+            .transformB = at_b
+        };
+#endif
         b2SimplexCache cache = {0};
         colliding[k] = b2ShapeDistance(&input, &cache, NULL, 0).distance == 0;
     }
@@ -149,7 +169,7 @@ static double step(void *context, const struct body *bodies, const uint32_t *mov
         b2Body_SetTransform(world->bodies[moved[k]], (b2Vec2){at->x, at->y}, (b2Rot){at->cosine, at->sine});
     }
     const double placed = now();
-#ifdef B2_CONTACT_RECYCLE_DISTANCE
+#if RECYCLES
     b2World_SetContactRecycleDistance(world->id, recycling);
 #else
     (void)recycling;
@@ -193,7 +213,7 @@ static b2AABB box_from(const narc_box *box) { return (b2AABB){{box->min_x, box->
 
 static void *create_tree(struct scene *scene) {
     b2DynamicTree *tree = allocate(1, sizeof *tree);
-    *tree = b2DynamicTree_Create();
+    *tree = b2DynamicTree_Create(TREE_ROOM(scene->body_count));
     index_scene(scene);
     for (size_t k = 0; k < scene->body_count; k++)
         b2DynamicTree_CreateProxy(tree, box_from(&scene->boxes[k]), 1, k);
@@ -261,11 +281,6 @@ const char *box2d_name(void) {
     { .question = query, .name = "box2d", .max_edges = B2_MAX_POLYGON_VERTICES, __VA_ARGS__ }
 const struct peer box2d_collide = BOX2D("contact", .capsules = true, .create = create, .ask = collide);
 const struct peer box2d_overlap = BOX2D("overlap", .create = create, .ask = overlap);
-#ifdef B2_CONTACT_RECYCLE_DISTANCE
-#define RECYCLES true
-#else
-#define RECYCLES false
-#endif
 const struct peer box2d_world = BOX2D("stay", .capsules = true, .own_clock = true, .recycles = RECYCLES,
                                       .create = create_moving, .step = step, .count_touching = count_touching);
 const struct peer box2d_rays = BOX2D("ray", .create = create_still, .ask = cast);
