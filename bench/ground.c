@@ -51,7 +51,7 @@ struct country {
     size_t made, pieces, steps;
     narc_body *bodies; /* the boxes, and behind them the ground */
     uint8_t *kinds;
-    uint32_t *runs;
+    uint32_t *runs, *moved; /* the boxes */
     narc_contacts *contacts[2];
 };
 
@@ -72,6 +72,7 @@ static struct country make_country(const struct walk *walk, size_t count, double
     c.bodies = allocate(count + c.pieces, sizeof *c.bodies);
     c.kinds = allocate(count + c.pieces, 1);
     c.runs = allocate(count + c.pieces, sizeof *c.runs);
+    c.moved = allocate(count, sizeof *c.moved);
     double at = walk->arcs[0].center_x;
     for (size_t k = 1; k < walk->count && c.made + 3 <= count; k++) { /* a column stands where an arc begins */
         const narc_arc *a = &walk->arcs[k];
@@ -81,6 +82,7 @@ static struct country make_country(const struct walk *walk, size_t count, double
         at = x;
         for (int level = 0; level < 3; level++) {
             c.runs[c.made] = NARC_NO_RUN;
+            c.moved[c.made] = (uint32_t)c.made;
             c.bodies[c.made++] = (narc_body){x, y + 0.51 + 1.001 * level, 1, 0, 1, shape};
         }
     }
@@ -99,8 +101,13 @@ enum way { NONE, AMONG };
 static size_t step(struct country *c, int way) {
     const narc_bodies bodies = narc_view_bodies(c->bodies, way == AMONG ? c->made + c->pieces : c->made);
     const narc_pair_filter filter = {.kind = {c->kinds, 1}};
-    const narc_step asked = {
-        .bodies = &bodies, .margin = 0.02f, .skin = 0.05f, .run = NARC_ARRAY(c->runs), .filter = &filter};
+    const narc_step asked = {.bodies = &bodies,
+                             .margin = 0.02f,
+                             .skin = 0.05f,
+                             .run = NARC_ARRAY(c->runs),
+                             .moved = NARC_ARRAY(c->moved),
+                             .moved_count = c->made,
+                             .filter = &filter};
     const narc_step_result *result;
     narc_error error;
     must(narc_update_contacts(c->contacts[way], c->shapes, &asked, &result, &error), &error);
