@@ -123,7 +123,7 @@ static void run(struct row *row) {
         c->bodies[k].x += shake;
 }
 
-/* On 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. The lowest box of each column lies on it. */
+/* On 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. Each column lies on it. */
 static void prepare(struct row *row) {
     const size_t count = scaled(30000), pieces = scaled(100000);
     const bool is_short = strstr(row->bench.name, "/short-hills/") != NULL;

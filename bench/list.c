@@ -20,7 +20,7 @@ struct group {
 #define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
 #define STEPS   "boxes pairs plain stay-moving"
 #define STAY    "stay-moving stay-moving-recycled stay-settled stay-settled-recycled"
-#define PARTLY  "BEST/1of10 BEST/1of100 BEST/1of0 box2d/1of10 box2d/1of100 box2d/1of0"
+#define PARTLY  "BEST BEST/1of10 BEST/1of100 BEST/1of0 box2d/1of10 box2d/1of100 box2d/1of0"
 #define STACKS  "pyramid pyramid-templates lattice lattice-templates"
 #define PARTS                                                                                                          \
     "BEST/64pairs BEST/256pairs BEST/1024pairs BEST/4096pairs BEST/16384pairs BEST/65536pairs BEST/262144pairs"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * steps.c - the collision step of a simulation: boxes, pairs, and all of it by plain calls; contacts that stay, and worlds of
- * peers, while bodies move.
+ * steps.c - the collision step of a simulation: boxes, pairs, and all of it by plain calls; contacts that stay, and
+ * worlds of peers, while bodies move.
  */
 #include <math.h>
 #include <string.h>

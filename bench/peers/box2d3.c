@@ -103,16 +103,13 @@ static size_t overlap(void *context, const struct asked *asked, void *out) {
     for (size_t k = 0; k < asked->count; k++) {
         const uint32_t a = asked->pairs[k].a, b = asked->pairs[k].b;
         const b2Transform at_a = posed->transforms[a], at_b = posed->transforms[b];
-        const b2DistanceInput input = {
-            .proxyA = proxy_of(&posed->shapes[posed->shape[a]]),
-            .proxyB = proxy_of(&posed->shapes[posed->shape[b]]),
+        b2DistanceInput input = {.proxyA = proxy_of(&posed->shapes[posed->shape[a]]),
+                                 .proxyB = proxy_of(&posed->shapes[posed->shape[b]])};
 #if RECYCLES
-            .transform = b2InvMulTransforms(at_a, at_b)
-        };
+        input.transform = b2InvMulTransforms(at_a, at_b);
 #else
-            .transformA = at_a,
-            .transformB = at_b
-        };
+        input.transformA = at_a;
+        input.transformB = at_b;
 #endif
         b2SimplexCache cache = {0};
         colliding[k] = b2ShapeDistance(&input, &cache, NULL, 0).distance == 0;
