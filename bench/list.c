@@ -18,7 +18,9 @@ struct group {
 
 #define QUERIES "overlap contact manifold"
 #define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
-#define STEPS   "boxes pairs match step kept contacts-stay"
+#define STEPS   "boxes pairs plain stay-moving"
+#define STAY    "stay-moving stay-moving-recycled stay-settled stay-settled-recycled"
+#define PARTLY  "BEST BEST/1of10 BEST/1of100 BEST/1of0 box2d/1of10 box2d/1of100 box2d/1of0"
 #define STACKS  "pyramid pyramid-templates lattice lattice-templates"
 #define PARTS                                                                                                          \
     "BEST/64pairs BEST/256pairs BEST/1024pairs BEST/4096pairs BEST/16384pairs BEST/65536pairs BEST/262144pairs"
@@ -26,7 +28,6 @@ struct group {
     "BEST/2threads/64pairs BEST/2threads/256pairs BEST/2threads/1024pairs BEST/2threads/4096pairs "                    \
     "BEST/2threads/16384pairs BEST/2threads/65536pairs BEST/2threads/262144pairs"
 #define SCENES  "pile-1000 sparse-1000 pile sparse pile-1000000 sparse-1000000"
-#define STILL   "pile-1100 sparse-1100 pile-33000 sparse-33000 pile-1100000 sparse-1100000"
 #define FLIGHTS "impact-straight impact-straight-anywhere impact-turning impact-turning-anywhere impact-turning-6"
 
 static const struct group groups[] = {
@@ -42,8 +43,14 @@ static const struct group groups[] = {
     {"manifold", "n8", "pile-1000000", "BEST"},
     {"overlap", "n8", "pile-1000000", PARTS},
     {"overlap", "n8", "pile-1000000", PARTS_2},
-    {"step", "n8", "pile-2000 pile", "box2d chipmunk"},
-    {"update stay", "n8", "pile-10000", "BEST/1of1 BEST/1of20 BEST/1of100 BEST/1of0"},
+    {STAY, "n4 n8 gons8 boxes capsules kinds", "pile", "BEST avx2 box2d"},
+    {STAY, "n8", "pile-each", "BEST box2d"},
+    {STAY, "squares", "pyramid-templates", "BEST box2d"},
+    {"stay-moving stay-moving-recycled", "n8", "pile", PARTLY},
+    {"stay-moving stay-moving-recycled", "boxes", "pile-10000", PARTLY},
+    {"stay-moving stay-moving-recycled", "squares", "pyramid-templates", PARTLY},
+    {"plain stay-rain", "n8 boxes kinds", "pile", "BEST"},
+    {"stay-rain", "n8 boxes kinds", "pile", "box2d"},
     {"overlap contact manifold", "squares", STACKS, "BEST"},
     {"contact", "squares", STACKS, "box2d"},
     {"overlap contact", "n4 n6 n8 n12 n16 kinds general capsules", "mixed", "EACH"},
@@ -60,8 +67,7 @@ static const struct group groups[] = {
     {"impact-contact " FLIGHTS, "squares slabs gons8 n8", "flights", "BEST"},
     {FLIGHTS, "squares slabs gons8 n8", "flights", "BEST/by1 box2d"},
     {"index-good index-fast index-refit", "gons8", SCENES, "BEST BEST/2threads"},
-    {"still-all still-index still-all-kept still-index-kept", "gons8", STILL, "BEST"},
-    {"ground-none ground-among ground-index", "boxes", "hills short-hills", "BEST"},
+    {"ground-none ground-among", "boxes", "hills short-hills", "BEST"},
 };
 
 static const struct group all_groups[] = {
@@ -174,7 +180,8 @@ static void add_row(const char *query, const char *family, const char *layout, c
     if (!row.peer && !row.isa)
         fail("nobody is called %s", answers);
     if (is_listed(name) || (row.first && row.first >= scaled(row.layout->size)) ||
-        (row.peer && row.family && row.family->edges > row.peer->max_edges && !missing))
+        (row.peer && row.family && row.family->edges > row.peer->max_edges && !missing) ||
+        (row.peer && strstr(query, "recycled") && !row.peer->recycles))
         return;
     if (missing) {
         bench_skip(name, missing);

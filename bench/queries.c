@@ -136,10 +136,11 @@ static const narc_box *make_regions(const struct scene *scene, double found, siz
     return regions;
 }
 
-size_t add_keys(const narc_pairs *pairs, uint64_t first_a, uint64_t first_b, uint64_t *keys, size_t count) {
+/* Appends pairs as keys region << 32 | body; how many keys there are now. */
+static size_t add_keys(const narc_pairs *pairs, uint64_t first, uint64_t *keys, size_t count) {
     const uint32_t *a = pairs->a.base, *b = pairs->b.base;
     for (size_t k = 0; k < pairs->count; k++)
-        keys[count++] = (first_a + a[k]) << 32 | (first_b + b[k]);
+        keys[count++] = (first + a[k]) << 32 | b[k];
     return count;
 }
 
@@ -148,7 +149,8 @@ static int compare_keys(const void *left, const void *right) {
     return (l > r) - (l < r);
 }
 
-size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, size_t right_count) {
+/* How many keys only one of the two has. Sorts both. */
+static size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, size_t right_count) {
     size_t differences = 0, l = 0, r = 0;
     qsort(left, left_count, sizeof *left, compare_keys);
     qsort(right, right_count, sizeof *right, compare_keys);
@@ -172,7 +174,7 @@ static size_t ask_index(const struct row *row, size_t batch, uint64_t *keys) {
         narc_error error;
         must(narc_query_index(row->scene->index, q->asked.regions + k, part, &query, &pairs, &error), &error);
         if (keys)
-            count = add_keys(&pairs, k, 0, keys, count);
+            count = add_keys(&pairs, k, keys, count);
     }
     return count;
 }

@@ -45,12 +45,26 @@ static const struct table tables[] = {
      "manifolds = manifold/squares/$1$2/BEST; Box2D (times manifolds) = contact/squares/$1$2/box2d / 3",
      1},
     {"ns a pair, 8 arcs, 64 shapes",
-     "boxes = boxes; pairs = pairs; match, gather = match; whole step = step; whole step, pairs kept = kept", "",
+     "boxes = boxes; pairs = pairs; both and manifolds = plain; a step of contacts that stay = stay-moving", "",
      "2,000 bodies = $1/n8/pile-2000/BEST; 30,000 = $1/n8/pile/BEST; 1,000,000 = $1/n8/pile-1000000/BEST;"
      "2 threads = $1/n8/pile-1000000/BEST/2threads / 3",
      1},
-    {"ns a pair, 8-gons", "Box2D's collide = box2d; Chipmunk's = chipmunk", "",
-     "2,000 bodies = step/n8/pile-2000/$1; 30,000 = step/n8/pile/$1", 1},
+    {"ns a pair, a whole step | all bodies",
+     "8 arcs = n8/pile; a shape a body = n8/pile-each; 4 arcs = n4/pile; 8-gons = gons8/pile; boxes = boxes/pile;"
+     "capsules = capsules/pile; all kinds = kinds/pile; squares, pyramids = squares/pyramid-templates",
+     "move = moving; settle = settled",
+     "narc = stay-$2/$1/BEST; AVX2 = stay-$2/$1/avx2 / 1; Box2D = stay-$2/$1/box2d / 1; recycled = "
+     "stay-$2-recycled/$1/BEST;"
+     "AVX2 = stay-$2-recycled/$1/avx2 / 4; Box2D = stay-$2-recycled/$1/box2d / 4",
+     1},
+    {"ns a pair, a whole step | move",
+     "30,000 of 8 arcs = n8/pile; 10,000 boxes = boxes/pile-10000; squares, pyramids = squares/pyramid-templates",
+     "10 % = 1of10; 1 % = 1of100; none = 1of0",
+     "narc = stay-moving/$1/BEST/$2; Box2D = stay-moving/$1/box2d/$2 / 1; recycled = stay-moving-recycled/$1/BEST/$2;"
+     "Box2D = stay-moving-recycled/$1/box2d/$2 / 3",
+     1},
+    {"ns a pair, all pairs new", "8 arcs = n8; boxes = boxes; all kinds = kinds", "",
+     "narc = stay-rain/$1/pile/BEST; plain calls = plain/$1/pile/BEST / 1; Box2D = stay-rain/$1/pile/box2d / 1", 1},
     {"ns a pair, mixed scene, 4,096 shapes, n =", series, NULL, sizes, 1},
     {"ns a ray | bodies", "a fan of 1,080 = ray-fan; long = ray-long; short = ray-short", SCENES,
      "8 arcs = $1/n8/$2/BEST; 8-gons = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1;"
@@ -78,18 +92,8 @@ static const struct table tables[] = {
      "built `fast` = index-fast/gons8/$1/BEST; 2 threads = index-fast/gons8/$1/BEST/2threads / 3;"
      "refitted = index-refit/gons8/$1/BEST; 2 threads = index-refit/gons8/$1/BEST/2threads / 5",
      1},
-    {"us a step of still and moving bodies",
-     "1,000, 100 pile = pile-1100; 1,000, 100 sparse = sparse-1100; 30,000, 3,000 pile = pile-33000;"
-     "30,000, 3,000 sparse = sparse-33000; 1,000,000, 100,000 pile = pile-1100000;"
-     "1,000,000, 100,000 sparse = sparse-1100000",
-     "",
-     "index of what stands still = still-index/gons8/$1/BEST; all (times index) = still-all/gons8/$1/BEST / 1;"
-     "index, with a skin = still-index-kept/gons8/$1/BEST; all, with a skin = still-all-kept/gons8/$1/BEST / 3",
-     1000},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
-     "without it = ground-none/boxes/$1/BEST; with it among the bodies = ground-among/boxes/$1/BEST;"
-     "with an index of it = ground-index/boxes/$1/BEST",
-     1000},
+     "without it = ground-none/boxes/$1/BEST; with it = ground-among/boxes/$1/BEST", 1000},
 };
 
 /* ------------------------------------------------------------------------------------------------ times */

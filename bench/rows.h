@@ -52,12 +52,6 @@ const struct row *get_row(size_t index); /* NULL behind the last one */
 /* The number of a row's questions in a call. */
 size_t batch_of(const struct row *row, size_t done);
 
-/* Appends pairs as keys a << 32 | b, of bodies that begin at first_a and first_b; how many keys there are now. */
-size_t add_keys(const narc_pairs *pairs, uint64_t first_a, uint64_t first_b, uint64_t *keys, size_t count);
-
-/* How many keys only one of the two has. Sorts both. */
-size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, size_t right_count);
-
 /* Room for `count` manifolds, one for all rows, since they run one after another: a call may move it. */
 narc_manifold *share_manifolds(size_t count);
 float deepest_separation(const narc_manifold *manifold);

@@ -37,29 +37,15 @@ static const struct family families[] = {
 enum { FAMILIES = sizeof families / sizeof families[0] };
 
 static const struct layout_kind layouts[] = {
-    {"mixed", LAYOUT_MIXED, 4096, false, 65536},
-    {"mixed-sorted", LAYOUT_MIXED, 4096, true, 65536},
-    {"mixed-templates", LAYOUT_MIXED, 16, false, 65536},
-    {"mixed-templates-sorted", LAYOUT_MIXED, 16, true, 65536},
-    {"pyramid", LAYOUT_PYRAMID, 4096, true, 16384},
-    {"pyramid-templates", LAYOUT_PYRAMID, 16, true, 16384},
-    {"lattice", LAYOUT_LATTICE, 4096, true, 16384},
-    {"lattice-templates", LAYOUT_LATTICE, 16, true, 16384},
-    {"pile-1000", LAYOUT_PILE, 64, true, 1000},
-    {"pile-1100", LAYOUT_PILE, 64, true, 1100},
-    {"pile-2000", LAYOUT_PILE, 64, true, 2000},
-    {"pile-10000", LAYOUT_PILE, 64, true, 10000},
-    {"pile", LAYOUT_PILE, 64, true, 30000},
-    {"pile-33000", LAYOUT_PILE, 64, true, 33000},
-    {"pile-unlike", LAYOUT_PILE, 4096, true, 30000},
-    {"pile-1000000", LAYOUT_PILE, 64, true, 1000008},
-    {"pile-1100000", LAYOUT_PILE, 64, true, 1100000},
-    {"sparse-1000", LAYOUT_SPARSE, 64, true, 1000},
-    {"sparse-1100", LAYOUT_SPARSE, 64, true, 1100},
-    {"sparse", LAYOUT_SPARSE, 64, true, 30000},
-    {"sparse-33000", LAYOUT_SPARSE, 64, true, 33000},
-    {"sparse-1000000", LAYOUT_SPARSE, 64, true, 1000008},
-    {"sparse-1100000", LAYOUT_SPARSE, 64, true, 1100000},
+    {"mixed", LAYOUT_MIXED, 4096, false, 65536},         {"mixed-sorted", LAYOUT_MIXED, 4096, true, 65536},
+    {"mixed-templates", LAYOUT_MIXED, 16, false, 65536}, {"mixed-templates-sorted", LAYOUT_MIXED, 16, true, 65536},
+    {"pyramid", LAYOUT_PYRAMID, 4096, true, 16384},      {"pyramid-templates", LAYOUT_PYRAMID, 16, true, 16384},
+    {"lattice", LAYOUT_LATTICE, 4096, true, 16384},      {"lattice-templates", LAYOUT_LATTICE, 16, true, 16384},
+    {"pile-1000", LAYOUT_PILE, 64, true, 1000},          {"pile-2000", LAYOUT_PILE, 64, true, 2000},
+    {"pile-10000", LAYOUT_PILE, 64, true, 10000},        {"pile", LAYOUT_PILE, 64, true, 30000},
+    {"pile-unlike", LAYOUT_PILE, 4096, true, 30000},     {"pile-each", LAYOUT_PILE, 30000, true, 30000},
+    {"pile-1000000", LAYOUT_PILE, 64, true, 1000008},    {"sparse-1000", LAYOUT_SPARSE, 64, true, 1000},
+    {"sparse", LAYOUT_SPARSE, 64, true, 30000},          {"sparse-1000000", LAYOUT_SPARSE, 64, true, 1000008},
 };
 enum { LAYOUTS = sizeof layouts / sizeof layouts[0] };
 
@@ -100,6 +86,8 @@ static void store_shapes(struct scene *scene) {
 static void make_shapes(struct scene *scene) {
     uint64_t random = scene->family->edges;
     scene->shape_count = scene->kind->shapes;
+    if (is_pile(scene->kind) && scene->shape_count > scaled(scene->kind->size))
+        scene->shape_count = scaled(scene->kind->size);
     scene->outlines = allocate(scene->shape_count, sizeof *scene->outlines);
     for (size_t k = 0; k < scene->shape_count; k++)
         scene->outlines[k] = make_outline(scene->family->form, scene->family->edges, k, &random);

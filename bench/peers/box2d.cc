@@ -13,7 +13,9 @@
 
 namespace {
 
-b2PolygonShape polygon_of(const outline &outline) {
+b2PolygonShape polygon_of(const outline &given) {
+    const bool round = given.count > 2 && given.arcs[0].radius > 0;
+    const outline outline = round ? replace_outline(FORM_LARGE, &given) : given;
     b2Vec2 points[b2_maxPolygonVertices];
     for (size_t i = 0; i < outline.count; i++)
         points[i].Set(static_cast<float>(outline.arcs[i].x), static_cast<float>(outline.arcs[i].y));
@@ -71,36 +73,56 @@ size_t overlap(void *context, const asked *asked, void *out) {
 
 // ------------------------------------------------------------------------------------------------ worlds
 
-b2World *create_bodies(const scene *scene, b2BodyType type) {
+b2World *create_bodies(const scene *scene, b2BodyType type, std::vector<b2Body *> *out = nullptr) {
     auto *world = new b2World(b2Vec2(0, 0));
     for (size_t k = 0; k < scene->body_count; k++) {
         const body &at = scene->bodies[k];
-        const b2PolygonShape shape = polygon_of(scene->outlines[at.shape]);
+        const outline &outline = scene->outlines[at.shape];
+        b2PolygonShape polygon;
+        b2CircleShape circle;
+        if (outline.count == 1)
+            circle.m_radius = static_cast<float>(outline.arcs[0].radius);
+        else
+            polygon = polygon_of(outline);
         b2BodyDef definition;
         definition.type = type;
         definition.position.Set(at.x, at.y);
         definition.angle = std::atan2(at.sine, at.cosine);
-        world->CreateBody(&definition)->CreateFixture(&shape, 1);
+        b2Body *body = world->CreateBody(&definition);
+        body->CreateFixture(outline.count == 1 ? static_cast<const b2Shape *>(&circle) : &polygon, 1);
+        if (out)
+            out->push_back(body);
     }
     return world;
 }
 
 // A step of no time does nothing but find new contacts and update the manifolds of all, what b2World::GetProfile() calls
-// `collide`. The bodies stay where they are, and awake.
+// `collide`. The bodies stay awake.
+struct Moving {
+    b2World *world;
+    std::vector<b2Body *> bodies;
+};
+
 void *create_moving(scene *scene) {
-    b2World *world = create_bodies(scene, b2_dynamicBody);
-    world->SetAllowSleeping(false);
-    return world;
+    auto *moving = new Moving;
+    moving->world = create_bodies(scene, b2_dynamicBody, &moving->bodies);
+    moving->world->SetAllowSleeping(false);
+    return moving;
 }
 
-double step(void *world) {
-    static_cast<b2World *>(world)->Step(0, 0, 0);
+double step(void *context, const body *bodies, const uint32_t *moved, size_t count, float) {
+    const auto &moving = *static_cast<const Moving *>(context);
+    for (size_t k = 0; k < count; k++) {
+        const body &at = bodies[moved[k]];
+        moving.bodies[moved[k]]->SetTransform(b2Vec2(at.x, at.y), std::atan2(at.sine, at.cosine));
+    }
+    moving.world->Step(0, 0, 0);
     return 0;
 }
 
-size_t count_touching(void *world) {
+size_t count_touching(void *context) {
     size_t count = 0;
-    for (const b2Contact *contact = static_cast<b2World *>(world)->GetContactList(); contact;
+    for (const b2Contact *contact = static_cast<const Moving *>(context)->world->GetContactList(); contact;
          contact = contact->GetNext())
         count += contact->IsTouching();
     return count;
@@ -209,7 +231,7 @@ peer make_peer(const char *question, void *(*create)(scene *), size_t (*ask)(voi
 }
 
 peer make_world() {
-    peer peer = make_peer("step", create_moving, nullptr);
+    peer peer = make_peer("stay", create_moving, nullptr);
     peer.step = step;
     peer.count_touching = count_touching;
     return peer;

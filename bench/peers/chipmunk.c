@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * chipmunk.c - Chipmunk: contacts of two polygons or segments with a radius, the collision part of a step, rays, regions,
- * the nearest body.
+ * chipmunk.c - Chipmunk: contacts of two polygons or segments with a radius, rays, regions, the nearest body.
  */
 #include <chipmunk/chipmunk_private.h>
 
@@ -48,13 +47,13 @@ const struct peer chipmunk_collide = {.question = "contact",
                                       .create = create,
                                       .ask = collide};
 
-/* ------------------------------------------------------------------------------------------------ a space */
+/* ------------------------------------------------------------------------------------------------ questions */
 
-static cpSpace *create_space(const struct scene *scene, bool still) {
+static void *create_still(struct scene *scene) {
     cpSpace *space = cpSpaceNew();
     for (size_t k = 0; k < scene->body_count; k++) {
         const struct body *at = &scene->bodies[k];
-        cpBody *body = still ? cpBodyNewStatic() : cpSpaceAddBody(space, cpBodyNew(1, 1));
+        cpBody *body = cpBodyNewStatic();
         cpBodySetPosition(body, cpv((cpFloat)at->x, (cpFloat)at->y));
         cpBodySetAngle(body, atan2((double)at->sine, (double)at->cosine));
         cpShape *shape = make_shape(body, &scene->outlines[at->shape]);
@@ -63,34 +62,6 @@ static cpSpace *create_space(const struct scene *scene, bool still) {
     }
     return space;
 }
-
-static void *create_moving(struct scene *scene) { return create_space(scene, false); }
-
-/* What cpSpaceStep() does between moving the bodies and solving, so the bodies stay where they are. */
-static double step(void *context) {
-    cpSpace *space = context;
-    space->stamp++;
-    space->arbiters->num = 0;
-    cpSpaceLock(space);
-    cpSpacePushFreshContactBuffer(space);
-    cpSpatialIndexEach(space->dynamicShapes, (cpSpatialIndexIteratorFunc)cpShapeUpdateFunc, NULL);
-    cpSpatialIndexReindexQuery(space->dynamicShapes, (cpSpatialIndexQueryFunc)cpSpaceCollideShapes, space);
-    cpSpaceUnlock(space, cpFalse);
-    return 0;
-}
-
-static size_t count_touching(void *context) { return (size_t)((cpSpace *)context)->arbiters->num; }
-
-const struct peer chipmunk_space = {.question = "step",
-                                    .name = "chipmunk",
-                                    .max_edges = MAX_EDGES,
-                                    .create = create_moving,
-                                    .step = step,
-                                    .count_touching = count_touching};
-
-/* ------------------------------------------------------------------------------------------------ questions */
-
-static void *create_still(struct scene *scene) { return create_space(scene, true); }
 
 static size_t cast(void *space, const struct asked *asked, void *out) {
     float *fractions = out;

@@ -44,10 +44,10 @@ struct peer {
     void *(*create)(struct scene *scene); /* shapes and poses in the form it wants them */
     size_t (*ask)(void *context, const struct asked *asked, void *out);
 
-    /* "step" in the place of `ask`: boxes, pairs and contacts of bodies at rest. With a clock of its own it does more, and
-     * returns the seconds of these alone. */
-    bool own_clock;
-    double (*step)(void *context);
+    /* "stay" in the place of `ask`: puts bodies that have moved where they are, and finds boxes, pairs and contacts. With a
+     * clock of its own it does more, and returns the seconds of these alone. */
+    bool own_clock, recycles; /* contacts serve again while their bodies have moved less than `recycling` */
+    double (*step)(void *context, const struct body *bodies, const uint32_t *moved, size_t count, float recycling);
     size_t (*count_touching)(void *context);
 };
 
@@ -57,7 +57,7 @@ const struct peer *find_peer(const char *query, const char *name);
 const char *box2d_name(void); /* with its version */
 
 extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_rays, box2d_regions, box2d_impacts;
-extern const struct peer chipmunk_collide, chipmunk_space, chipmunk_rays, chipmunk_regions, chipmunk_nearest;
+extern const struct peer chipmunk_collide, chipmunk_rays, chipmunk_regions, chipmunk_nearest;
 extern const struct peer ccd_gjk, ccd_mpr;
 extern const struct peer geos_regions, geos_nearest;
 extern const struct peer disc_loop;
