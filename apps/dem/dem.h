@@ -100,7 +100,7 @@ typedef struct dem_region {
 
 typedef struct dem_settings {
     double time_step;
-    double skin;      /* images, and narc's pairs, are kept while nothing has moved half of it */
+    double skin;      /* images are kept while nothing has moved half of it, pairs while bodies have not by a quarter */
     double thickness; /* of the grains, across the plane */
     vec gravity;
     dem_law law;

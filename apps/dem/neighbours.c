@@ -197,7 +197,7 @@ void dem_find_pairs(dem *d) {
     const double rounding = d->wall_count > 0 ? 2e-7 * d->diagonal : 0;
     const narc_step step = {.bodies = &bodies,
                             .margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
-                            .skin = (float)(0.5 * d->settings.skin),
+                            .skin = (float)(0.25 * d->settings.skin),
                             .id = NARC_COLUMN(d->images, id),
                             .filter = &filter,
                             .workers = &d->workers};
