@@ -66,7 +66,8 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *   bodies              at most 2^32 - 2. Those of ground (entries of chains) behind all that may meet them
  *   margin, second_margin, flat_angle, front_only   as in narc_query, the margin at least 0 and finite
  *   pairs               the pairs that there are, if a broad phase of the caller's finds them: of bodies, in any order, each
- *                       once, without shifts; those that the filter does not let are left out. NULL: all pairs of bodies
+ *                       once, without shifts; those that the filter does not let are left out. No boxes are computed then,
+ *                       and nothing depends on skin, motion, reach. NULL: all pairs of bodies
  *                       that are closer than the margin, and perhaps others, none further apart than margin + 3 * skin and
  *                       the motion when their boxes were made
  *   same_pairs          not 0: these are the pairs of the last step that did not fail, and are not looked at. (Bodies that
@@ -146,7 +147,8 @@ enum { NARC_TOUCHING = 1, NARC_NEW = 2, NARC_ASKED = 4, NARC_FOLLOWED = 8, NARC_
  *   sensors       slots of sensors' pairs whose bodies overlap
  *   began, ended  since the last step, sensors among them; of those that ended the parted ones first. What falls asleep
  *                 ends nothing
- *   skipped       how many bodies are in no pair because they are broken (narc_validate_bodies() says which)
+ *   skipped       how many bodies are in no pair because they are broken (narc_validate_bodies() says which); 0 with pairs of
+ *                 the caller's, which have no row then
  *   asked_count   how many pairs were asked */
 typedef struct narc_step_result {
     narc_pairs pairs;

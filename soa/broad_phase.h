@@ -78,7 +78,7 @@ typedef struct narc_known_poses {
     uint8_t *moved;            /* 1: the box may be another one than the kept box was made from */
     uint8_t *changed;          /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
     narc_precision precision;  /* of positions */
-    bool has_motions;
+    bool has_motions, has_boxes; /* has_boxes: boxes_now are theirs */
     const narc_shapes *shapes;
     uint64_t history;   /* of the shapes */
     float margin, skin; /* the skin: for `moved` */

@@ -150,7 +150,7 @@ static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t 
             known.changed[k] = NARC_ALL_CHANGED;
         else if (!same_pose)
             known.changed[k] |= NARC_CHANGED;
-        known.moved[k] = 1;
+        known.moved[k] |= job->out_boxes != NULL;
         list[count++] = (uint32_t)k;
     }
     return count;
@@ -165,6 +165,8 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
     if (job->known)
         count = list_moved(job, first, job->first + end, list);
     size_t skipped = 0;
+    if (!job->out_boxes)
+        return;
     if (count > 0) /* mostly nothing moves */
         skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
     for (size_t i = 0; i < count && (job->reach.base || job->ahead.base); i++) {
@@ -242,7 +244,7 @@ bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shap
     const narc_known_poses *const known = &broad->known;
     return known->precision == step->bodies->x.precision && known->shapes == shapes &&
            known->history == shapes->history && known->margin == step->margin && known->skin == step->skin &&
-           known->has_motions == has_motions(step);
+           known->has_motions == has_motions(step) && known->has_boxes == !step->pairs;
 }
 
 narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
@@ -256,6 +258,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     if (!narc_are_poses_known(broad, shapes, step))
         narc_forget_poses(broad);
     known->has_motions = has_motions(step);
+    known->has_boxes = !step->pairs;
     box_job job = {
         .known = known, .reach = step->reach, .ahead = step->ahead, .run = step->run, .out_boxes = broad->boxes_now};
     size_t count = listed ? step->moved_count : 0;

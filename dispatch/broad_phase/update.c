@@ -175,8 +175,8 @@ static unsigned look_at_listed(const update *u) {
     for (size_t i = 0; i < u->step->moved_count; i++) {
         const size_t k = narc_index_at(u->step->moved, i);
         const narc_box *const box = &u->broad->boxes_now[k];
-        if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
-            (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k)))
+        const bool left = narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k);
+        if ((last->has_ids && id_of(u, k) != last->ids[k]) || (left && !broad->is_given))
             return WHOLE;
         if (!broad->has_filter)
             continue;
@@ -294,8 +294,8 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
 /* Gives fresh bodies boxes with the skin, as the new list knows them, and all bodies their filters. Returns how many
  * have no box, if it was so many in the last list. */
 static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
-    static const narc_box everything = {-INFINITY, -INFINITY, INFINITY, INFINITY}; /* none leaves it */
     narc_broad_phase *const broad = u->broad;
+    const narc_box nowhere = narc_empty_box();
     const bool whole = found & WHOLE;
     if (whole) {
         memset(broad->fresh, 1, u->count);
@@ -308,12 +308,11 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
         broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
-        const bool has = narc_is_box(&u->broad->boxes_now[k]);
-        skipped += !has;
-        skipped -= !whole && !has_kept_box(broad, k);
-        broad->kept_boxes[k] = !has              ? narc_empty_box()
-                               : broad->is_given ? everything
-                                                 : narc_widen_box(broad->boxes_now[k], u->step->skin);
+        const narc_box box = broad->is_given ? nowhere : broad->boxes_now[k]; /* given pairs need no boxes */
+        const bool has = narc_is_box(&box);
+        skipped += !has && !broad->is_given;
+        skipped -= !whole && !has_kept_box(broad, k) && !broad->is_given;
+        broad->kept_boxes[k] = has ? narc_widen_box(box, u->step->skin) : nowhere;
         broad->known.moved[k] = 0;
         if (broad->has_filter) {
             broad->filters[k] = filter_of(u, k);

@@ -69,7 +69,7 @@ static pair_view view_pairs(const narc_contact_step *s) {
                        .changed = c->broad->known.changed,
                        .boxes = c->broad->boxes_now,
                        .room = c->room,
-                       .margin_room = s->step->ahead.base ? INFINITY : 0x1p-18f * s->step->margin};
+                       .margin_room = s->step->ahead.base || s->step->pairs ? INFINITY : 0x1p-18f * s->step->margin};
 }
 
 /* The slot that a pair has, or NARC_NO_MATCH. */

@@ -30,7 +30,7 @@ typedef struct start {
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
     uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, is_list_marked, has_motions,
-        unused[7];
+        has_boxes, unused[6];
 } start;
 
 _Static_assert(sizeof(start) % 8 == 0 && sizeof(narc_asked) == 24, "no padding, and arrays begin at a multiple of 8");
@@ -64,7 +64,7 @@ static void list_saved(narc_contacts *c, int list, narc_array out[SAVED_ARRAYS])
         ARRAY(b->kept_boxes, current * sizeof *b->kept_boxes, &l->body_count),
         ARRAY(b->filters, filter * sizeof *b->filters, &l->body_count),
         ARRAY(b->kinds, filter, &l->body_count),
-        ARRAY(b->boxes_now, sizeof *b->boxes_now, &known->count),
+        ARRAY(b->boxes_now, known->has_boxes * sizeof *b->boxes_now, &known->count),
         ARRAY(known->poses, sizeof *known->poses, &known->count),
         ARRAY(known->motions, known->has_motions * sizeof *known->motions, &known->count),
         ARRAY(known->moved, 1, &known->count),
@@ -138,7 +138,8 @@ static start describe(const saved *s) {
                 .has_sets = b->has_sets,
                 .is_marked = c->marked,
                 .is_list_marked = b->marked,
-                .has_motions = b->known.has_motions};
+                .has_motions = b->known.has_motions,
+                .has_boxes = b->known.has_boxes};
     memcpy(at.magic, magic, sizeof magic);
     return at;
 }
@@ -179,6 +180,7 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     c->marked = at->is_marked;
     b->marked = at->is_list_marked;
     b->known.has_motions = at->has_motions;
+    b->known.has_boxes = at->has_boxes;
     b->is_sorted = false;
     b->renewed = true; /* `previous` is not saved */
     c->crossed_count = 0;

@@ -145,7 +145,7 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
         step.pairs = &given.pairs;
         step.same_pairs = k > 0 && given.same;
         expect_ok(narc_update_contacts(own, w->store, &step, &other, &error), &error);
-        check_same(r, other);
+        check_own(r, other);
         check_events(w, r, &memory);
         save(all, &saved);
         move_step_world(w);

@@ -66,6 +66,9 @@ void check_events(const struct step_world *w, const narc_step_result *r, struct 
 /* Both results are the same. */
 void check_same(const narc_step_result *one, const narc_step_result *other);
 
+/* The same of contacts with pairs of the caller's, which have no boxes: more of them are asked. */
+void check_own(const narc_step_result *found, const narc_step_result *own);
+
 /* Rows of contacts touch where manifolds do. */
 void check_contact_rows(const narc_step_result *manifolds, const narc_step_result *contacts);
 
