@@ -163,9 +163,9 @@ static bool is_list_kept(const narc_contact_step *s) {
 static size_t find_body(const uint8_t *changed, unsigned how, size_t k, size_t count) {
     enum { MANY = 64 };
     for (; count - k >= MANY; k += MANY) {
-        unsigned any = 0;
+        uint8_t any = 0; /* in bytes, so that vectors hold most of them */
         for (size_t i = 0; i < MANY; i++)
-            any |= changed[k + i];
+            any = (uint8_t)(any | changed[k + i]);
         if (any & how)
             break;
     }
