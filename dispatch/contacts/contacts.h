@@ -236,10 +236,8 @@ float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Both n-arcs: to ask anew costs no more than to follow. */
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 
-/* Does one of both move? Only where a pair's marks say that one of them does not it must be asked. */
-bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b);
-
-enum { NARC_AT_REST = NARC_STATIC | NARC_ASLEEP, NARC_GONE = 64 };
+/* Marks of slots beside those of pairs: neither body moves; there is no pair. */
+enum { NARC_RESTS = 32, NARC_GONE = 64 };
 
 /* Is one of two bodies a piece of a chain, or B said to be of a run? */
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);

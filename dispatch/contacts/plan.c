@@ -12,13 +12,11 @@
 #include <math.h>
 #include <string.h>
 
-static uint8_t kind_of(const narc_contact_step *s, uint32_t body) {
-    const narc_byte_column kind = s->step->filter ? s->step->filter->kind : (narc_byte_column){NULL, 0};
-    return kind.base ? narc_byte_at(kind, body) & NARC_KINDS : 0;
-}
-
-bool narc_is_tested(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    return !(kind_of(s, a) & NARC_AT_REST && kind_of(s, b) & NARC_AT_REST);
+/* Does neither of two bodies move? */
+static bool do_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
+    enum { AT_REST = NARC_STATIC | NARC_ASLEEP };
+    const narc_broad_phase *const broad = s->contacts->broad;
+    return broad->has_filter && broad->kinds[a] & AT_REST && broad->kinds[b] & AT_REST;
 }
 
 static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t body) {
@@ -139,7 +137,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end && changed; k++)
         if (is_ground(s, v, k))
-            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, narc_is_tested(s, a, v->b[k]) ? what : NARC_REST};
+            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, do_rest(s, a, v->b[k]) ? NARC_REST : what};
 }
 
 /* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -225,8 +223,10 @@ static void mark_slots(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     uint8_t *const marks = c->marks;
     memset(marks, NARC_GONE, c->slot_count);
-    for (size_t k = 0; k < s->list->pairs.count; k++)
-        marks[c->order[k]] = s->list->marks[k];
+    for (size_t k = 0; k < s->list->pairs.count; k++) {
+        const uint32_t slot = c->order[k];
+        marks[slot] = (uint8_t)(s->list->marks[k] | (do_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
+    }
     for (size_t slot = 0; slot < c->slot_count; slot++)
         if (marks[slot] == NARC_GONE)
             c->a[slot] = c->b[slot] = 0;
@@ -240,13 +240,13 @@ NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, u
     if (marks & NARC_GONE || (s->has_ground && is_ground(s, v, slot)) || !changed)
         return NARC_NOTHING;
     s->contacts->marks[slot] = (uint8_t)(marks & ~(unsigned)NARC_FLIPPED); /* but once */
-    if (marks & NARC_AT_REST && !narc_is_tested(s, v->a[slot], v->b[slot]) && !(marks & NARC_FLIPPED))
+    if (marks & NARC_RESTS && !(marks & NARC_FLIPPED))
         return NARC_REST; /* one that is turned has the other bodies' row */
     return marks & NARC_SENSOR ? NARC_ASK_SENSOR : NARC_ASK;
 }
 
 /* What is done with few slots, or in few scenes. */
-NOINLINE void do_rest(const narc_contact_step *s, uint32_t slot, unsigned what) {
+NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) {
     narc_contacts *const c = s->contacts;
     if (s->step->ahead.base && (what == NARC_ASK || what == NARC_FOLLOW))
         c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
@@ -275,7 +275,7 @@ static inline unsigned find_flags(unsigned was, bool reshaped, unsigned marks, u
  * uses lies in variables of its own, as whatever is written in bytes might be any of it; what differs from slot to slot as
  * chance has it is without a branch. */
 void narc_sort_pairs(const narc_contact_step *s) {
-    enum { SPECIAL = NARC_AT_REST | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
+    enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
     narc_contacts *const c = s->contacts;
     const bool kept = is_list_kept(s), ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
     if (!kept || !c->marks_known)
@@ -298,7 +298,8 @@ void narc_sort_pairs(const narc_contact_step *s) {
             k = find_changed(&pairs, v.changed, k) - 1;
             continue;
         }
-        const unsigned stale = (was & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR);
+        const unsigned old = was & NARC_SLOT_STALE & ~(marks / NARC_RESTS); /* at rest it stays so */
+        const unsigned stale = old | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR);
         if (!(changed | stale))
             continue;
         unsigned what = NARC_ASK;
@@ -321,7 +322,7 @@ void narc_sort_pairs(const narc_contact_step *s) {
         known += entry;
         candidates += (what == NARC_FOLLOW) & touches;
         if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
-            do_rest(s, slot, what);
+            do_more(s, slot, what);
     }
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t slot = c->order[c->work[i].pair], what = c->work[i].what;
@@ -329,7 +330,7 @@ void narc_sort_pairs(const narc_contact_step *s) {
         flags[slot] = (uint8_t)find_flags(flags[slot], reshaped, 0, what);
         *candidates = slot;
         candidates += what == NARC_FOLLOW && state[slot] & NARC_TOUCHING;
-        do_rest(s, slot, what);
+        do_more(s, slot, what);
     }
     c->asked_count = (size_t)(asked - c->asked);
     c->known_count = (size_t)(known - c->known);

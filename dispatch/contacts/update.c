@@ -76,29 +76,25 @@ static void make_lists(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     narc_step_result *const r = &c->result;
     const uint32_t *const order = c->order;
-    const uint8_t *const state = c->state, *const all_marks = s->list->marks;
+    const uint8_t *const state = c->state, *const all_marks = c->marks;
     uint8_t *const flags = c->flags;
     uint32_t *const touching = c->touching;
     const size_t count = s->list->pairs.count;
     size_t touching_count = 0, sensor_count = 0;
     for (size_t k = 0; k < count; k++) {
         const uint32_t slot = order[k];
-        const unsigned marks = all_marks[k];
-        unsigned touches = state[slot] & NARC_TOUCHING;
+        const unsigned marks = all_marks[slot];
+        const unsigned touches = state[slot] & NARC_TOUCHING;
         if (flags[slot] & NARC_SLOT_CROSSED) {
             flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
             const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
                                             0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
             add_event(c, touches, event);
         }
-        if (touches && marks & NARC_SENSOR) {
+        if (touches && marks & NARC_SENSOR)
             c->sensors[sensor_count++] = slot;
-            touches = 0;
-        } else if (touches && marks & NARC_AT_REST) {
-            touches = narc_is_tested(s, c->a[slot], c->b[slot]);
-        }
         touching[touching_count] = slot; /* as chance has it: without a branch */
-        touching_count += touches;
+        touching_count += touches & !(marks & (NARC_SENSOR | NARC_RESTS));
     }
     r->touching_count = touching_count;
     r->sensor_count = sensor_count;
