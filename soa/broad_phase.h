@@ -68,16 +68,16 @@ typedef struct narc_motion_bits {
 } narc_motion_bits;
 
 /* What is another one than it was, or another body's: the pose; scale or shape, too. */
-enum { NARC_CHANGED = 1, NARC_RESHAPED = 2, NARC_ALL_CHANGED = 3 };
+enum { NARC_CHANGED = 1, NARC_RESHAPED = 2, NARC_ALL_CHANGED = 3, NARC_HAS_NEW = 4 /* a pair, in this step */ };
 
 /* The poses that boxes were computed from the last time, which serve again while all else is the same. */
 typedef struct narc_known_poses {
     narc_pose_bits *poses;
-    narc_motion_bits *motions; /* if there are columns of any */
-    size_t count;              /* of the first bodies */
-    uint8_t *moved;            /* 1: the box may be another one than the kept box was made from */
-    uint8_t *changed;          /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
-    narc_precision precision;  /* of positions */
+    narc_motion_bits *motions;   /* if there are columns of any */
+    size_t count;                /* of the first bodies */
+    uint8_t *moved;              /* 1: the box may be another one than the kept box was made from */
+    uint8_t *changed;            /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
+    narc_precision precision;    /* of positions */
     bool has_motions, has_boxes; /* has_boxes: boxes_now are theirs */
     const narc_shapes *shapes;
     uint64_t history;   /* of the shapes */

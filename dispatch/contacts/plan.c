@@ -218,15 +218,35 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
     narc_set_touching(c, slot, false);
 }
 
+static void mark_slot(const narc_contact_step *s, size_t k) {
+    const narc_contacts *const c = s->contacts;
+    const uint32_t slot = c->order[k];
+    c->marks[slot] = (uint8_t)(s->list->marks[k] | (do_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
+}
+
+/* The marks of a new list in which pairs that were there are as they were: those of other slots. Bodies of new pairs are
+ * marked, too. False: all marks may be others. */
+static bool mark_new_slots(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    const narc_pair_list *const list = s->list;
+    if (!c->marks_known || list->renumbered || c->broad->has_other_kinds || c->again || s->has_ground)
+        return false;
+    for (size_t i = 0; i < c->parted_count; i++)
+        c->marks[c->parted[i]] = NARC_GONE;
+    for (size_t i = 0; i < list->added_count; i++) {
+        mark_slot(s, list->added[i]);
+        c->broad->known.changed[list->pairs.a.base[list->added[i]]] |= NARC_HAS_NEW;
+    }
+    return true;
+}
+
 /* The marks of slots, in their order; those that are no pair have bodies that are there. */
 static void mark_slots(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     uint8_t *const marks = c->marks;
     memset(marks, NARC_GONE, c->slot_count);
-    for (size_t k = 0; k < s->list->pairs.count; k++) {
-        const uint32_t slot = c->order[k];
-        marks[slot] = (uint8_t)(s->list->marks[k] | (do_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
-    }
+    for (size_t k = 0; k < s->list->pairs.count; k++)
+        mark_slot(s, k);
     for (size_t slot = 0; slot < c->slot_count; slot++)
         if (marks[slot] == NARC_GONE)
             c->a[slot] = c->b[slot] = 0;
@@ -277,8 +297,10 @@ static inline unsigned find_flags(unsigned was, bool reshaped, unsigned marks, u
 void narc_sort_pairs(const narc_contact_step *s) {
     enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
     narc_contacts *const c = s->contacts;
-    const bool kept = is_list_kept(s), ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
-    if (!kept || !c->marks_known)
+    const bool ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
+    const bool kept = (is_list_kept(s) && c->marks_known) || (!s->list->kept && mark_new_slots(s));
+    c->lists_known = kept;
+    if (!kept)
         mark_slots(s);
     pair_view v = view_pairs(s);
     v.a = c->a;
@@ -293,8 +315,9 @@ void narc_sort_pairs(const narc_contact_step *s) {
     c->sensor_count = 0;
     for (size_t k = 0; k < count; k++) {
         const uint32_t a = v.a[k], b = v.b[k], slot = (uint32_t)k;
-        const unsigned changed = v.changed[a] | v.changed[b], was = flags[k], marks = v.marks[k];
-        if (kept && !changed) {
+        const unsigned found = v.changed[a] | v.changed[b], changed = found & NARC_ALL_CHANGED;
+        const unsigned was = flags[k], marks = v.marks[k];
+        if (kept && !found) {
             k = find_changed(&pairs, v.changed, k) - 1;
             continue;
         }

@@ -180,7 +180,7 @@ static narc_status carry_out(const narc_contact_step *s) {
     r->began_count = r->ended_count = 0;
     if (!s->list->kept)
         list_parted(s);
-    if (c->crossed_count > 0 || c->broad->marked)
+    if (c->crossed_count > 0 || r->ended_count > 0 || !c->lists_known)
         make_lists(s);
     gather_events(c);
     narc_show_arrays(c);
