@@ -65,6 +65,7 @@ static narc_body_filter filter_of(const update *u, size_t body) {
 typedef struct changes {
     const update *update;
     bool use_kinds, use_sets;
+    bool marks; /* broad->fresh is wanted, as a new list will be made */
     atomic_uint found;
     atomic_size_t fresh_count;
 } changes;
@@ -108,7 +109,8 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     bool left = false, rest = false;
     size_t fresh_count = 0, k = first;
     (void)part;
-    memset(broad->fresh + first, 0, end - first);
+    if (all->marks)
+        memset(broad->fresh + first, 0, end - first);
     for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
         const narc_box *const box = &u->broad->boxes_now[k], *const kept = &broad->kept_boxes[k];
         const bool moved = broad->known.moved[k];
@@ -126,10 +128,12 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
             continue;
         const bool has = narc_is_box(box);
         out |= moved && (has ? !is_inside(box, kept) : has_kept_box(broad, k));
+        left |= out;
+        if (!all->marks)
+            continue;
         const bool fresh = out || (moved && has && !is_near(box, kept, half));
         broad->fresh[k] = fresh;
         fresh_count += fresh;
-        left |= out;
     }
     atomic_fetch_add_explicit(&all->fresh_count, fresh_count, memory_order_relaxed);
     if (left || rest)
@@ -146,10 +150,13 @@ static bool are_other_pairs(const update *u) {
 
 static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
     const bool filter = u->step->filter, had_filter = u->broad->has_filter;
-    changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), 0, 0};
+    changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), false, 0, 0};
     if (!u->broad->is_current || (filter && !had_filter) || are_other_pairs(u))
         return WHOLE;
     narc_run_ranges(u->step->workers, u->count, BODY_PART, look_at_some, &all);
+    all.marks = atomic_load_explicit(&all.found, memory_order_relaxed) & LEFT;
+    if (all.marks) /* mostly none has left */
+        narc_run_ranges(u->step->workers, u->count, BODY_PART, look_at_some, &all);
     *out_fresh_count = atomic_load_explicit(&all.fresh_count, memory_order_relaxed);
     return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
