@@ -308,10 +308,10 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         memset(broad->fresh, 1, u->count);
         skipped = 0;
     }
+    broad->has_other_kinds = whole || found & REST || (broad->has_filter && !u->step->filter);
     broad->has_filter = u->step->filter;
     broad->has_sets = has_sets(u);
     broad->is_given = u->step->pairs;
-    broad->has_other_kinds = whole || found & REST;
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
         broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {

@@ -384,4 +384,20 @@ TEST(own_pairs_are_checked) {
     destroy_few(few);
 }
 
+/* Where there is no filter any more nothing is a sensor, or sleeps. */
+TEST(kinds_go_with_the_filter) {
+    for (int way = 0; way < 2; way++) {
+        struct few *const few = make_few(circle_of(0.5), 600, NULL);
+        few->kind[0] = NARC_SENSOR;
+        few->kind[2] = few->kind[3] = way ? NARC_ASLEEP : 0;
+        assert_int_equal(step_few(few)->sensor_count, 1);
+        few->step.filter = NULL;
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->sensor_count, 0);
+        assert_int_equal(r->touching_count, 300);
+        assert_int_equal(r->manifolds[r->order[0]].count, 1);
+        destroy_few(few);
+    }
+}
+
 TEST_MAIN("contact cases")
