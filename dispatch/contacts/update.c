@@ -274,7 +274,7 @@ void narc_forget_contacts(narc_contacts *c) {
     narc_forget_pairs(c->broad);
     narc_forget_poses(c->broad);
     c->partners_listed = false;
-    c->slot_count = c->free_count = c->parted_count = c->crossed_count = c->more.count = 0;
+    c->slot_count = c->free_count = c->parted_count = c->crossed_count = c->event_count = c->more.count = 0;
     c->result.count = c->result.touching_count = c->result.sensor_count = c->result.began_count =
         c->result.ended_count = 0;
     c->result.more_count = 0;

@@ -400,4 +400,28 @@ TEST(kinds_go_with_the_filter) {
     }
 }
 
+/* Bytes of contacts, to be freed. */
+static char *save_few(const struct few *few, size_t *out_size) {
+    narc_error error;
+    *out_size = narc_count_contact_bytes(few->contacts);
+    char *const bytes = malloc(*out_size);
+    assert_non_null(bytes);
+    expect_ok(narc_save_contacts(few->contacts, bytes, *out_size, &error), &error);
+    return bytes;
+}
+
+/* What was saved is loaded, of contacts that were forgotten, too. */
+TEST(forgotten_contacts_are_saved) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    size_t size;
+    narc_error error;
+    assert_int_equal(step_few(few)->began_count, 3);
+    narc_forget_contacts(few->contacts);
+    char *const bytes = save_few(few, &size);
+    expect_ok(narc_load_contacts(few->contacts, few->store, bytes, size, NULL, &error), &error);
+    assert_int_equal(step_few(few)->began_count, 3);
+    free(bytes);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
