@@ -30,10 +30,11 @@ typedef struct start {
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
     uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, is_list_marked, has_motions,
-        has_boxes, unused[6];
+        has_boxes, unused[10];
 } start;
 
-_Static_assert(sizeof(start) % 8 == 0 && sizeof(narc_asked) == 24, "no padding, and arrays begin at a multiple of 8");
+_Static_assert(sizeof(start) % 8 == 0 && sizeof(start) == offsetof(start, unused) + 10 && sizeof(narc_asked) == 24,
+               "no padding, and arrays begin at a multiple of 8");
 
 /* Bytes of contacts: those of `contacts`, a copy that knows all counts. */
 typedef struct saved {

@@ -153,6 +153,9 @@ static uint32_t open_slot(narc_contacts *c) {
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
     narc_zero_row(c, slot);
+    memset(&c->entries[slot], 0, sizeof *c->entries); /* it is saved, of use or not */
+    if (!c->contact_rows)
+        memset(&c->ends[slot], 0, sizeof *c->ends);
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;
     c->state[slot] = 0;

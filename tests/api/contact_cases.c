@@ -424,4 +424,31 @@ TEST(forgotten_contacts_are_saved) {
     destroy_few(few);
 }
 
+/* Back to where there were fewer slots, and on again: the same bytes, whatever lay in those that came meanwhile. */
+TEST(saved_bytes_are_those_of_the_same_steps) {
+    struct few *const few = make_few(circle_of(0.5), 40, NULL);
+    size_t size, first_size, second_size;
+    narc_error error;
+    few->bodies.count = 20;
+    step_few(few);
+    char *const start = save_few(few, &size);
+    few->bodies.count = 40;
+    step_few(few);
+    char *const first = save_few(few, &first_size);
+    for (size_t step = 0; step < 3; step++) { /* pairs that are asked again have entries */
+        for (size_t k = 0; k < 40; k++)
+            few->body[k].x += step < 2 ? 0x1p-10 : -0x1p-9;
+        step_few(few);
+    }
+    expect_ok(narc_load_contacts(few->contacts, few->store, start, size, NULL, &error), &error);
+    step_few(few);
+    char *const second = save_few(few, &second_size);
+    assert_int_equal(first_size, second_size);
+    assert_memory_equal(first, second, first_size);
+    free(start);
+    free(first);
+    free(second);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
