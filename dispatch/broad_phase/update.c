@@ -113,7 +113,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
         memset(broad->fresh + first, 0, end - first);
     for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
         const narc_box *const box = &u->broad->boxes_now[k], *const kept = &broad->kept_boxes[k];
-        const bool moved = broad->known.moved[k];
+        const bool moved = broad->known.moved[k] && !broad->is_given; /* pairs that are given have no boxes */
         bool out = false;
         if (all->use_kinds) {
             const unsigned other = kind_at(filter.kind, k) ^ broad->kinds[k];
@@ -182,8 +182,9 @@ static unsigned look_at_listed(const update *u) {
     for (size_t i = 0; i < u->step->moved_count; i++) {
         const size_t k = narc_index_at(u->step->moved, i);
         const narc_box *const box = &u->broad->boxes_now[k];
-        const bool left = narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k);
-        if ((last->has_ids && id_of(u, k) != last->ids[k]) || (left && !broad->is_given))
+        if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
+            (!broad->is_given &&
+             (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k))))
             return WHOLE;
         if (!broad->has_filter)
             continue;

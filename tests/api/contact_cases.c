@@ -451,4 +451,24 @@ TEST(saved_bytes_are_those_of_the_same_steps) {
     destroy_few(few);
 }
 
+/* Pairs that are the same are not looked at, whoever moves. */
+TEST(same_pairs_are_not_looked_at) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    uint32_t a[] = {0, 2, 4}, b[] = {1, 3, 5};
+    const narc_pairs pairs = {.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    few->step.pairs = &pairs;
+    step_few(few);
+    few->step.same_pairs = 1;
+    memset(a, 0, sizeof a);
+    memset(b, 0, sizeof b);
+    for (size_t step = 0; step < 3; step++) {
+        few->body[3].x += 0.05;
+        few->step.margin += 0.01f;
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->count, 3);
+        assert_int_equal(r->touching_count, 3);
+    }
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
