@@ -438,6 +438,8 @@ static narc_status finish(const update *u, bool listed, const narc_pair_list **o
         return NARC_OK;
     }
     const bool same = are_same(u);
+    if (same && !u->step->id.base)
+        broad->lists[broad->last].has_ids = false; /* all are numbers, as after narc_forget_ids() */
     size_t fresh_count = 0;
     const unsigned found = same ? look_at_all(u, &fresh_count) : WHOLE;
     if (found & (LEFT | WHOLE)) {

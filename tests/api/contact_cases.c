@@ -471,4 +471,21 @@ TEST(same_pairs_are_not_looked_at) {
     destroy_few(few);
 }
 
+/* To take bodies out does not make all others be looked at from then on. */
+TEST(bodies_are_listed_after_some_were_taken_out) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    const uint64_t gone = 1;
+    const uint32_t none = 0;
+    narc_error error;
+    few->step.id.base = NULL;
+    step_few(few);
+    expect_ok(narc_forget_bodies(few->contacts, &gone, 1, &error), &error);
+    step_few(few);
+    step_few(few);
+    few->step.moved = (narc_index_column){&none, sizeof none};
+    few->body[3].x += 0.05; /* but it is not listed */
+    assert_int_equal(step_few(few)->asked_count, 0);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
