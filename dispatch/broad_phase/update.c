@@ -183,8 +183,7 @@ static unsigned look_at_listed(const update *u) {
         const size_t k = narc_index_at(u->step->moved, i);
         const narc_box *const box = &u->broad->boxes_now[k];
         if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
-            (!broad->is_given &&
-             (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k))))
+            (!broad->is_given && (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k))))
             return WHOLE;
         if (!broad->has_filter)
             continue;

@@ -117,6 +117,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     narc_contacts *const c = s->contacts;
     const uint32_t a = v->a[first];
     bool changed = false, stale = false, apart = true, touches = false, follows = s->step->recycling > 0;
+    bool ground_moves = false, some_bare = false; /* rows tell of other ground only while none of it moves */
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
@@ -131,10 +132,14 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
         stale |= old;
         changed |= old || moved;
         apart = apart && are_apart(v, a, b);
-        touches |= slot != UINT32_MAX && c->state[slot] & NARC_TOUCHING;
+        const bool bare = slot == UINT32_MAX || !(c->state[slot] & NARC_TOUCHING);
+        touches |= !bare;
+        some_bare |= bare;
+        ground_moves |= v->changed[b] != 0;
         follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
     }
-    const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
+    follows = follows && touches && !stale && !(ground_moves && some_bare);
+    const unsigned what = apart ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end && changed; k++)
         if (is_ground(s, v, k))
             c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, do_rest(s, a, v->b[k]) ? NARC_REST : what};

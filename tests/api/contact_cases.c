@@ -488,4 +488,27 @@ TEST(bodies_are_listed_after_some_were_taken_out) {
     destroy_few(few);
 }
 
+/* A box rides on a piece of ground to another one, and meets it. */
+TEST(ground_that_carries_is_not_all) {
+    struct few *const few = make_few(box_of(0.2, 0.2, 0), 2, NULL);
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    static uint32_t run[600];
+    assert_int_equal(lay_entries(few, line, 2, 0, run), 1);
+    few->bodies.count = 3;
+    few->id[2] = 3;
+    few->kind[1] = 0;
+    few->kind[2] = NARC_STATIC;
+    run[2] = run[1] + 1;
+    few->step.run = NARC_ARRAY(run);
+    few->step.recycling = 0.01f;
+    few->body[0] = (narc_body){few->body[1].x, few->body[1].y + 0.1, 1, 0, 1, 0};
+    few->body[2] = (narc_body){few->body[0].x + 0.205, few->body[0].y, 0, 1, 1, few->body[1].shape};
+    for (size_t step = 0; step < 20; step++) {
+        assert_int_equal(step_few(few)->touching_count, 1 + (step > 8));
+        few->body[0].x += 0.01;
+        few->body[1].x += 0.01;
+    }
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
