@@ -325,6 +325,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
     const narc_contacts *const c = &s->contacts;
     const narc_kept_list *const l = &s->broad.lists[s->broad.last];
     const size_t slots = c->slot_count;
+    const unsigned kinds = s->broad.is_current && !s->broad.has_filter ? 0 : NARC_KINDS;
     const char *const rows = c->rows_in_user ? bytes_of(s, &c->user) + c->row_offset : bytes_of(s, &c->own_rows);
     if (!uses_each_once(s, bytes_of(s, &c->order), c->result.count, used) ||
         !uses_each_once(s, bytes_of(s, &c->free), c->free_count, used) ||
@@ -338,7 +339,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         return "rows";
     if (!are_bits(bytes_of(s, &c->state), slots, 31) ||
         !are_bits(bytes_of(s, &c->flags), slots, 127 & ~NARC_SLOT_CROSSED) ||
-        !are_bits(bytes_of(s, &l->marks), c->result.count, NARC_KINDS | NARC_FLIPPED))
+        !are_bits(bytes_of(s, &l->marks), c->result.count, kinds | NARC_FLIPPED))
         return "flags";
     if (!are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
         !are_below(bytes_of(s, &c->sensors), c->result.sensor_count, slots) ||
@@ -352,8 +353,8 @@ static bool are_counts_fine(const start *at) {
     const uint64_t most = UINT32_MAX - 1;
     return at->slots <= most && at->pairs <= most && at->bodies <= most && at->more <= most &&
            at->free + at->parted + at->pairs == at->slots && at->touching <= at->pairs && at->sensors <= at->pairs &&
-           at->began <= at->pairs && at->ended <= 2 * most && at->known == (at->is_current ? at->bodies : 0) &&
-           at->precision <= NARC_FLOAT64;
+           at->began <= at->slots && at->ended <= at->slots - at->began &&
+           at->known == (at->is_current ? at->bodies : 0) && at->precision <= NARC_FLOAT64;
 }
 
 static bool are_flags_fine(const start *at) {

@@ -511,4 +511,44 @@ TEST(ground_that_carries_is_not_all) {
     destroy_few(few);
 }
 
+/* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. */
+TEST(damaged_bytes_do_no_harm) {
+    for (int way = 0; way < 3; way++) {
+        struct few *const few = make_few(circle_of(0.5), 6, NULL);
+        const narc_pair_filter *const filter = few->step.filter;
+        size_t size, loads = 0;
+        few->step.filter = way ? filter : NULL;
+        few->kind[3] = way > 1 ? NARC_SENSOR : 0;
+        step_few(few);
+        char *const bytes = save_few(few, &size);
+        narc_destroy_contacts(few->contacts);
+        for (size_t bit = 0; bit < 8 * size; bit++) {
+            const uint32_t *slots;
+            const narc_step_result *r;
+            size_t count;
+            narc_error error;
+            allowed = SIZE_MAX;
+            few->contacts = make_contacts(NARC_MANIFOLD_ROWS, &watched);
+            bytes[bit / 8] ^= (char)(1 << bit % 8);
+            sum_up_contacts(bytes, size);
+            if (narc_load_contacts(few->contacts, few->store, bytes, size, NULL, &error) == NARC_OK) {
+                loads++;
+                few->step.filter = bit % 16 < 8 ? NULL : filter;
+                for (int step = 0; step < 2; step++) {
+                    few->body[bit % 6].x += step ? -0.01 : 0.01;
+                    narc_update_contacts(few->contacts, few->store, &few->step, &r, &error);
+                    for (uint32_t body = 0; body < 6; body++)
+                        narc_find_body_slots(few->contacts, body, &slots, &count, &error);
+                }
+            }
+            bytes[bit / 8] ^= (char)(1 << bit % 8);
+            narc_destroy_contacts(few->contacts);
+        }
+        assert_true(loads > size);
+        few->contacts = NULL;
+        free(bytes);
+        destroy_few(few);
+    }
+}
+
 TEST_MAIN("contact cases")
