@@ -28,8 +28,7 @@
 #include "sat/stages.inl"
 #include "simd/simd.h"
 
-INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live, enum probing how) {
-    (void)how;
+INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live) {
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
     const vf limit = v_add(margin, find_lookup_slack(queue, k));
@@ -58,7 +57,8 @@ INLINE void settle(const struct call *call, struct queue *queues, const struct q
     push(&queues[ANSWER], which, item, ROW_FIELDS);
 }
 
-static const struct search rows = {.fields = ROW_FIELDS, .rows = true, .judge = judge, .settle = settle};
+static const struct search rows = {
+    .fields = ROW_FIELDS, .rows = true, .judge_axis = judge, .judge = judge, .settle = settle};
 
 static void probe_rows(const struct call *call, struct queue *queues, int begin) {
     probe_axis(&rows, call, queues, begin);
