@@ -80,6 +80,8 @@ static inline uint32_t slot_of(const pair_view *v, size_t k) {
  * off? Its error bound is 2^-19 of the distance of the positions and both extents (narc.h); the distance is the gap between
  * the boxes, the margin and both extents at most. */
 static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
+    if (!(v->margin_room < INFINITY)) /* there may be no boxes */
+        return false;
     const narc_box *const p = &v->boxes[a], *const q = &v->boxes[b];
     const float left = p->min_x - q->max_x, right = q->min_x - p->max_x;
     const float below = p->min_y - q->max_y, above = q->min_y - p->max_y;

@@ -29,11 +29,11 @@ typedef struct start {
     narc_asked last;
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
-    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, is_list_marked, has_motions,
-        has_boxes, unused[10];
+    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, has_motions, has_boxes,
+        unused[11];
 } start;
 
-_Static_assert(sizeof(start) % 8 == 0 && sizeof(start) == offsetof(start, unused) + 10 && sizeof(narc_asked) == 24,
+_Static_assert(sizeof(start) % 8 == 0 && sizeof(start) == offsetof(start, unused) + 11 && sizeof(narc_asked) == 24,
                "no padding, and arrays begin at a multiple of 8");
 
 /* Bytes of contacts: those of `contacts`, a copy that knows all counts. */
@@ -138,7 +138,6 @@ static start describe(const saved *s) {
                 .has_filter = b->has_filter,
                 .has_sets = b->has_sets,
                 .is_marked = c->marked,
-                .is_list_marked = b->marked,
                 .has_motions = b->known.has_motions,
                 .has_boxes = b->known.has_boxes};
     memcpy(at.magic, magic, sizeof magic);
@@ -179,7 +178,6 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     b->has_filter = at->has_filter;
     b->has_sets = at->has_sets;
     c->marked = at->is_marked;
-    b->marked = at->is_list_marked;
     b->known.has_motions = at->has_motions;
     b->known.has_boxes = at->has_boxes;
     b->is_sorted = false;

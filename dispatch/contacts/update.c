@@ -157,7 +157,7 @@ static narc_status prepare(narc_contact_step *s) {
                                        : status;
 }
 
-/* What follows from the plan: nothing here fails. */
+/* What follows from the plan: nothing here fails, if bodies that are not listed have shapes. */
 static narc_status carry_out(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     narc_step_result *const r = &c->result;
@@ -205,8 +205,10 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
         return status;
     }
     status = carry_out(&s);
-    if (status != NARC_OK)
+    if (status != NARC_OK) { /* a body that was not listed has no shape: rows, and slots, are others already */
+        narc_forget_contacts(contacts);
         return status;
+    }
     if (step->bodies->count > 0)
         memset(contacts->broad->known.changed, 0, step->bodies->count);
     contacts->last = asked;

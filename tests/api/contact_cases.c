@@ -551,4 +551,23 @@ TEST(damaged_bytes_do_no_harm) {
     }
 }
 
+/* A body that is not listed has no shape, which is found out when pairs have their slots: the next step begins anew. */
+TEST(unlisted_bodies_without_a_shape_are_an_error) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    const uint32_t moved = 0;
+    narc_error error;
+    const narc_step_result *r = step_few(few);
+    few->body[0].x = 10.3;
+    few->body[3].shape = 99;
+    few->step.moved = (narc_index_column){&moved, sizeof moved};
+    few->step.moved_count = 1;
+    assert_int_equal(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_INDEX);
+    few->body[3].shape = 0;
+    few->step.moved = (narc_index_column){NULL, 0};
+    few->step.moved_count = 0;
+    few->body[1].x = 10.5;
+    check_with_fresh(few);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")
