@@ -235,11 +235,9 @@ static narc_status fail_memory(const update *u, size_t count, const char *what) 
 }
 
 /* Ids as pairs of their halves. */
-static narc_pairs view_ids(const narc_kept_list *list) {
-    const uint32_t *const halves = (const void *)list->ids; /* NULL: there was no body yet */
-    return (narc_pairs){.count = list->body_count,
-                        .a = {halves, sizeof *list->ids},
-                        .b = {halves ? halves + 1 : NULL, sizeof *list->ids}};
+static narc_pairs view_ids(const uint64_t *ids, size_t count) {
+    const uint32_t *const halves = (const void *)ids; /* NULL: there was no body yet */
+    return (narc_pairs){.count = count, .a = {halves, sizeof *ids}, .b = {halves ? halves + 1 : NULL, sizeof *ids}};
 }
 
 /* The ids of a list whose bodies had none: their numbers. */
@@ -274,7 +272,7 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
     if (same)
         return NARC_OK;
     narc_status status = number_bodies(u, last);
-    const narc_pairs before = view_ids(last), now = view_ids(made);
+    const narc_pairs before = view_ids(last->ids, last->body_count), now = view_ids(made->ids, u->count);
     if (status == NARC_OK)
         status = narc_match_pairs(broad, &before, &now, u->step->workers, broad->last_index) == NARC_OK
                      ? NARC_OK
@@ -498,12 +496,17 @@ void narc_take_back_pairs(narc_broad_phase *broad, bool made) {
 narc_status narc_forget_ids(narc_broad_phase *broad, const uint64_t *ids, size_t count, narc_error *error) {
     const update u = {.broad = broad, .error = error};
     narc_kept_list *const last = &broad->lists[broad->last];
+    const narc_pairs given = view_ids(ids, count);
     narc_status status = number_bodies(&u, last);
-    for (size_t k = 0; k < count && status == NARC_OK; k++)
-        for (size_t body = 0; body < last->body_count; body++)
-            if (last->ids[body] == ids[k])
-                last->gone[body] = last->has_gone = true;
-    return status;
+    if (status != NARC_OK || last->body_count == 0)
+        return status;
+    const narc_pairs known = view_ids(last->ids, last->body_count);
+    if (narc_match_pairs(broad, &given, &known, NULL, broad->last_index) != NARC_OK)
+        return fail_memory(&u, count, "ids");
+    for (size_t body = 0; body < last->body_count; body++)
+        if (broad->last_index[body] != NARC_NO_MATCH)
+            last->gone[body] = last->has_gone = true;
+    return NARC_OK;
 }
 
 void narc_forget_pairs(narc_broad_phase *broad) {

@@ -19,8 +19,11 @@ static bool do_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
     return broad->has_filter && broad->kinds[a] & AT_REST && broad->kinds[b] & AT_REST;
 }
 
+/* Bodies that are not listed as moved may have any number as their shape: it is no shape, until its pairs are asked. */
 static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t body) {
-    return &s->shapes->headers[narc_index_at(s->step->bodies->shape, body)];
+    static const narc_shape_header none;
+    const uint32_t shape = narc_index_at(s->step->bodies->shape, body);
+    return shape < s->shapes->count ? &s->shapes->headers[shape] : &none;
 }
 
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b) {

@@ -158,7 +158,6 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     r->sensor_count = (size_t)at->sensors;
     r->began_count = (size_t)at->began;
     r->ended_count = (size_t)at->ended;
-    c->event_count = r->began_count + r->ended_count;
     r->more_count = c->more.count = (size_t)at->more;
     l->body_count = (size_t)at->bodies;
     b->known.count = (size_t)at->known;
@@ -341,7 +340,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         return "flags";
     if (!are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
         !are_below(bytes_of(s, &c->sensors), c->result.sensor_count, slots) ||
-        !are_events_fine(s, bytes_of(s, &c->events), c->event_count))
+        !are_events_fine(s, bytes_of(s, &c->events), c->result.began_count + c->result.ended_count))
         return "lists";
     return NULL;
 }

@@ -54,6 +54,7 @@ static narc_status grow(const narc_contacts *c, const narc_array *arrays, size_t
 size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
     narc_step_result *const r = &c->result;
     size_t *const none = NULL;
+    c->event_count = r->began_count + r->ended_count;
     const size_t row_size = c->rows_in_user ? 0 : c->row_size;
 #define ARRAY(growth, pointer, size, count)                                                                            \
     { growth, (void **)(void *)&(pointer), size, count }

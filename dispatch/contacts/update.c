@@ -58,7 +58,6 @@ static void gather_events(narc_contacts *c) {
         }
         memmove(c->events + r->began_count, ended, r->ended_count * sizeof *ended);
     }
-    c->event_count = r->began_count + r->ended_count;
 }
 
 static void list_parted(const narc_contact_step *s) {
@@ -276,7 +275,7 @@ void narc_forget_contacts(narc_contacts *c) {
     narc_forget_pairs(c->broad);
     narc_forget_poses(c->broad);
     c->partners_listed = false;
-    c->slot_count = c->free_count = c->parted_count = c->crossed_count = c->event_count = c->more.count = 0;
+    c->slot_count = c->free_count = c->parted_count = c->crossed_count = c->more.count = 0;
     c->result.count = c->result.touching_count = c->result.sensor_count = c->result.began_count =
         c->result.ended_count = 0;
     c->result.more_count = 0;
@@ -285,5 +284,6 @@ void narc_forget_contacts(narc_contacts *c) {
 narc_status narc_forget_bodies(narc_contacts *c, const uint64_t *ids, size_t count, narc_error *error) {
     if (!c || (count > 0 && !ids))
         return narc_fail_missing(error, c ? "ids" : "contacts");
-    return narc_forget_ids(c->broad, ids, count, error);
+    const narc_status status = narc_check_count(count, UINT32_MAX - 1, "ids", error);
+    return status == NARC_OK ? narc_forget_ids(c->broad, ids, count, error) : status;
 }
