@@ -108,6 +108,12 @@ static narc_asked describe_asking(const narc_step *step) {
                         step->front_only, step->ahead.base != NULL, step->run.base != NULL, {0}};
 }
 
+static bool are_asked_alike(const narc_asked *one, const narc_asked *other) {
+    return one->margin == other->margin && one->second_margin == other->second_margin &&
+           one->flat_angle == other->flat_angle && one->recycling == other->recycling &&
+           one->front_only == other->front_only && one->has_ahead == other->has_ahead && one->has_run == other->has_run;
+}
+
 /* Checks what nothing else does before something is changed. */
 static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes, const narc_step *step,
                               const narc_step_result **out_result, narc_error *error) {
@@ -195,7 +201,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
         return status;
     narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0 || step->run.base};
     const narc_asked asked = describe_asking(step);
-    contacts->again = memcmp(&asked, &contacts->last, sizeof asked) != 0;
+    contacts->again = !are_asked_alike(&asked, &contacts->last);
     contacts->partners_listed = false;
     status = prepare(&s);
     if (status != NARC_OK) {
