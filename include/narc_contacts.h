@@ -67,9 +67,9 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *   margin, second_margin, flat_angle, front_only   as in narc_query, the margin at least 0 and finite
  *   pairs               the pairs that there are, if a broad phase of the caller's finds them: of bodies, in any order, each
  *                       once, without shifts; those that the filter does not let are left out. No boxes are computed then,
- *                       and nothing depends on skin, motion, reach. NULL: all pairs of bodies
- *                       that are closer than the margin, and perhaps others, none further apart than margin + 3 * skin and
- *                       the motion when their boxes were made
+ *                       and nothing depends on skin, motion, reach. NULL: all pairs of bodies that are closer than the
+ *                       margin, and perhaps others, none further apart than margin + 3 * skin and the motion when their
+ *                       boxes were made
  *   same_pairs          not 0: these are the pairs of the last step that did not fail, and are not looked at. (Bodies that
  *                       have other numbers make others of them)
  *   skin                at least 0: bodies may move by this until pairs are looked for again. A larger one makes that
@@ -92,8 +92,8 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *   filter              which bodies may form a pair; which are static, asleep, sensors
  *   moved               the numbers of all bodies that may have another pose, scale, shape, filter, id, run, motion, reach
  *                       or ahead than in the last step that did not fail, each once, `moved_count` of them; others are
- *                       not looked at. Left out
- *                       ({0}, base and stride): all may. An empty list is one, as NARC_ARRAY() makes it
+ *                       not looked at. Left out ({0}, base and stride): all may. An empty list is one, as NARC_ARRAY()
+ *                       makes it
  *   workers             threads to use; NULL: the calling one
  * Columns have one item for each body. */
 typedef struct narc_step {
