@@ -63,6 +63,38 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
     }
 }
 
+/* Two bodies asked directly have the dense row of a batch, whatever is asked. */
+static void check_two(const narc_shapes *store, const narc_body two[2]) {
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const float reach = fmaxf(two[0].scale, two[1].scale);
+    const narc_query asked[] = {{.margin = INFINITY},
+                                {.margin = 0},
+                                {.margin = 0.1f * reach, .second_margin = 0.4f * reach, .flat_angle = 0.1f},
+                                {.margin = -0.1f * reach, .flat_angle = -1}};
+    for (size_t q = 0; q < sizeof asked / sizeof *asked; q++) {
+        narc_query query = asked[q], dense = asked[q];
+        narc_contact contact, right;
+        narc_manifold manifold, right_manifold;
+        size_t found, skipped = 9, skipped_manifold = 9, right_skipped = 9;
+        narc_error error;
+        dense.dense = 1;
+        dense.out_skipped = &right_skipped;
+        query.out_skipped = &skipped;
+        expect_ok(narc_find_contacts(store, &bodies, &(narc_pairs){.count = 1}, &dense, &right, 1, &found, &error),
+                  &error);
+        expect_ok(narc_find_contact(store, &two[0], &two[1], &query, &contact, &error), &error);
+        assert_memory_equal(&contact, &right, sizeof contact);
+        assert_true(skipped == right_skipped && contact.count == found);
+        query.out_skipped = &skipped_manifold;
+        expect_ok(
+            narc_find_manifolds(store, &bodies, &(narc_pairs){.count = 1}, &dense, &right_manifold, 1, &found, &error),
+            &error);
+        expect_ok(narc_find_manifold(store, &two[0], &two[1], &query, &manifold, &error), &error);
+        assert_memory_equal(&manifold, &right_manifold, sizeof manifold);
+        assert_true(skipped_manifold == right_skipped);
+    }
+}
+
 /* Every pair by itself, with bodies of its own, has the row of its pair in a batch. */
 static void check_each(const struct scene *scene, const narc_body *rows) {
     struct contacts batch = scene_contacts(scene, INFINITY);
@@ -85,6 +117,7 @@ static void check_each(const struct scene *scene, const narc_body *rows) {
         contact.pair = manifold.pair = (uint32_t)k;
         assert_memory_equal(&contact, &batch.rows[k], sizeof contact);
         assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
+        check_two(scene->store, &rows[2 * k]);
     }
     free(batch.rows);
     free(points.rows);
@@ -293,6 +326,81 @@ TEST(boxes) {
     assert_memory_equal(&c, &no_contact, sizeof c);
     assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, &query, &m, 1, &found, NULL), NARC_OK);
     assert_memory_equal(&m, &no_manifold, sizeof m);
+    check_two(shapes, two);
+    narc_destroy_shapes(shapes);
+}
+
+/* What is broken has no answer; a wrong call has its error, and nothing is written. */
+TEST(two_bodies_that_are_wrong) {
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t arc_count, skipped = 9;
+    narc_error error;
+    expect_ok(narc_create_shapes(NULL, &shapes), &error);
+    expect_ok(narc_build_box(2, 2, 0, arcs, &arc_count, NULL), &error);
+    expect_ok(narc_add_shape(shapes, arcs, arc_count, NULL, NULL), &error);
+    const narc_body fine = {.cosine = 1, .scale = 1};
+    const narc_body broken[] = {{.x = NAN, .cosine = 1, .scale = 1},
+                                {.y = INFINITY, .cosine = 1, .scale = 1},
+                                {.cosine = 1.1f, .scale = 1},
+                                {.cosine = 1, .scale = NAN},
+                                {.cosine = 1, .sine = NAN, .scale = 1},
+                                {.cosine = 1, .scale = -1},
+                                {.cosine = 1, .scale = 1e30f, .shape = 0},
+                                {.cosine = 1, .scale = 0},
+                                {.x = 1e300, .cosine = 1, .scale = 1e-30f}};
+    for (size_t k = 0; k < sizeof broken / sizeof *broken; k++) {
+        const narc_body two[] = {fine, broken[k]}, turned[] = {broken[k], fine};
+        narc_contact contact = {.pair = 7, .count = 3};
+        check_two(shapes, two);
+        check_two(shapes, turned);
+        expect_ok(
+            narc_find_contact(shapes, &fine, &broken[k], &(narc_query){.out_skipped = &skipped}, &contact, &error),
+            &error);
+        assert_true(skipped == 1 && contact.pair == 0 && contact.count == 0);
+    }
+    const narc_body nowhere = {.cosine = 1, .scale = 1, .shape = 1};
+    static int something;
+    const struct {
+        const narc_shapes *shapes;
+        const narc_body *a, *b;
+        narc_query query;
+        bool to_nothing;
+        narc_status status;
+        const char *text;
+    } cases[] = {
+        {NULL, &fine, &fine, {0}, false, NARC_ERROR_ARGUMENT, "shapes is NULL"},
+        {shapes, NULL, &fine, {0}, false, NARC_ERROR_ARGUMENT, "a is NULL"},
+        {shapes, &fine, NULL, {0}, false, NARC_ERROR_ARGUMENT, "b is NULL"},
+        {shapes, &fine, &fine, {0}, true, NARC_ERROR_ARGUMENT, "out_row is NULL"},
+        {shapes, &fine, &nowhere, {0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {shapes, &nowhere, &fine, {0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {shapes, &fine, &fine, {.margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.margin"},
+        {shapes, &fine, &fine, {.second_margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.second_margin"},
+        {shapes, &fine, &fine, {.flat_angle = NAN}, false, NARC_ERROR_NOT_FINITE, "query.flat_angle"},
+        {shapes, &fine, &fine, {.flat_angle = 2}, false, NARC_ERROR_ARGUMENT, "query.flat_angle"},
+        {shapes, &fine, &fine, {.reserved = {NULL, &something}}, false, NARC_ERROR_ARGUMENT, "query.reserved[1]"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        narc_query query = cases[k].query;
+        narc_contact contact;
+        narc_manifold manifold;
+        memset(&contact, 0x5a, sizeof contact);
+        memset(&manifold, 0x5a, sizeof manifold);
+        const narc_contact contact_before = contact;
+        const narc_manifold manifold_before = manifold;
+        skipped = 9;
+        query.out_skipped = &skipped;
+        expect_error(narc_find_contact(cases[k].shapes, cases[k].a, cases[k].b, &query,
+                                       cases[k].to_nothing ? NULL : &contact, &error),
+                     cases[k].status, &error, cases[k].text);
+        expect_error(narc_find_manifold(cases[k].shapes, cases[k].a, cases[k].b, &query,
+                                        cases[k].to_nothing ? NULL : &manifold, &error),
+                     cases[k].status, &error, cases[k].text);
+        assert_true(skipped == 9);
+        assert_memory_equal(&contact, &contact_before, sizeof contact);
+        assert_memory_equal(&manifold, &manifold_before, sizeof manifold);
+    }
     narc_destroy_shapes(shapes);
 }
 
