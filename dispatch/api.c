@@ -16,7 +16,7 @@ const char *narc_version(void) {
 /* The sine of NARC_FLAT_ANGLE. */
 #define FLAT_SINE 0x1.bd679ap-2f
 
-static float find_flat_sine(float angle) {
+float narc_find_flat_sine(float angle) {
     return angle == 0 ? FLAT_SINE : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
 }
 
@@ -88,7 +88,7 @@ narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, si
         return status;
     batch->row_size = sizeof *out_rows;
     batch->more_at = NARC_MORE_AT(narc_manifold, count);
-    batch->flat_sine = find_flat_sine(batch->query->flat_angle);
+    batch->flat_sine = narc_find_flat_sine(batch->query->flat_angle);
     return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->manifold, batch, out_rows, capacity, out_count,
                             error);
 }

@@ -27,6 +27,9 @@ narc_status narc_check_count(size_t count, size_t most, const char *items, narc_
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
 
+/* The sine of a query's flat angle; below 0: no second points. */
+float narc_find_flat_sine(float angle);
+
 /* A range of `*count` items from `first` on; 0 of them: to the end of `total`. */
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error);
 

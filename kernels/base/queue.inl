@@ -13,19 +13,27 @@
 #include "simd/simd.h"
 
 /* Pairs that are loaded at once. */
+#ifdef NARC_ONE_PAIR
+enum { BLOCK = 1 };
+#else
 enum { BLOCK = 32 };
+#endif
 
 /* A stage waits for FLUSH pairs, so that vectors are full and its code is fetched once for several, and takes STEP at a
  * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack.
  * Those of methods have one stage, overlaps none for polygons, and none that writes rows. */
-#ifdef NARC_QUEUE_PAIRS
+#if defined(NARC_QUEUE_PAIRS)
 enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS };
 enum { METHOD, STAGES, POLYGONS = 0 };
 #elif defined(NARC_OVERLAPS)
 enum { FLUSH = 32, STEP = 32 };
 enum { PROBE, PROBE_AGAIN, CLIMB, DECIDE, STAGES, POLYGONS = 0 };
 #else
+#ifdef NARC_ONE_PAIR
+enum { FLUSH = 1, STEP = 1 };
+#else
 enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH };
+#endif
 enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, ANSWER_EDGES, STAGES };
 #endif
 
