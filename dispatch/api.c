@@ -60,6 +60,13 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
 }
 #endif
 
+/* The kernel for so many pairs. */
+#if NARC_SMALL
+#define KERNEL_FOR(count, few, kernel) (kernel)
+#else
+#define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
+#endif
+
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                  narc_error *error) {
     narc_status status = NARC_OK;
@@ -68,8 +75,8 @@ narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size
         return status;
     batch->row_size = sizeof *out_rows;
     batch->more_at = NARC_MORE_AT(narc_contact, count);
-    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->contact, batch, out_rows, capacity, out_count,
-                            error);
+    return narc_answer_rows(KERNEL_FOR(batch->count, narc_find_few_contacts, kernels->contact), batch, out_rows,
+                            capacity, out_count, error);
 }
 
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -89,8 +96,8 @@ narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, si
     batch->row_size = sizeof *out_rows;
     batch->more_at = NARC_MORE_AT(narc_manifold, count);
     batch->flat_sine = narc_find_flat_sine(batch->query->flat_angle);
-    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->manifold, batch, out_rows, capacity, out_count,
-                            error);
+    return narc_answer_rows(KERNEL_FOR(batch->count, narc_find_few_manifolds, kernels->manifold), batch, out_rows,
+                            capacity, out_count, error);
 }
 
 narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,

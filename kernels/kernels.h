@@ -104,7 +104,8 @@ typedef struct narc_kept_row {
 
 /* One pair by itself: the position of B less that of A, as a batch has it, and the rest of both bodies. */
 typedef struct narc_one_pair {
-    uint32_t number, shape_a, shape_b;
+    size_t place; /* as a batch asks of it */
+    uint32_t shape_a, shape_b;
     float x, y, cosine_a, sine_a, scale_a, cosine_b, sine_b, scale_b;
     float margin;
 } narc_one_pair;

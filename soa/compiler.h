@@ -21,6 +21,13 @@
 
 #define NOINLINE static __attribute__((noinline))
 
+/* For larger steps of the same kind. With one pair at a time a call costs less than the text of another copy. */
+#ifdef NARC_ONE_PAIR
+#define SHARED NOINLINE
+#else
+#define SHARED INLINE
+#endif
+
 /* Before a loop over the fields of something, all of which is wanted in registers; and before one that does little else
  * but count. */
 #ifdef __OPTIMIZE_SIZE__

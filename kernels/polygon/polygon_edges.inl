@@ -189,7 +189,7 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
 INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k) {
     const vi most = vi_set(MAX_CORNERS);
     const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
-    const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
+    const bool full = BLOCK > 1 && !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
     return full ? find_best_of(records, queue, k, true) : find_best_of(records, queue, k, false);
 }
 

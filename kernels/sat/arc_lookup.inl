@@ -27,6 +27,14 @@ INLINE vi count_below(vi count, const int16_t *angles, const int32_t *record, vi
 INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 direction) {
     const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
     const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
+#ifdef V_COUNT_EIGHT /* angles follow each other from record to record */
+    int32_t first, all, below = 0;
+    vi_store(&first, record);
+    vi_store(&all, count);
+    for (int done = 0; done < all; done += 8)
+        below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
+    return vi_set(below);
+#else
     vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
     for (int done = 0;; done += NARC_RECORD_ANGLES) {
         int32_t index[V_WIDTH];
@@ -41,6 +49,7 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
         twice = vi_select(more, twice, vi_set((int32_t)0x80008000u)); /* nothing is below that */
     }
     return vi_add(vi_and(before, vi_set(0xffff)), vi_shift_right(before, 16));
+#endif
 }
 
 /* The record of the arc that holds a direction, in each lane. */

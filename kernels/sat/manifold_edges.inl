@@ -127,7 +127,7 @@ INLINE vi find_number_of(const struct queue *queue, int k, vi record, bool is_b)
 
 /* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is
  * none, because the arc and its neighbour have a common tangent, the other one. */
-INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
+SHARED struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
     const narc_record *records = call->batch->shapes->records;
     const struct ring ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
     const struct pose pose = get_pose(queue, k);

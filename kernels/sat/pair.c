@@ -51,7 +51,7 @@ INLINE void start_one(struct one *one, const narc_batch *batch, const narc_one_p
                                      v_set(at->scale_a),
                                      v_set(at->scale_b)};
     one->call = (struct call){.batch = batch,
-                              .first = at->number,
+                              .first = at->place,
                               .count = 1,
                               .margin = at->margin,
                               .question = manifold ? &manifolds : &contacts,

@@ -32,7 +32,7 @@ INLINE struct verdict judge(const struct call *call, struct queue *queue, int k,
                             vm_and(certain, is_below(p.separation, margin))};
 }
 
-INLINE void settle(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
+SHARED void settle(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
                    vf separation, vec2 n, vi record_a, vi record_b) {
     vf item[FIELDS];
     get_item(queue, k, item, ROW_FIELDS);

@@ -66,6 +66,12 @@ INLINE vf v_of_bits(vi a) { return _mm_castsi128_ps(a); }
 INLINE vf v_of_int(vi a) { return _mm_cvtepi32_ps(a); }
 INLINE vi vi_truncate(vf a) { return _mm_cvttps_epi32(a); }
 INLINE vi vi_count16(vi counts, vi below, vi values) { return _mm_sub_epi16(counts, _mm_cmpgt_epi16(below, values)); }
+#define V_COUNT_EIGHT v_count_eight
+INLINE int v_count_eight(const int16_t *values, vi below) {
+    const __m128i eight = _mm_loadu_si128((const __m128i *)(const void *)values);
+    const __m128i limit = _mm_shuffle_epi32(_mm_shufflelo_epi16(below, 0), 0);
+    return COUNT_BITS((unsigned)_mm_movemask_epi8(_mm_cmpgt_epi16(limit, eight))) / 2;
+}
 INLINE vi vi_lanes(void) { return _mm_setzero_si128(); }
 INLINE vm vm_and(vm a, vm b) { return _mm_and_ps(a, b); }
 INLINE vm vm_or(vm a, vm b) { return _mm_or_ps(a, b); }

@@ -369,12 +369,12 @@ TEST(two_bodies_that_are_wrong) {
         narc_status status;
         const char *text;
     } cases[] = {
-        {NULL, &fine, &fine, {0}, false, NARC_ERROR_ARGUMENT, "shapes is NULL"},
-        {shapes, NULL, &fine, {0}, false, NARC_ERROR_ARGUMENT, "a is NULL"},
-        {shapes, &fine, NULL, {0}, false, NARC_ERROR_ARGUMENT, "b is NULL"},
-        {shapes, &fine, &fine, {0}, true, NARC_ERROR_ARGUMENT, "out_row is NULL"},
-        {shapes, &fine, &nowhere, {0}, false, NARC_ERROR_INDEX, "shape 1"},
-        {shapes, &nowhere, &fine, {0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {NULL, &fine, &fine, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "shapes is NULL"},
+        {shapes, NULL, &fine, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "a is NULL"},
+        {shapes, &fine, NULL, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "b is NULL"},
+        {shapes, &fine, &fine, {.margin = 0}, true, NARC_ERROR_ARGUMENT, "out_row is NULL"},
+        {shapes, &fine, &nowhere, {.margin = 0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {shapes, &nowhere, &fine, {.margin = 0}, false, NARC_ERROR_INDEX, "shape 1"},
         {shapes, &fine, &fine, {.margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.margin"},
         {shapes, &fine, &fine, {.second_margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.second_margin"},
         {shapes, &fine, &fine, {.flat_angle = NAN}, false, NARC_ERROR_NOT_FINITE, "query.flat_angle"},
@@ -402,6 +402,65 @@ TEST(two_bodies_that_are_wrong) {
         assert_memory_equal(&manifold, &manifold_before, sizeof manifold);
     }
     narc_destroy_shapes(shapes);
+}
+
+/* One pair or two of a batch have the rows that they have among all, listed, dense and in larger structures, with margins
+ * and shifts of their own. */
+TEST(few_of_a_batch) {
+    struct test_random random = test_random_named("few of a batch");
+    struct slot {
+        float own;
+        narc_manifold row;
+    } slots[PAIRS];
+    for (int precision = 0; precision < 4; precision++) {
+        struct scene scene = make_random_scene(&random, precision % 2 ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
+        const narc_bodies bodies = scene_bodies(&scene);
+        narc_pairs pairs = scene_pairs(&scene);
+        static float margins[PAIRS], shifts[PAIRS];
+        for (size_t k = 0; k < PAIRS; k++) {
+            margins[k] = k % 3 ? k % 5 ? 0.2f * (float)(k % 4) : INFINITY : k % 7 ? -0.01f : NAN;
+            shifts[k] = 0.25f * (float)(k % 3);
+        }
+        if (precision > 1)
+            pairs.shift_y = NARC_ARRAY(shifts);
+        narc_query query = {.margins = NARC_ARRAY(margins), .dense = 1};
+        struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
+        struct manifolds points = find_manifolds(scene.store, &bodies, &pairs, &query);
+        query.row_stride = sizeof *slots;
+        for (size_t k = 0; k + 1 < PAIRS; k++) {
+            const uint32_t selection[] = {(uint32_t)k, (uint32_t)(PAIRS - 1 - k)};
+            narc_query few = {.margins = query.margins};
+            size_t skipped, found, expected = 0;
+            narc_contact row[2];
+            narc_error error;
+            few.out_skipped = &skipped;
+            few.selection = NARC_ARRAY(selection);
+            few.selection_count = 1 + k % 2;
+            expect_ok(narc_find_contacts(scene.store, &bodies, &pairs, &few, row, 2, &found, &error), &error);
+            for (size_t i = 0; i < few.selection_count; i++) {
+                const narc_contact *const right = &all.rows[selection[i]];
+                if (right->count > 0 || right->separation > 0)
+                    assert_memory_equal(&row[expected++], right, sizeof *right);
+            }
+            assert_int_equal(found, expected);
+            few = query;
+            few.out_skipped = &skipped;
+            few.first = k;
+            few.count = 2;
+            memset(slots, 0x5a, sizeof slots);
+            expect_ok(narc_find_manifolds(scene.store, &bodies, &pairs, &few, &slots[0].row, PAIRS, &found, &error),
+                      &error);
+            for (size_t i = k; i < k + 2; i++)
+                assert_memory_equal(&slots[i].row, &points.rows[i], sizeof slots->row);
+            assert_int_equal(found, (points.rows[k].count > 0) + (points.rows[k + 1].count > 0));
+            assert_true(skipped >= (isnan(margins[k]) ? 1u : 0u) + (isnan(margins[k + 1]) ? 1u : 0u));
+            const unsigned char *const behind = (const void *)&slots[k + 2 < PAIRS ? k + 2 : 0];
+            assert_true(behind[0] == 0x5a && behind[sizeof *slots - 1] == 0x5a);
+        }
+        free(all.rows);
+        free(points.rows);
+        destroy_scene(&scene);
+    }
 }
 
 TEST_MAIN("pair")
