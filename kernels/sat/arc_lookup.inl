@@ -60,7 +60,7 @@ INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 di
 }
 
 /* The arcs of the pairs k ... of a queue that hold n and -n. */
-INLINE void find_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n, vi *out_a, vi *out_b) {
+SHARED void find_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n, vi *out_a, vi *out_b) {
     const vec2 n_b = v2_unrotate_opposite(get_vec2(queue, ROTATION, k), n);
     *out_a = find_arc(records, get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k), n);
     *out_b = find_arc(records, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k), n_b);

@@ -95,7 +95,7 @@ NOINLINE int search_one(PAIR) {
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
-        start_queue(&queues[s], &arcs);
+        queues[s].count = 0;
     const struct call *const call = &one.call;
     if (vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B]))) {
         push(&queues[POLYGONS], vm_front(1), item, ROW_FIELDS);
@@ -103,6 +103,8 @@ NOINLINE int search_one(PAIR) {
         if (queues[POLYGONS].count > 0)
             answer_polygons(call, queues, 0, manifold);
     } else {
+        for (int s = PROBE; s <= CLIMB; s++)
+            start_queue(&queues[s], &arcs);
         const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
         push(&queues[smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
         if (smooth)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "corpus.h"
 #include "expect.h"
 
 enum { BODIES = 60, PAIRS = 600 };
@@ -402,6 +403,45 @@ TEST(two_bodies_that_are_wrong) {
         assert_memory_equal(&manifold, &manifold_before, sizeof manifold);
     }
     narc_destroy_shapes(shapes);
+}
+
+static void check_direct(const struct scene *scene, const narc_query *query, const struct contacts *all,
+                         const struct manifolds *points) {
+    for (size_t k = 0; k < scene->pair_count; k++) {
+        const narc_body a = find_body(scene, scene->pairs[k].a), b = find_body(scene, scene->pairs[k].b);
+        narc_contact contact;
+        narc_manifold manifold;
+        narc_error error;
+        expect_ok(narc_find_contact(scene->store, &a, &b, query, &contact, &error), &error);
+        expect_ok(narc_find_manifold(scene->store, &a, &b, query, &manifold, &error), &error);
+        contact.pair = manifold.pair = (uint32_t)k;
+        assert_memory_equal(&contact, &all->rows[k], sizeof contact);
+        assert_memory_equal(&manifold, &points->rows[k], sizeof manifold);
+    }
+}
+
+/* Everything there is in the hardest places, asked directly, has the rows of the whole batch. */
+TEST(hard_places) {
+    static const float margins[] = {INFINITY, 0, 0.25f, -0.1f};
+    for (size_t q = 0; q < 8; q++) {
+        struct corpus corpus = make_corpus("two bodies", q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, 0.5, q % 4 > 1);
+        const struct scene *scene = &corpus.scene;
+        const narc_bodies bodies = scene_bodies(scene);
+        const narc_pairs pairs = scene_pairs(scene);
+        narc_query query = {.margin = margins[q / 2], .dense = 1, .flat_angle = q == 1 ? 0.2f : 0};
+        struct contacts all = find_contacts(scene->store, &bodies, &pairs, &query);
+        struct manifolds points = find_manifolds(scene->store, &bodies, &pairs, &query);
+        for (size_t isa = 0; narc_isa_name(isa); isa++) {
+            if (!narc_isa_supported(narc_isa_name(isa)))
+                continue;
+            test_use_isa(narc_isa_name(isa));
+            check_direct(scene, &query, &all, &points);
+        }
+        test_use_isa(test_isa());
+        free(all.rows);
+        free(points.rows);
+        destroy_corpus(&corpus);
+    }
 }
 
 /* One pair or two of a batch have the rows that they have among all, listed, dense and in larger structures, with margins
