@@ -170,7 +170,7 @@ typedef struct narc_step_result {
 /* A step: boxes, pairs, rows, events. For the same calls the same bits, for any workers and on every instruction set.
  * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE, NARC_ERROR_INDEX, NARC_ERROR_COUNT (2^32 pairs), NARC_ERROR_MEMORY,
  * those for NARC_ISA. On an error the last step's result is as it was, though its arrays may have moved, and the next call
- * goes on from there. */
+ * goes on from there; but where a body that is not listed in `moved` has a shape that there is not, all pairs are forgotten. */
 NARC_API narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *shapes, const narc_step *step,
                                           const narc_step_result **out_result, narc_error *error);
 

@@ -87,14 +87,23 @@ void dem_add_walls(dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ all of them */
 
-narc_bodies dem_make_poses(dem *d) {
+vec dem_find_shift(const dem *d, const dem_image *of, double offset) {
+    const vec size = dem_cell_size(d);
+    return (vec){of->right * size.x + of->up * offset, of->up * size.y};
+}
+
+narc_bodies dem_make_poses(dem *d, bool last) {
     dem_grow(&d->poses, d->image_count, sizeof *d->poses);
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1)
     for (size_t i = 0; i < d->image_count; i++) {
-        const dem_part *part = &d->parts[d->images[i].part];
+        dem_image *image = &d->images[i];
+        const dem_part *part = &d->parts[image->part];
         const dem_body *b = &d->bodies[part->body];
-        const vec at = plus(b->position, d->images[i].shift);
-        d->poses[i] = (narc_body){at.x, at.y, (float)b->turn.x, (float)b->turn.y, b->scale, part->outline};
+        if (d->settings.sheared)
+            image->shift = dem_find_shift(d, image, last ? d->last_offset : d->offset);
+        const vec at = plus(last ? b->last_position : b->position, image->shift);
+        const vec turn = last ? b->last_turn : b->turn;
+        d->poses[i] = (narc_body){at.x, at.y, (float)turn.x, (float)turn.y, b->scale, part->outline};
     }
     return narc_view_bodies(d->poses, d->image_count);
 }
@@ -122,7 +131,7 @@ vec dem_cell_size(const dem *d) { return minus(d->settings.high, d->settings.low
 /* ------------------------------------------------------------------------------------------------ messages */
 
 void dem_fail_lost(dem *d) {
-    const narc_bodies bodies = dem_make_poses(d);
+    const narc_bodies bodies = dem_make_poses(d, false);
     narc_error error = {.message = "its position is out of range"};
     size_t k = 0;
     if (narc_validate_bodies(d->store, &bodies, &error) != NARC_OK)

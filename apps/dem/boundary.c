@@ -28,16 +28,7 @@ void dem_set_shear(dem *d, double rate) {
     d->settings.shear = rate;
 }
 
-vec dem_find_shift(const dem *d, const dem_image *of) {
-    const vec size = dem_cell_size(d);
-    return (vec){of->right * size.x + of->up * d->offset, of->up * size.y};
-}
-
-void dem_shear_cell(dem *d) {
-    d->offset += d->settings.time_step * dem_find_drift(d);
-    for (dem_image *i = d->images; d->settings.sheared && i < d->images + d->image_count; i++)
-        i->shift = dem_find_shift(d, i);
-}
+void dem_shear_cell(dem *d) { d->offset += d->settings.time_step * dem_find_drift(d); }
 
 /* ------------------------------------------------------------------------------------------------ wrapping */
 

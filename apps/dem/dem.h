@@ -100,7 +100,7 @@ typedef struct dem_region {
 
 typedef struct dem_settings {
     double time_step;
-    double skin;      /* images are kept while nothing has moved half of it, pairs while bodies have not by a quarter */
+    double skin;      /* images and pairs are kept while nothing has moved half of it */
     double thickness; /* of the grains, across the plane */
     vec gravity;
     dem_law law;
@@ -169,11 +169,10 @@ typedef struct dem_wall {
     double idle_way; /* how far servo control has moved it since it touched a grain */
 } dem_wall;
 
-/* What narc is asked about: all parts where they are, then images of some: a cell's width away, and blocks of plates under
- * a grain. An image meets only who is no image. */
+/* What narc is asked about: all parts where they are, each with its images behind it: a cell's width away, and blocks of
+ * plates under a grain. An image meets only who is no image. */
 typedef struct dem_image {
-    uint64_t id;             /* as narc knows it: the part; of an image also its direction, or the grain's part */
-    uint64_t category, mask; /* who may meet whom */
+    uint64_t id; /* as narc knows it: the part; of an image also its direction, or the grain's part */
     uint32_t part;
     uint32_t owner;    /* the only part that it may meet, or UINT32_MAX */
     uint32_t group;    /* two of the same form no pair: the body + 2; 1 of walls and images */
@@ -248,6 +247,7 @@ struct dem {
     size_t body_count, part_count, wall_count, grain_count;
     double grain_reach, grain_extent; /* the largest */
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
+    double margin;                    /* narc's separations may be off by it; touch.h decides */
 
     uint64_t step;
     double time;       /* step * time_step, summed over stages with their own steps */
@@ -257,8 +257,10 @@ struct dem {
      * that cell's contacts pull; and the work done so. */
     double offset, last_offset, pull, shear_work;
 
-    dem_image *images; /* parts, too */
-    size_t image_count;
+    dem_image *images;         /* parts, too */
+    uint32_t *near_a, *near_b; /* pairs of them that may touch before they are made anew */
+    size_t image_count, near_count;
+    narc_broad_phase *broad;
     narc_contacts *near;
     const narc_step_result *found; /* of the last step: its slots have a dem_memory */
     dem_pair *pairs;               /* what may touch, in the order of (a, b). No pair stands there twice */
@@ -333,8 +335,9 @@ void dem_add_wall(dem *d, dem_wall wall);
 /* Makes walls bodies, behind all grains. */
 void dem_add_walls(dem *d);
 
-/* All images where they are now, for narc, until the next call. */
-narc_bodies dem_make_poses(dem *d);
+/* All images where they are now, or were when they were made, for narc, until the next call. */
+narc_bodies dem_make_poses(dem *d, bool last);
+vec dem_find_shift(const dem *d, const dem_image *of, double offset); /* of an image across a border */
 
 /* The box around all grains: squares as large as they reach; and the places where walls start. */
 dem_region dem_bound(const dem *d, bool with_walls);
@@ -378,9 +381,8 @@ const char *dem_explain_depth(const dem *d); /* why bodies overlap too far */
 void dem_set_shear(dem *d, double rate);
 
 void dem_wrap_bodies(dem *d);
-void dem_shear_cell(dem *d);                           /* the way of a step */
-vec dem_find_shift(const dem *d, const dem_image *of); /* of an image across a border */
-double dem_find_drift(const dem *d);                   /* the speed of the cell above */
+void dem_shear_cell(dem *d);         /* the way of a step */
+double dem_find_drift(const dem *d); /* the speed of the cell above */
 
 /* ---------------------------------------------------------------------------------------------------------- filling.c */
 
@@ -418,10 +420,12 @@ void dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
 
 /* ----------------------------------------------------------------------------------------------------- neighbours.c */
 
+/* Images, and who is near whom, from now on; and again, as they were found last. */
 void dem_renew_images(dem *d);
+void dem_find_images(dem *d);
 
-/* What may touch where bodies are now. */
-void dem_find_pairs(dem *d);
+/* What may touch where bodies are now. Have images been made since the last time? */
+void dem_find_pairs(dem *d, bool renewed);
 
 /* ---------------------------------------------------------------------------------------------------------- walls.c */
 

@@ -4,7 +4,7 @@
  *
  *     "narc-dem" | version | byte order mark | size of what follows the header | its checksum | input hash
  *     counts, sums, progress of the run, laws
- *     walls, bodies, images, the contacts with their forces, their histories by parts
+ *     walls, bodies, the contacts with their forces, their histories by parts
  *
  * Shapes, materials and settings are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is.
@@ -24,7 +24,7 @@ static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
 enum { VERSION = 7, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
-    uint64_t bodies, walls, images, contacts; /* images that are no parts */
+    uint64_t bodies, walls, contacts;
 } counts;
 
 /* Of a contact: its parts, and what is known of them. */
@@ -93,13 +93,12 @@ static void pass_all(stream *s, dem *d, const counts *n, dem_progress *progress,
         pass_wall(s, d, w);
     for (size_t k = 0; k < d->body_count; k++)
         pass_body(s, &d->bodies[k]);
-    PASS_ALL(d->images + d->part_count, n->images);
     PASS_ALL(d->contacts, n->contacts); /* a run that has no more steps is asked for them */
     PASS_ALL(histories, n->contacts);
 }
 
 void dem_write_restart(dem *d, const dem_progress *progress, const char *path) {
-    counts n = {d->body_count, d->wall_count, d->image_count - d->part_count, d->contact_count};
+    counts n = {d->body_count, d->wall_count, d->contact_count};
     history *histories = NULL;
     dem_progress where = *progress;
     header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = progress->input};
@@ -146,14 +145,11 @@ static bool check_header(const char *bytes, size_t size, uint64_t input, char *p
     return false;
 }
 
-/* Finds the pairs again, and gives them their histories. */
+/* Finds images and pairs again, and gives the pairs their histories. */
 static bool take_histories(dem *d, const counts *n, const history *histories) {
     bool ok = true;
-    d->image_count = d->part_count + n->images;
-    for (size_t k = d->part_count; k < d->image_count; k++)
-        ok = ok && d->images[k].part < d->part_count;
-    if (ok)
-        dem_find_pairs(d);
+    dem_find_images(d);
+    dem_find_pairs(d, true);
     for (size_t k = 0; k < n->contacts && ok; k++) {
         const size_t pair = d->contacts[k].pair;
         ok = pair < d->pair_count && histories[k].a == d->pairs[pair].a && histories[k].b == d->pairs[pair].b;
@@ -173,10 +169,8 @@ void dem_read_restart(dem *d, dem_progress *progress, const char *path) {
         counts n = {0};
         history *histories = NULL;
         pass(&in, &n, sizeof n);
-        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.images <= in.size / sizeof(dem_image) &&
-             n.contacts <= in.size / sizeof(history);
+        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.contacts <= in.size / sizeof(history);
         if (ok) {
-            dem_grow(&d->images, d->part_count + n.images, sizeof *d->images);
             dem_grow(&histories, n.contacts, sizeof *histories);
             dem_grow(&d->contacts, n.contacts, sizeof *d->contacts);
             pass_all(&in, d, &n, progress, histories);

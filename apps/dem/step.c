@@ -57,7 +57,7 @@ void dem_find_first_forces(dem *d) {
     const double time_step = d->settings.time_step;
     d->settings.time_step = 0;
     dem_move_walls(d); /* walls get their velocities */
-    dem_find_pairs(d);
+    dem_find_pairs(d, true);
     dem_apply_laws(d);
     d->settings.time_step = time_step;
 }
@@ -67,9 +67,10 @@ void dem_step(dem *d) {
     d->time += d->settings.time_step;
     dem_steer_walls(d);
     dem_shear_cell(d);
-    if (begin_step(d))
+    const bool renews = begin_step(d);
+    if (renews)
         dem_renew_images(d);
-    dem_find_pairs(d);
+    dem_find_pairs(d, renews);
     dem_count_work(d);
     dem_apply_laws(d);
     dem_count_work(d);

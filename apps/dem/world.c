@@ -14,17 +14,19 @@ void dem_create(dem *d, dem_settings settings) {
     memset(d, 0, sizeof *d);
     d->settings = settings;
     const narc_contacts_settings kept = {.rows = NARC_CONTACT_ROWS, .user_size = sizeof(dem_memory)};
-    if (narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_contacts(&kept, &d->near, NULL) != NARC_OK)
+    if (narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_contacts(&kept, &d->near, NULL) != NARC_OK ||
+        narc_create_broad_phase(NULL, &d->broad) != NARC_OK)
         dem_quit("not enough memory");
 }
 
 void dem_destroy(dem *d) {
-    void *const arrays[] = {d->outlines, d->shapes,   d->bodies, d->parts,  d->walls, d->images,
-                            d->pairs,    d->contacts, d->poses,  d->blocks, d->boxes};
+    void *const arrays[] = {d->outlines, d->shapes, d->bodies, d->parts, d->walls,  d->images, d->pairs,
+                            d->contacts, d->poses,  d->blocks, d->boxes, d->near_a, d->near_b};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         dem_release(arrays[i]);
     narc_destroy_shapes(d->store);
     narc_destroy_contacts(d->near);
+    narc_destroy_broad_phase(d->broad);
     memset(d, 0, sizeof *d);
 }
 
@@ -67,6 +69,7 @@ void dem_start(dem *d) {
     d->shear_work = 0; /* grains begin so */
     const dem_region all = dem_bound(d, true);
     d->diagonal = hypot(all.high.x - all.low.x, all.high.y - all.low.y);
+    d->margin = 4 * NARC_ERROR_BOUND * d->grain_reach + (d->wall_count > 0 ? 2e-7 * d->diagonal : 0); /* along plates */
     dem_renew_images(d);
     dem_find_first_forces(d);
 }

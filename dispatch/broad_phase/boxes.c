@@ -259,8 +259,11 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
         narc_forget_poses(broad);
     known->has_motions = has_motions(step);
     known->has_boxes = !step->pairs;
-    box_job job = {
-        .known = known, .reach = step->reach, .ahead = step->ahead, .run = step->run, .out_boxes = broad->boxes_now};
+    box_job job = {.known = known,
+                   .reach = step->reach,
+                   .ahead = step->ahead,
+                   .run = step->run,
+                   .out_boxes = step->pairs ? NULL : broad->boxes_now};
     size_t count = listed ? step->moved_count : 0;
     narc_status status = NARC_OK;
     if (listed) {

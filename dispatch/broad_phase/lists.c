@@ -146,15 +146,16 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
+/* `kinds` NULL: there is no filter. */
 static void mark_pair(const uint8_t *kinds, narc_kept_list *made, size_t k) {
-    made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | kinds[made->a[k]] | kinds[made->b[k]]);
+    const unsigned both = kinds ? kinds[made->a[k]] | kinds[made->b[k]] : 0u;
+    made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | both);
 }
 
 void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
-    if (!broad->has_filter)
-        return;
+    const uint8_t *const kinds = broad->has_filter ? broad->kinds : NULL;
     for (size_t k = 0; k < made->list.pairs.count && broad->has_other_kinds; k++)
-        mark_pair(broad->kinds, made, k);
+        mark_pair(kinds, made, k);
     for (size_t i = 0; i < made->list.added_count && !broad->has_other_kinds; i++)
-        mark_pair(broad->kinds, made, made->added[i]);
+        mark_pair(kinds, made, made->added[i]);
 }

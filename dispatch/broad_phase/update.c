@@ -65,6 +65,7 @@ static narc_body_filter filter_of(const update *u, size_t body) {
 typedef struct changes {
     const update *update;
     bool use_kinds, use_sets;
+    bool marks; /* broad->fresh is wanted, as a new list will be made */
     atomic_uint found;
     atomic_size_t fresh_count;
 } changes;
@@ -108,10 +109,11 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     bool left = false, rest = false;
     size_t fresh_count = 0, k = first;
     (void)part;
-    memset(broad->fresh + first, 0, end - first);
+    if (all->marks)
+        memset(broad->fresh + first, 0, end - first);
     for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
         const narc_box *const box = &u->broad->boxes_now[k], *const kept = &broad->kept_boxes[k];
-        const bool moved = broad->known.moved[k];
+        const bool moved = broad->known.moved[k] && !broad->is_given; /* pairs that are given have no boxes */
         bool out = false;
         if (all->use_kinds) {
             const unsigned other = kind_at(filter.kind, k) ^ broad->kinds[k];
@@ -126,10 +128,12 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
             continue;
         const bool has = narc_is_box(box);
         out |= moved && (has ? !is_inside(box, kept) : has_kept_box(broad, k));
+        left |= out;
+        if (!all->marks)
+            continue;
         const bool fresh = out || (moved && has && !is_near(box, kept, half));
         broad->fresh[k] = fresh;
         fresh_count += fresh;
-        left |= out;
     }
     atomic_fetch_add_explicit(&all->fresh_count, fresh_count, memory_order_relaxed);
     if (left || rest)
@@ -146,10 +150,13 @@ static bool are_other_pairs(const update *u) {
 
 static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
     const bool filter = u->step->filter, had_filter = u->broad->has_filter;
-    changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), 0, 0};
+    changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), false, 0, 0};
     if (!u->broad->is_current || (filter && !had_filter) || are_other_pairs(u))
         return WHOLE;
     narc_run_ranges(u->step->workers, u->count, BODY_PART, look_at_some, &all);
+    all.marks = atomic_load_explicit(&all.found, memory_order_relaxed) & LEFT;
+    if (all.marks) /* mostly none has left */
+        narc_run_ranges(u->step->workers, u->count, BODY_PART, look_at_some, &all);
     *out_fresh_count = atomic_load_explicit(&all.fresh_count, memory_order_relaxed);
     return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
@@ -175,8 +182,8 @@ static unsigned look_at_listed(const update *u) {
     for (size_t i = 0; i < u->step->moved_count; i++) {
         const size_t k = narc_index_at(u->step->moved, i);
         const narc_box *const box = &u->broad->boxes_now[k];
-        const bool left = narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k);
-        if ((last->has_ids && id_of(u, k) != last->ids[k]) || (left && !broad->is_given))
+        if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
+            (!broad->is_given && (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k))))
             return WHOLE;
         if (!broad->has_filter)
             continue;
@@ -228,11 +235,9 @@ static narc_status fail_memory(const update *u, size_t count, const char *what) 
 }
 
 /* Ids as pairs of their halves. */
-static narc_pairs view_ids(const narc_kept_list *list) {
-    const uint32_t *const halves = (const void *)list->ids; /* NULL: there was no body yet */
-    return (narc_pairs){.count = list->body_count,
-                        .a = {halves, sizeof *list->ids},
-                        .b = {halves ? halves + 1 : NULL, sizeof *list->ids}};
+static narc_pairs view_ids(const uint64_t *ids, size_t count) {
+    const uint32_t *const halves = (const void *)ids; /* NULL: there was no body yet */
+    return (narc_pairs){.count = count, .a = {halves, sizeof *ids}, .b = {halves ? halves + 1 : NULL, sizeof *ids}};
 }
 
 /* The ids of a list whose bodies had none: their numbers. */
@@ -267,7 +272,7 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
     if (same)
         return NARC_OK;
     narc_status status = number_bodies(u, last);
-    const narc_pairs before = view_ids(last), now = view_ids(made);
+    const narc_pairs before = view_ids(last->ids, last->body_count), now = view_ids(made->ids, u->count);
     if (status == NARC_OK)
         status = narc_match_pairs(broad, &before, &now, u->step->workers, broad->last_index) == NARC_OK
                      ? NARC_OK
@@ -301,10 +306,10 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         memset(broad->fresh, 1, u->count);
         skipped = 0;
     }
+    broad->has_other_kinds = whole || found & REST || (broad->has_filter && !u->step->filter);
     broad->has_filter = u->step->filter;
     broad->has_sets = has_sets(u);
     broad->is_given = u->step->pairs;
-    broad->has_other_kinds = whole || found & REST;
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
         broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
@@ -430,6 +435,8 @@ static narc_status finish(const update *u, bool listed, const narc_pair_list **o
         return NARC_OK;
     }
     const bool same = are_same(u);
+    if (same && !u->step->id.base)
+        broad->lists[broad->last].has_ids = false; /* all are numbers, as after narc_forget_ids() */
     size_t fresh_count = 0;
     const unsigned found = same ? look_at_all(u, &fresh_count) : WHOLE;
     if (found & (LEFT | WHOLE)) {
@@ -489,12 +496,17 @@ void narc_take_back_pairs(narc_broad_phase *broad, bool made) {
 narc_status narc_forget_ids(narc_broad_phase *broad, const uint64_t *ids, size_t count, narc_error *error) {
     const update u = {.broad = broad, .error = error};
     narc_kept_list *const last = &broad->lists[broad->last];
+    const narc_pairs given = view_ids(ids, count);
     narc_status status = number_bodies(&u, last);
-    for (size_t k = 0; k < count && status == NARC_OK; k++)
-        for (size_t body = 0; body < last->body_count; body++)
-            if (last->ids[body] == ids[k])
-                last->gone[body] = last->has_gone = true;
-    return status;
+    if (status != NARC_OK || last->body_count == 0)
+        return status;
+    const narc_pairs known = view_ids(last->ids, last->body_count);
+    if (narc_match_pairs(broad, &given, &known, NULL, broad->last_index) != NARC_OK)
+        return fail_memory(&u, count, "ids");
+    for (size_t body = 0; body < last->body_count; body++)
+        if (broad->last_index[body] != NARC_NO_MATCH)
+            last->gone[body] = last->has_gone = true;
+    return NARC_OK;
 }
 
 void narc_forget_pairs(narc_broad_phase *broad) {

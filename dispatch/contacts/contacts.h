@@ -210,9 +210,9 @@ static inline void narc_zero_row(const narc_contacts *c, uint32_t slot) {
 
 /* ------------------------------------------------------------------------------------------------ recycle.c */
 
-/* Keeps the rows of slots: rows[item[i]] of slots[i] in kept[item[i]]; `item` NULL: at the slot's number. */
+/* Keeps the rows of slots that lie at `to`: number item[i] of slots[i] in kept[item[i]]; `item` NULL: at the slot's number. */
 void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
-                    size_t count, void *rows, narc_kept_row *kept);
+                    size_t count, void *to, narc_kept_row *kept);
 
 /* May the row of pair `pair` of the list that was kept in kept[item] follow its bodies? */
 bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept);

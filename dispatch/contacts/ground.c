@@ -52,6 +52,7 @@ static void put_row(const narc_contact_step *s, uint32_t slot, const void *from,
     void *const row = (char *)view.base + (ptrdiff_t)item * view.stride;
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
+    memset(&kept[item], 0, sizeof *kept); /* it is saved, of use or not */
     narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
 }
 

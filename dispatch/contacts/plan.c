@@ -19,8 +19,11 @@ static bool do_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
     return broad->has_filter && broad->kinds[a] & AT_REST && broad->kinds[b] & AT_REST;
 }
 
+/* Bodies that are not listed as moved may have any number as their shape: it is no shape, until its pairs are asked. */
 static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t body) {
-    return &s->shapes->headers[narc_index_at(s->step->bodies->shape, body)];
+    static const narc_shape_header none;
+    const uint32_t shape = narc_index_at(s->step->bodies->shape, body);
+    return shape < s->shapes->count ? &s->shapes->headers[shape] : &none;
 }
 
 bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b) {
@@ -80,6 +83,8 @@ static inline uint32_t slot_of(const pair_view *v, size_t k) {
  * off? Its error bound is 2^-19 of the distance of the positions and both extents (narc.h); the distance is the gap between
  * the boxes, the margin and both extents at most. */
 static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
+    if (!(v->margin_room < INFINITY)) /* there may be no boxes */
+        return false;
     const narc_box *const p = &v->boxes[a], *const q = &v->boxes[b];
     const float left = p->min_x - q->max_x, right = q->min_x - p->max_x;
     const float below = p->min_y - q->max_y, above = q->min_y - p->max_y;
@@ -117,6 +122,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     narc_contacts *const c = s->contacts;
     const uint32_t a = v->a[first];
     bool changed = false, stale = false, apart = true, touches = false, follows = s->step->recycling > 0;
+    bool ground_moves = false, some_bare = false; /* rows tell of other ground only while none of it moves */
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
@@ -131,10 +137,14 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
         stale |= old;
         changed |= old || moved;
         apart = apart && are_apart(v, a, b);
-        touches |= slot != UINT32_MAX && c->state[slot] & NARC_TOUCHING;
+        const bool bare = slot == UINT32_MAX || !(c->state[slot] & NARC_TOUCHING);
+        touches |= !bare;
+        some_bare |= bare;
+        ground_moves |= v->changed[b] != 0;
         follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
     }
-    const unsigned what = apart ? NARC_APART : follows && touches && !stale ? NARC_FOLLOW : NARC_ASK_GROUND;
+    follows = follows && touches && !stale && !(ground_moves && some_bare);
+    const unsigned what = apart ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end && changed; k++)
         if (is_ground(s, v, k))
             c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, do_rest(s, a, v->b[k]) ? NARC_REST : what};

@@ -29,11 +29,12 @@ typedef struct start {
     narc_asked last;
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
-    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, is_list_marked, has_motions,
-        has_boxes, unused[6];
+    uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, has_motions, has_boxes,
+        unused[11];
 } start;
 
-_Static_assert(sizeof(start) % 8 == 0 && sizeof(narc_asked) == 24, "no padding, and arrays begin at a multiple of 8");
+_Static_assert(sizeof(start) % 8 == 0 && sizeof(start) == offsetof(start, unused) + 11 && sizeof(narc_asked) == 24,
+               "no padding, and arrays begin at a multiple of 8");
 
 /* Bytes of contacts: those of `contacts`, a copy that knows all counts. */
 typedef struct saved {
@@ -137,7 +138,6 @@ static start describe(const saved *s) {
                 .has_filter = b->has_filter,
                 .has_sets = b->has_sets,
                 .is_marked = c->marked,
-                .is_list_marked = b->marked,
                 .has_motions = b->known.has_motions,
                 .has_boxes = b->known.has_boxes};
     memcpy(at.magic, magic, sizeof magic);
@@ -158,7 +158,6 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     r->sensor_count = (size_t)at->sensors;
     r->began_count = (size_t)at->began;
     r->ended_count = (size_t)at->ended;
-    c->event_count = r->began_count + r->ended_count;
     r->more_count = c->more.count = (size_t)at->more;
     l->body_count = (size_t)at->bodies;
     b->known.count = (size_t)at->known;
@@ -178,7 +177,6 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     b->has_filter = at->has_filter;
     b->has_sets = at->has_sets;
     c->marked = at->is_marked;
-    b->marked = at->is_list_marked;
     b->known.has_motions = at->has_motions;
     b->known.has_boxes = at->has_boxes;
     b->is_sorted = false;
@@ -324,6 +322,7 @@ static const char *find_fault(const saved *s, uint8_t *used) {
     const narc_contacts *const c = &s->contacts;
     const narc_kept_list *const l = &s->broad.lists[s->broad.last];
     const size_t slots = c->slot_count;
+    const unsigned kinds = s->broad.is_current && !s->broad.has_filter ? 0 : NARC_KINDS;
     const char *const rows = c->rows_in_user ? bytes_of(s, &c->user) + c->row_offset : bytes_of(s, &c->own_rows);
     if (!uses_each_once(s, bytes_of(s, &c->order), c->result.count, used) ||
         !uses_each_once(s, bytes_of(s, &c->free), c->free_count, used) ||
@@ -337,11 +336,11 @@ static const char *find_fault(const saved *s, uint8_t *used) {
         return "rows";
     if (!are_bits(bytes_of(s, &c->state), slots, 31) ||
         !are_bits(bytes_of(s, &c->flags), slots, 127 & ~NARC_SLOT_CROSSED) ||
-        !are_bits(bytes_of(s, &l->marks), c->result.count, NARC_KINDS | NARC_FLIPPED))
+        !are_bits(bytes_of(s, &l->marks), c->result.count, kinds | NARC_FLIPPED))
         return "flags";
     if (!are_below(bytes_of(s, &c->touching), c->result.touching_count, slots) ||
         !are_below(bytes_of(s, &c->sensors), c->result.sensor_count, slots) ||
-        !are_events_fine(s, bytes_of(s, &c->events), c->event_count))
+        !are_events_fine(s, bytes_of(s, &c->events), c->result.began_count + c->result.ended_count))
         return "lists";
     return NULL;
 }
@@ -351,8 +350,8 @@ static bool are_counts_fine(const start *at) {
     const uint64_t most = UINT32_MAX - 1;
     return at->slots <= most && at->pairs <= most && at->bodies <= most && at->more <= most &&
            at->free + at->parted + at->pairs == at->slots && at->touching <= at->pairs && at->sensors <= at->pairs &&
-           at->began <= at->pairs && at->ended <= 2 * most && at->known == (at->is_current ? at->bodies : 0) &&
-           at->precision <= NARC_FLOAT64;
+           at->began <= at->slots && at->ended <= at->slots - at->began &&
+           at->known == (at->is_current ? at->bodies : 0) && at->precision <= NARC_FLOAT64;
 }
 
 static bool are_flags_fine(const start *at) {

@@ -54,6 +54,7 @@ static narc_status grow(const narc_contacts *c, const narc_array *arrays, size_t
 size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
     narc_step_result *const r = &c->result;
     size_t *const none = NULL;
+    c->event_count = r->began_count + r->ended_count;
     const size_t row_size = c->rows_in_user ? 0 : c->row_size;
 #define ARRAY(growth, pointer, size, count)                                                                            \
     { growth, (void **)(void *)&(pointer), size, count }
@@ -136,7 +137,7 @@ narc_status narc_reserve_slots(const narc_contact_step *s) {
                    slots + 1}, /* what is listed without a branch may be written behind the last */
                   {NARC_OF_SLOTS_AHEAD, &c->ahead_capacity, s->step->ahead.base ? slots : 0},
                   {NARC_OF_PAIRS, &c->order_capacity, pairs},
-                  {NARC_OF_FILTERED_PAIRS, &c->filtered_capacity, s->step->filter ? pairs : 0},
+                  {NARC_OF_FILTERED_PAIRS, &c->filtered_capacity, c->broad->has_filter ? pairs : 0},
                   {NARC_OF_GROUND_PAIRS, &c->ground_capacity, s->has_ground ? pairs : 0},
                   {NARC_OF_EVENTS, &c->event_capacity, pairs + (list->kept ? 0 : list->lost_count)},
                   {NARC_OF_BODIES, &c->body_capacity, s->step->bodies->count}};
@@ -153,6 +154,9 @@ static uint32_t open_slot(narc_contacts *c) {
     if (c->user_size > 0)
         memset((char *)c->user + slot * c->user_size, 0, c->user_size);
     narc_zero_row(c, slot);
+    memset(&c->entries[slot], 0, sizeof *c->entries); /* it is saved, of use or not */
+    if (!c->contact_rows)
+        memset(&c->ends[slot], 0, sizeof *c->ends);
     c->more_of[slot] = (narc_more_rows){0, 0};
     c->flags[slot] = NARC_SLOT_STALE;
     c->state[slot] = 0;

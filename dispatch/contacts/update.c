@@ -58,7 +58,6 @@ static void gather_events(narc_contacts *c) {
         }
         memmove(c->events + r->began_count, ended, r->ended_count * sizeof *ended);
     }
-    c->event_count = r->began_count + r->ended_count;
 }
 
 static void list_parted(const narc_contact_step *s) {
@@ -109,6 +108,12 @@ static narc_asked describe_asking(const narc_step *step) {
                         step->front_only, step->ahead.base != NULL, step->run.base != NULL, {0}};
 }
 
+static bool are_asked_alike(const narc_asked *one, const narc_asked *other) {
+    return one->margin == other->margin && one->second_margin == other->second_margin &&
+           one->flat_angle == other->flat_angle && one->recycling == other->recycling &&
+           one->front_only == other->front_only && one->has_ahead == other->has_ahead && one->has_run == other->has_run;
+}
+
 /* Checks what nothing else does before something is changed. */
 static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes, const narc_step *step,
                               const narc_step_result **out_result, narc_error *error) {
@@ -157,7 +162,7 @@ static narc_status prepare(narc_contact_step *s) {
                                        : status;
 }
 
-/* What follows from the plan: nothing here fails. */
+/* What follows from the plan: nothing here fails, if bodies that are not listed have shapes. */
 static narc_status carry_out(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     narc_step_result *const r = &c->result;
@@ -196,7 +201,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
         return status;
     narc_contact_step s = {contacts, shapes, step, NULL, error, shapes->piece_count > 0 || step->run.base};
     const narc_asked asked = describe_asking(step);
-    contacts->again = memcmp(&asked, &contacts->last, sizeof asked) != 0;
+    contacts->again = !are_asked_alike(&asked, &contacts->last);
     contacts->partners_listed = false;
     status = prepare(&s);
     if (status != NARC_OK) {
@@ -205,8 +210,10 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
         return status;
     }
     status = carry_out(&s);
-    if (status != NARC_OK)
+    if (status != NARC_OK) { /* a body that was not listed has no shape: rows, and slots, are others already */
+        narc_forget_contacts(contacts);
         return status;
+    }
     if (step->bodies->count > 0)
         memset(contacts->broad->known.changed, 0, step->bodies->count);
     contacts->last = asked;
@@ -283,5 +290,6 @@ void narc_forget_contacts(narc_contacts *c) {
 narc_status narc_forget_bodies(narc_contacts *c, const uint64_t *ids, size_t count, narc_error *error) {
     if (!c || (count > 0 && !ids))
         return narc_fail_missing(error, c ? "ids" : "contacts");
-    return narc_forget_ids(c->broad, ids, count, error);
+    const narc_status status = narc_check_count(count, UINT32_MAX - 1, "ids", error);
+    return status == NARC_OK ? narc_forget_ids(c->broad, ids, count, error) : status;
 }

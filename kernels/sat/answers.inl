@@ -79,7 +79,7 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
 }
 
 /* The contacts of polygons, if they are certain; the gaps at their junctions are known. */
-INLINE void answer_polygons(const struct call *call, struct queue *queues, int begin, bool edges) {
+NOINLINE void answer_compared(const struct call *call, struct queue *queues, int begin, bool edges) {
     const struct queue *const queue = &queues[POLYGONS];
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
@@ -90,6 +90,12 @@ INLINE void answer_polygons(const struct call *call, struct queue *queues, int b
             write_polygons(call, queue, k, keep, margin, &c, edges);
         pass_on(queue, k, vm_and_not(live, c.certain), ROW_FIELDS, &queues[DECIDE]);
     }
+}
+
+/* The stack of the comparison is not under that of what follows. */
+INLINE void answer_polygons(const struct call *call, struct queue *queues, int begin, bool edges) {
+    NARC_NAMED(search).stages[POLYGONS](call, queues, begin);
+    answer_compared(call, queues, begin, edges);
 }
 
 #endif

@@ -27,7 +27,6 @@ static void answer_edges(const struct call *call, struct queue *queues, int begi
 }
 
 static void answer_edges_of_polygons(const struct call *call, struct queue *queues, int begin) {
-    NARC_NAMED(search).stages[POLYGONS](call, queues, begin);
     answer_polygons(call, queues, begin, true);
 }
 

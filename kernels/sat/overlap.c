@@ -60,26 +60,28 @@ INLINE vm touch_in_common(const struct queue *queue, int k, vec2 n, vec2 u, vf r
     return has_common_point(queue, k, v2_sub(v2_scale(n, radii), v2_scale(u, length)), length);
 }
 
-/* Circles settle what overlaps deeply or is well apart: along the axis, centres and radii alone are probed. Once that
- * leaves more than half of a vector, as among bodies that rest on each other, whole arcs are worth their price for the
- * rest of a block. */
-INLINE struct verdict judge_overlap(const struct call *call, struct queue *queue, int k, vm live, enum probing how) {
-    const narc_record *const records = call->batch->shapes->records;
+INLINE struct verdict judge_overlap(const struct call *call, struct queue *queue, int k, vm live) {
     const vec2 n = get_vec2(queue, DIRECTION, k);
-    if (how == ALONG_AXIS && !queue->whole) {
-        vf radii;
-        const vec2 u = load_circles(records, queue, k, &radii);
-        const vm apart = is_above(u, radii, n, find_lookup_slack(queue, k)),
-                 hit = touch_in_common(queue, k, n, u, radii);
-        const vm left = vm_and(vm_and_not(live, vm_or(apart, hit)), find_smooth(queue, k));
-        queue->whole = 2 * COUNT_BITS(vm_bits(left)) > V_WIDTH;
-        return (struct verdict){.u = u, .settled = vm_or(apart, hit), .wanted = vm_and(live, hit)};
-    }
-    const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
+    const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, v_set(0));
     const vm below = v_lt(p.separation, v_set(0)), above = is_above(p.u, p.radii, n, find_lookup_slack(queue, k));
     const vm apart = vm_or(vm_or(p.far, above), vm_and_not(p.only, below)),
              hit = vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below));
     return (struct verdict){.u = p.u, .settled = vm_or(apart, hit), .wanted = vm_and(live, hit)};
+}
+
+/* Circles settle what overlaps deeply or is well apart: along the axis, centres and radii alone are probed. Once that
+ * leaves more than half of a vector, as among bodies that rest on each other, whole arcs are worth their price for the
+ * rest of a block. */
+INLINE struct verdict judge_overlap_along_axis(const struct call *call, struct queue *queue, int k, vm live) {
+    if (queue->whole)
+        return judge_overlap(call, queue, k, live);
+    const vec2 n = get_vec2(queue, DIRECTION, k);
+    vf radii;
+    const vec2 u = load_circles(call->batch->shapes->records, queue, k, &radii);
+    const vm apart = is_above(u, radii, n, find_lookup_slack(queue, k)), hit = touch_in_common(queue, k, n, u, radii);
+    const vm left = vm_and(vm_and_not(live, vm_or(apart, hit)), find_smooth(queue, k));
+    queue->whole = 2 * COUNT_BITS(vm_bits(left)) > V_WIDTH;
+    return (struct verdict){.u = u, .settled = vm_or(apart, hit), .wanted = vm_and(live, hit)};
 }
 
 INLINE void settle_overlap(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
@@ -88,7 +90,7 @@ INLINE void settle_overlap(const struct call *call, struct queue *queues, const 
     mark_overlaps(call, queue, k, which);
 }
 
-static const struct search overlaps = {OVERLAP_FIELDS, false, judge_overlap, settle_overlap};
+static const struct search overlaps = {OVERLAP_FIELDS, false, judge_overlap_along_axis, judge_overlap, settle_overlap};
 
 static void probe_overlaps(const struct call *call, struct queue *queues, int begin) {
     probe_axis(&overlaps, call, queues, begin);

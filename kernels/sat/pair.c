@@ -101,7 +101,7 @@ NOINLINE int search_one(PAIR) {
         push(&queues[POLYGONS], vm_front(1), item, ROW_FIELDS);
         compare_edges(call, queues, 0);
         if (queues[POLYGONS].count > 0)
-            answer_polygons(call, queues, 0, manifold);
+            answer_compared(call, queues, 0, manifold);
     } else {
         for (int s = PROBE; s <= CLIMB; s++)
             start_queue(&queues[s], &arcs);

@@ -21,8 +21,7 @@
 #include "sat/stages.inl"
 #include "simd/simd.h"
 
-INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live, enum probing how) {
-    (void)how;
+INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live) {
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
     const vf limit = v_add(margin, find_lookup_slack(queue, k));
@@ -51,7 +50,8 @@ SHARED void settle(const struct call *call, struct queue *queues, const struct q
     push(&queues[ANSWER], which, item, ROW_FIELDS);
 }
 
-static const struct search rows = {.fields = ROW_FIELDS, .rows = true, .judge = judge, .settle = settle};
+static const struct search rows = {
+    .fields = ROW_FIELDS, .rows = true, .judge_axis = judge, .judge = judge, .settle = settle};
 
 /* Polygons: the gap at all junctions. Those pairs for which one exceeds all others take the places of the queue's last
  * ones, from `begin` on: they are the question's. */

@@ -51,7 +51,6 @@ static void answer_rows(const struct call *call, struct queue *queues, int begin
 }
 
 static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
-    NARC_NAMED(search).stages[POLYGONS](call, queues, begin);
     answer_polygons(call, queues, begin, false);
 }
 

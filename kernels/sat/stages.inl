@@ -28,30 +28,25 @@ struct verdict {
     vm wanted;  /* and it is to be told */
 };
 
-enum probing { ALONG_AXIS, ALONG_U };
-
 /* How a search ends: constants. */
 struct search {
     int fields; /* what a pair needs in the queues */
     bool rows;  /* are there margins? */
-    struct verdict (*judge)(const struct call *call, struct queue *queue, int k, vm live, enum probing how);
+    /* What probes along the axis, and along u, of the arcs in record_a and record_b of the pairs k ... tell. */
+    struct verdict (*judge_axis)(const struct call *call, struct queue *queue, int k, vm live);
+    struct verdict (*judge)(const struct call *call, struct queue *queue, int k, vm live);
     /* Pairs k ... of a queue in the lanes `which` touch along n, with the arcs in these records. */
     void (*settle)(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
                    vf separation, vec2 n, vi record_a, vi record_b);
 };
 
-/* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. If u of these arcs lies
- * between their junctions, it is the direction of a local maximum, mostly the highest: that of smooth pairs becomes
- * DIRECTION. Returns the lanes without an answer. */
-INLINE vm probe(const struct search *search, const struct call *call, struct queue *queues, struct queue *queue, int k,
-                vm live, enum probing how) {
-    const struct verdict v = search->judge(call, queue, k, live, how);
-    if (vm_any(v.wanted))
-        search->settle(call, queues, queue, k, v.wanted, v.separation, v2_divide(v.u, v.length),
+/* Hands on what is to be told of the pairs k ... of a queue, in the lanes `live`. Returns those without an answer. */
+INLINE vm end_probe(const struct search *search, const struct call *call, struct queue *queues,
+                    const struct queue *queue, int k, vm live, const struct verdict *v) {
+    if (vm_any(v->wanted))
+        search->settle(call, queues, queue, k, v->wanted, v->separation, v2_divide(v->u, v->length),
                        vi_load(queue->record_a + k), vi_load(queue->record_b + k));
-    const vec2 next = how == ALONG_U ? v.u : v2_select(find_smooth(queue, k), v.u, get_vec2(queue, DIRECTION, k));
-    store_vec2(queue, DIRECTION, k, next);
-    return vm_and_not(live, v.settled);
+    return vm_and_not(live, v->settled);
 }
 
 /* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
@@ -61,7 +56,9 @@ INLINE void probe_axis(const struct search *search, const struct call *call, str
     look_up_arcs(call->batch->shapes->records, queue, begin);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
-        const vm left = probe(search, call, queues, queue, k, live, ALONG_AXIS);
+        const struct verdict v = search->judge_axis(call, queue, k, live);
+        const vm left = end_probe(search, call, queues, queue, k, live, &v);
+        store_vec2(queue, DIRECTION, k, v2_select(smooth, v.u, get_vec2(queue, DIRECTION, k)));
         const vm edged = vm_and_not(left, smooth);
         const vm polygons = POLYGONS > 0 ? select_polygons(queue, k, edged) : vm_front(0);
         pass_on(queue, k, vm_and(left, smooth), search->fields, &queues[PROBE_AGAIN]);
@@ -76,9 +73,13 @@ INLINE void probe_axis(const struct search *search, const struct call *call, str
 INLINE void probe_again(const struct search *search, const struct call *call, struct queue *queues, int begin) {
     struct queue *const queue = &queues[PROBE_AGAIN];
     look_up_arcs(call->batch->shapes->records, queue, begin);
-    for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, probe(search, call, queues, queue, k, vm_front(queue->count - k), ALONG_U), search->fields,
-                &queues[CLIMB]);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const struct verdict v = search->judge(call, queue, k, live);
+        const vm left = end_probe(search, call, queues, queue, k, live, &v);
+        store_vec2(queue, DIRECTION, k, v.u);
+        pass_on(queue, k, left, search->fields, &queues[CLIMB]);
+    }
 }
 
 /* Climbs from the arcs that hold DIRECTION, which becomes that of a local maximum where rows are wanted and one is near. */

@@ -384,4 +384,190 @@ TEST(own_pairs_are_checked) {
     destroy_few(few);
 }
 
+/* Where there is no filter any more nothing is a sensor, or sleeps. */
+TEST(kinds_go_with_the_filter) {
+    for (int way = 0; way < 2; way++) {
+        struct few *const few = make_few(circle_of(0.5), 600, NULL);
+        few->kind[0] = NARC_SENSOR;
+        few->kind[2] = few->kind[3] = way ? NARC_ASLEEP : 0;
+        assert_int_equal(step_few(few)->sensor_count, 1);
+        few->step.filter = NULL;
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->sensor_count, 0);
+        assert_int_equal(r->touching_count, 300);
+        assert_int_equal(r->manifolds[r->order[0]].count, 1);
+        destroy_few(few);
+    }
+}
+
+/* Bytes of contacts, to be freed. */
+static char *save_few(const struct few *few, size_t *out_size) {
+    narc_error error;
+    *out_size = narc_count_contact_bytes(few->contacts);
+    char *const bytes = malloc(*out_size);
+    assert_non_null(bytes);
+    expect_ok(narc_save_contacts(few->contacts, bytes, *out_size, &error), &error);
+    return bytes;
+}
+
+/* What was saved is loaded, of contacts that were forgotten, too. */
+TEST(forgotten_contacts_are_saved) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    size_t size;
+    narc_error error;
+    assert_int_equal(step_few(few)->began_count, 3);
+    narc_forget_contacts(few->contacts);
+    char *const bytes = save_few(few, &size);
+    expect_ok(narc_load_contacts(few->contacts, few->store, bytes, size, NULL, &error), &error);
+    assert_int_equal(step_few(few)->began_count, 3);
+    free(bytes);
+    destroy_few(few);
+}
+
+/* Back to where there were fewer slots, and on again: the same bytes, whatever lay in those that came meanwhile. */
+TEST(saved_bytes_are_those_of_the_same_steps) {
+    struct few *const few = make_few(circle_of(0.5), 40, NULL);
+    size_t size, first_size, second_size;
+    narc_error error;
+    few->bodies.count = 20;
+    step_few(few);
+    char *const start = save_few(few, &size);
+    few->bodies.count = 40;
+    step_few(few);
+    char *const first = save_few(few, &first_size);
+    for (size_t step = 0; step < 3; step++) { /* pairs that are asked again have entries */
+        for (size_t k = 0; k < 40; k++)
+            few->body[k].x += step < 2 ? 0x1p-10 : -0x1p-9;
+        step_few(few);
+    }
+    expect_ok(narc_load_contacts(few->contacts, few->store, start, size, NULL, &error), &error);
+    step_few(few);
+    char *const second = save_few(few, &second_size);
+    assert_int_equal(first_size, second_size);
+    assert_memory_equal(first, second, first_size);
+    free(start);
+    free(first);
+    free(second);
+    destroy_few(few);
+}
+
+/* Pairs that are the same are not looked at, whoever moves. */
+TEST(same_pairs_are_not_looked_at) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    uint32_t a[] = {0, 2, 4}, b[] = {1, 3, 5};
+    const narc_pairs pairs = {.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    few->step.pairs = &pairs;
+    step_few(few);
+    few->step.same_pairs = 1;
+    memset(a, 0, sizeof a);
+    memset(b, 0, sizeof b);
+    for (size_t step = 0; step < 3; step++) {
+        few->body[3].x += 0.05;
+        few->step.margin += 0.01f;
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->count, 3);
+        assert_int_equal(r->touching_count, 3);
+    }
+    destroy_few(few);
+}
+
+/* To take bodies out does not make all others be looked at from then on. */
+TEST(bodies_are_listed_after_some_were_taken_out) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    const uint64_t gone = 1;
+    const uint32_t none = 0;
+    narc_error error;
+    few->step.id.base = NULL;
+    step_few(few);
+    expect_ok(narc_forget_bodies(few->contacts, &gone, 1, &error), &error);
+    step_few(few);
+    step_few(few);
+    few->step.moved = (narc_index_column){&none, sizeof none};
+    few->body[3].x += 0.05; /* but it is not listed */
+    assert_int_equal(step_few(few)->asked_count, 0);
+    destroy_few(few);
+}
+
+/* A box rides on a piece of ground to another one, and meets it. */
+TEST(ground_that_carries_is_not_all) {
+    struct few *const few = make_few(box_of(0.2, 0.2, 0), 2, NULL);
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    static uint32_t run[600];
+    assert_int_equal(lay_entries(few, line, 2, 0, run), 1);
+    few->bodies.count = 3;
+    few->id[2] = 3;
+    few->kind[1] = 0;
+    few->kind[2] = NARC_STATIC;
+    run[2] = run[1] + 1;
+    few->step.run = NARC_ARRAY(run);
+    few->step.recycling = 0.01f;
+    few->body[0] = (narc_body){few->body[1].x, few->body[1].y + 0.1, 1, 0, 1, 0};
+    few->body[2] = (narc_body){few->body[0].x + 0.205, few->body[0].y, 0, 1, 1, few->body[1].shape};
+    for (size_t step = 0; step < 20; step++) {
+        assert_int_equal(step_few(few)->touching_count, 1 + (step > 8));
+        few->body[0].x += 0.01;
+        few->body[1].x += 0.01;
+    }
+    destroy_few(few);
+}
+
+/* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. */
+TEST(damaged_bytes_do_no_harm) {
+    for (int way = 0; way < 3; way++) {
+        struct few *const few = make_few(circle_of(0.5), 6, NULL);
+        const narc_pair_filter *const filter = few->step.filter;
+        size_t size, loads = 0;
+        few->step.filter = way ? filter : NULL;
+        few->kind[3] = way > 1 ? NARC_SENSOR : 0;
+        step_few(few);
+        char *const bytes = save_few(few, &size);
+        narc_destroy_contacts(few->contacts);
+        for (size_t bit = 0; bit < 8 * size; bit++) {
+            const uint32_t *slots;
+            const narc_step_result *r;
+            size_t count;
+            narc_error error;
+            allowed = SIZE_MAX;
+            few->contacts = make_contacts(NARC_MANIFOLD_ROWS, &watched);
+            bytes[bit / 8] ^= (char)(1 << bit % 8);
+            sum_up_contacts(bytes, size);
+            if (narc_load_contacts(few->contacts, few->store, bytes, size, NULL, &error) == NARC_OK) {
+                loads++;
+                few->step.filter = bit % 16 < 8 ? NULL : filter;
+                for (int step = 0; step < 2; step++) {
+                    few->body[bit % 6].x += step ? -0.01 : 0.01;
+                    narc_update_contacts(few->contacts, few->store, &few->step, &r, &error);
+                    for (uint32_t body = 0; body < 6; body++)
+                        narc_find_body_slots(few->contacts, body, &slots, &count, &error);
+                }
+            }
+            bytes[bit / 8] ^= (char)(1 << bit % 8);
+            narc_destroy_contacts(few->contacts);
+        }
+        assert_true(loads > size);
+        few->contacts = NULL;
+        free(bytes);
+        destroy_few(few);
+    }
+}
+
+/* A body that is not listed has no shape, which is found out when pairs have their slots: the next step begins anew. */
+TEST(unlisted_bodies_without_a_shape_are_an_error) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    const uint32_t moved = 0;
+    narc_error error;
+    const narc_step_result *r = step_few(few);
+    few->body[0].x = 10.3;
+    few->body[3].shape = 99;
+    few->step.moved = (narc_index_column){&moved, sizeof moved};
+    few->step.moved_count = 1;
+    assert_int_equal(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_INDEX);
+    few->body[3].shape = 0;
+    few->step.moved = (narc_index_column){NULL, 0};
+    few->step.moved_count = 0;
+    few->body[1].x = 10.5;
+    check_with_fresh(few);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")

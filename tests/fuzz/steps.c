@@ -542,20 +542,6 @@ static void make_step(struct bytes *from, struct world *w) {
         assert_true(hash_result(w, w->object[0].r) == hash_result(w, w->object[1].r));
 }
 
-/* As save.c does. */
-static void sum_up(char *bytes, size_t size) {
-    enum { CHECKSUM = 24 };
-    uint64_t sum = size, word;
-    for (size_t at = 0; at + sizeof word <= size; at += sizeof word) {
-        if (at == CHECKSUM)
-            continue;
-        memcpy(&word, bytes + at, sizeof word);
-        sum = (sum ^ word) * 0xff51afd7ed558ccdu;
-        sum ^= sum >> 32;
-    }
-    memcpy(bytes + CHECKSUM, &sum, sizeof sum);
-}
-
 static void save(struct world *w, const struct object *o) {
     free(w->saved);
     w->saved_size = narc_count_contact_bytes(o->contacts);
@@ -564,7 +550,7 @@ static void save(struct world *w, const struct object *o) {
     assert_int_equal(narc_save_contacts(o->contacts, w->saved, w->saved_size, NULL), NARC_OK);
     char *const copy = malloc(w->saved_size);
     memcpy(copy, w->saved, w->saved_size);
-    sum_up(copy, w->saved_size);
+    sum_up_contacts(copy, w->saved_size);
     assert_memory_equal(copy, w->saved, w->saved_size); /* or what is damaged below is refused for its sum alone */
     free(copy);
 }
@@ -608,7 +594,7 @@ static void load(struct bytes *from, struct world *w, struct object *o) {
         else
             bytes[4 * at] = (char)(bytes[4 * at] ^ 1 << take_below(from, 8));
     }
-    sum_up(bytes, w->saved_size);
+    sum_up_contacts(bytes, w->saved_size);
     const size_t size = take_below(from, 8) ? w->saved_size : take_word(from) % w->saved_size;
     const uint64_t before = o->r ? hash_result(w, o->r) : 0;
     allowed = take_below(from, 4) ? SIZE_MAX : take_below(from, 24);

@@ -132,3 +132,16 @@ uint64_t test_hash_items(uint64_t hash, const void *items, size_t count, size_t 
             hash = test_hash(hash, &byte[i ^ turn], 1);
     return hash;
 }
+
+void sum_up_contacts(char *bytes, size_t size) {
+    enum { CHECKSUM = 24 };
+    uint64_t sum = size, word;
+    for (size_t at = 0; at + sizeof word <= size; at += sizeof word) {
+        if (at == CHECKSUM)
+            continue;
+        memcpy(&word, bytes + at, sizeof word);
+        sum = (sum ^ word) * 0xff51afd7ed558ccdu;
+        sum ^= sum >> 32;
+    }
+    memcpy(bytes + CHECKSUM, &sum, sizeof sum);
+}

@@ -78,4 +78,7 @@ size_t random_damage(struct test_random *random, char *text, size_t size);
 uint64_t test_hash(uint64_t hash, const void *bytes, size_t size);
 uint64_t test_hash_items(uint64_t hash, const void *items, size_t count, size_t size);
 
+/* Gives saved contacts their sum, as narc_save_contacts() does. */
+void sum_up_contacts(char *bytes, size_t size);
+
 #endif

@@ -58,7 +58,7 @@ TEST(test_free_places) {
     dem_fill_randomly(&d, &filling, &random);
     assert_int_equal(d.grain_count, 150);
     dem_start(&d);
-    const narc_bodies bodies = dem_make_poses(&d);
+    const narc_bodies bodies = dem_make_poses(&d, false);
     const narc_query query = {
         .margin = (float)gap - 1e-4f, .selection = NARC_ARRAY(d.found->order), .selection_count = d.found->count};
     const uint32_t *b = d.found->pairs.b.base;
