@@ -490,6 +490,42 @@ static narc_bodies view_side(const narc_casts *casts, int side, const float *x, 
                          .shape = {casts->side[side].shape, item}};
 }
 
+#if !NARC_SMALL
+/* Asks one cast by itself; where that has no answer, as all are asked. */
+static void ask_one(const narc_batch *contacts, narc_casts *casts, size_t k) {
+    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
+    const narc_one_pair at = {.place = k,
+                              .shape_a = a->shape[k],
+                              .shape_b = b->shape[k],
+                              .x = casts->x_now[k],
+                              .y = casts->y_now[k],
+                              .cosine_a = casts->cosine_now[0][k],
+                              .sine_a = casts->sine_now[0][k],
+                              .scale_a = a->scale[k],
+                              .cosine_b = casts->cosine_now[1][k],
+                              .sine_b = casts->sine_now[1][k],
+                              .scale_b = b->scale[k],
+                              .margin = contacts->query->margin};
+    const narc_rows row = {.base = (char *)&casts->contact[k], .stride = sizeof casts->contact[0]};
+    size_t unused = 0;
+    if (NARC_NAMED(pair)(contacts, &at, false, &casts->contact[k]) < 0)
+        NARC_NAMED(contact)(contacts, k, 1, &unused, &row);
+}
+#endif
+
+/* What touches at the times of all casts: a row each, as margins are infinite. */
+static void ask_contacts(const narc_batch *contacts, narc_casts *casts) {
+    const narc_rows rows = {.base = (char *)casts->contact, .stride = sizeof casts->contact[0]};
+    size_t unused = 0;
+#if !NARC_SMALL
+    for (size_t k = 0; casts->count <= NARC_FEW && k < casts->count; k++)
+        ask_one(contacts, casts, k);
+    if (casts->count <= NARC_FEW)
+        return;
+#endif
+    NARC_NAMED(contact)(contacts, 0, casts->count, &unused, &rows);
+}
+
 size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end) {
     static const float zeros[CAST_SLOTS];
     const narc_batch *const batch = given->batch;
@@ -513,8 +549,6 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
                                  .count = CAST_SLOTS,
                                  .asked = CAST_SLOTS,
                                  .of_casts = true};
-    const narc_rows rows = {.base = (char *)casts.contact, .stride = sizeof casts.contact[0]};
-    size_t unused = 0;
     while (casts.count > 0 || first < end) {
         while (casts.count + CAST_GROUP <= CAST_SLOTS && first < end) {
             const size_t count = end - first < CAST_GROUP ? end - first : CAST_GROUP;
@@ -522,7 +556,7 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
             first += count;
         }
         place_casts(&casts);
-        NARC_NAMED(contact)(&contacts, 0, casts.count, &unused, &rows);
+        ask_contacts(&contacts, &casts);
         advance_casts(&call, &casts);
     }
     return call.skipped;
