@@ -32,6 +32,13 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
     return status;
 }
 
+/* The kernel for so many pairs. */
+#if NARC_SMALL
+#define KERNEL_FOR(count, few, kernel) (kernel)
+#else
+#define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
+#endif
+
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, uint64_t *out_bits, narc_error *error) {
     narc_batch batch;
@@ -55,16 +62,9 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
     dense.dense = 1;
     batch.query = &dense;
     batch.row_size = sizeof *out_separations;
-    return narc_answer_rows(kernels->separation, &batch, out_separations, out_separations ? SIZE_MAX : 0, &found,
-                            error);
+    return narc_answer_rows(KERNEL_FOR(batch.count, narc_find_few_separations, kernels->separation), &batch,
+                            out_separations, out_separations ? SIZE_MAX : 0, &found, error);
 }
-#endif
-
-/* The kernel for so many pairs. */
-#if NARC_SMALL
-#define KERNEL_FOR(count, few, kernel) (kernel)
-#else
-#define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
 #endif
 
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,

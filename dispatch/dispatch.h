@@ -56,7 +56,7 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
                              size_t *out_count, narc_error *error);
 
 /* Row kernels for a few pairs, of which each is asked by itself: NARC_FEW at most. */
-narc_row_kernel narc_find_few_contacts, narc_find_few_manifolds;
+narc_row_kernel narc_find_few_contacts, narc_find_few_manifolds, narc_find_few_separations;
 
 /* The rows of narc_find_contacts() and narc_find_manifolds() of a batch that was begun. */
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,

@@ -7,6 +7,7 @@
 #include "dispatch.h"
 #include "error.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ------------------------------------------------------------------------------------------------ a few of a batch */
@@ -75,6 +76,25 @@ static size_t find_few(const narc_batch *batch, size_t first, size_t count, size
 size_t narc_find_few_contacts(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                               const narc_rows *out) {
     return find_few(batch, first, count, skipped, out, false);
+}
+
+size_t narc_find_few_separations(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                 const narc_rows *out) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    size_t found = 0;
+    for (size_t place = first; place < first + count; place++) {
+        const narc_one_pair at = gather_pair(batch, place);
+        narc_contact row;
+        const int rows = kernels->pair(batch, &at, false, &row);
+        const float separation = rows > 0 ? row.separation : INFINITY;
+        if (rows < 0)
+            found += NARC_KERNELS_FOR(1, kernels)->separation(batch, place, 1, skipped, out);
+        else
+            memcpy(out->base + (ptrdiff_t)narc_pair_at(batch, place) * out->stride, &separation, sizeof separation);
+        found += rows > 0;
+    }
+    return found;
 }
 
 size_t narc_find_few_manifolds(const narc_batch *batch, size_t first, size_t count, size_t *skipped,

@@ -456,7 +456,7 @@ TEST(few_of_a_batch) {
         struct scene scene = make_random_scene(&random, precision % 2 ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
         const narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
-        static float margins[PAIRS], shifts[PAIRS];
+        static float margins[PAIRS], shifts[PAIRS], separations[PAIRS];
         for (size_t k = 0; k < PAIRS; k++) {
             margins[k] = k % 3 ? k % 5 ? 0.2f * (float)(k % 4) : INFINITY : k % 7 ? -0.01f : NAN;
             shifts[k] = 0.25f * (float)(k % 3);
@@ -477,9 +477,12 @@ TEST(few_of_a_batch) {
             few.selection = NARC_ARRAY(selection);
             few.selection_count = 1 + k % 2;
             expect_ok(narc_find_contacts(scene.store, &bodies, &pairs, &few, row, 2, &found, &error), &error);
+            expect_ok(narc_find_separations(scene.store, &bodies, &pairs, &few, separations, &error), &error);
             for (size_t i = 0; i < few.selection_count; i++) {
                 const narc_contact *const right = &all.rows[selection[i]];
-                if (right->count > 0 || right->separation > 0)
+                const bool has_row = right->count > 0 || right->separation > 0;
+                assert_true(separations[selection[i]] == (has_row ? right->separation : INFINITY));
+                if (has_row)
                     assert_memory_equal(&row[expected++], right, sizeof *right);
             }
             assert_int_equal(found, expected);
