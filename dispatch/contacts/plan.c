@@ -239,7 +239,7 @@ static void mark_slot(const narc_contact_step *s, size_t k) {
 static bool mark_new_slots(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const narc_pair_list *const list = s->list;
-    if (!c->marks_known || list->renumbered || c->broad->has_other_kinds || c->again || s->has_ground)
+    if (!c->marks_known || c->broad->has_other_kinds || c->again || s->has_ground)
         return false;
     for (size_t i = 0; i < c->parted_count; i++)
         c->marks[c->parted[i]] = NARC_GONE;

@@ -306,9 +306,10 @@ TEST(workers_share_a_step) {
 
 /* A body that is taken out and is there still is another one: what was known of its pairs is gone. */
 TEST(bodies_that_are_taken_out_are_others) {
-    for (int way = 0; way < 2; way++) {
+    for (int way = 0; way < 3; way++) {
         struct few *const few = make_few(circle_of(0.5), 6, NULL);
         const uint64_t gone[] = {way ? 3 : 2, 77};
+        const uint32_t none = 0;
         narc_error error;
         if (!way)
             few->step.id.base = NULL; /* ids are numbers */
@@ -317,6 +318,8 @@ TEST(bodies_that_are_taken_out_are_others) {
         for (size_t k = 0; k < r->count; k++)
             marks[r->order[k]].low = 7 + k;
         expect_ok(narc_forget_bodies(few->contacts, gone, 2, &error), &error);
+        if (way == 2) /* and nothing has moved */
+            few->step.moved = (narc_index_column){&none, sizeof none};
         r = step_few(few);
         assert_int_equal(r->count, 3);
         assert_int_equal(r->touching_count, 3);
@@ -567,6 +570,90 @@ TEST(unlisted_bodies_without_a_shape_are_an_error) {
     few->step.moved_count = 0;
     few->body[1].x = 10.5;
     check_with_fresh(few);
+    destroy_few(few);
+}
+
+/* Saves contacts and loads them into others, which know something else. */
+static void save_and_load(const struct few *from, narc_contacts *to) {
+    narc_error error;
+    const size_t size = narc_count_contact_bytes(from->contacts);
+    char *const bytes = malloc(size);
+    assert_non_null(bytes);
+    expect_ok(narc_save_contacts(from->contacts, bytes, size, &error), &error);
+    expect_ok(narc_load_contacts(to, from->store, bytes, size, NULL, &error), &error);
+    free(bytes);
+}
+
+/* What is not saved is found out again: who sleeps, which pairs are known, for how long no entry is made. */
+TEST(goes_on_from_what_was_loaded) {
+    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    const uint64_t gone = 3;
+    narc_error error;
+    narc_contacts *const awake = make_contacts(NARC_MANIFOLD_ROWS, NULL), *const kept = few->contacts;
+    few->contacts = awake;
+    step_few(few);
+    few->contacts = kept;
+    memset(few->kind, NARC_ASLEEP, 6);
+    step_few(few);
+    memset(few->kind, 0, 6);
+    few->contacts = awake;
+    save_and_load(few, kept);
+    few->contacts = kept;
+    few->body[1].x = 0.8;
+    const narc_step_result *r = step_few(few);
+    assert_int_equal(r->asked_count, 1);
+    assert_int_equal(r->touching_count, 3);
+    expect_ok(narc_forget_bodies(kept, &gone, 1, &error), &error);
+    save_and_load(few, awake);
+    few->contacts = awake;
+    r = step_few(few);
+    assert_int_equal(r->ended_count, 1);
+    assert_int_equal(r->began_count, 1);
+    narc_destroy_contacts(kept);
+    destroy_few(few);
+}
+
+TEST(saves_how_long_no_entry_is_made) {
+    struct test_random random = test_random_named("wild turns");
+    struct few *const few = make_few(make_shape(&random, FAMILY_SMOOTH), 100, NULL);
+    narc_contacts *const kept = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    for (size_t step = 0; step < 12; step++) {
+        few->contacts = kept;
+        save_and_load(few, loaded);
+        for (size_t k = 0; k < 100; k++) {
+            const double angle = random_between(&random, -PI, PI);
+            few->body[k].cosine = (float)cos(angle);
+            few->body[k].sine = (float)sin(angle);
+        }
+        step_few(few);
+        few->contacts = loaded;
+        step_few(few);
+        const size_t size = narc_count_contact_bytes(kept);
+        char *const one = malloc(size), *const other = malloc(size);
+        assert_true(one && other && narc_count_contact_bytes(loaded) == size);
+        assert_int_equal(narc_save_contacts(kept, one, size, NULL), NARC_OK);
+        assert_int_equal(narc_save_contacts(loaded, other, size, NULL), NARC_OK);
+        assert_memory_equal(one, other, size);
+        free(one);
+        free(other);
+    }
+    narc_destroy_contacts(kept);
+    destroy_few(few);
+}
+
+/* A pair that only the filter makes is asked, though nobody moves. */
+TEST(a_filter_makes_pairs) {
+    static uint64_t mask[600];
+    struct few *const few = make_few(circle_of(0.5), 600, NULL);
+    memset(mask, 0xff, sizeof mask);
+    mask[101] = 0;
+    few->filter.mask = NARC_ARRAY(mask);
+    assert_int_equal(step_few(few)->touching_count, 299);
+    assert_int_equal(step_few(few)->asked_count, 0);
+    mask[101] = UINT64_MAX;
+    const narc_step_result *const r = step_few(few);
+    assert_int_equal(r->touching_count, 300);
+    assert_int_equal(r->asked_count, 1);
     destroy_few(few);
 }
 
