@@ -58,10 +58,10 @@ static size_t find_few(const narc_batch *batch, size_t first, size_t count, size
     for (size_t place = first; place < first + count; place++) {
         const narc_one_pair at = gather_pair(batch, place);
         const uint32_t number = (uint32_t)narc_pair_at(batch, place);
-        narc_rows to = *out;
         char *const row = out->base + (ptrdiff_t)(dense ? number : found) * out->stride;
         const int rows = kernels->pair(batch, &at, manifold, row);
         if (rows < 0) {
+            narc_rows to = *out;
             to.base = dense ? out->base : row;
             found += kernel(batch, place, 1, skipped, &to);
         } else if (rows == 0 && dense) {
