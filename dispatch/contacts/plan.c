@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Does neither of two bodies move? */
-static bool do_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
+static bool are_at_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
     enum { AT_REST = NARC_STATIC | NARC_ASLEEP };
     const narc_broad_phase *const broad = s->contacts->broad;
     return broad->has_filter && broad->kinds[a] & AT_REST && broad->kinds[b] & AT_REST;
@@ -93,12 +93,14 @@ static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
 }
 
 /* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, or was it at rest while
- * something changed? */
+ * something changed? One that is marked as at rest stays so. */
+static inline unsigned find_stale(unsigned flags, unsigned marks) {
+    const unsigned old = flags & NARC_SLOT_STALE & ~(marks / NARC_RESTS);
+    return old | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
+}
+
 static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
-    if (slot == UINT32_MAX)
-        return true;
-    const unsigned flags = v->flags[slot], marks = v->marks[k];
-    return (flags & NARC_SLOT_STALE) | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
+    return slot == UINT32_MAX || find_stale(v->flags[slot], v->marks[k]);
 }
 
 static bool is_ground(const narc_contact_step *s, const pair_view *v, size_t k) {
@@ -147,7 +149,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     const unsigned what = apart ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end && changed; k++)
         if (is_ground(s, v, k))
-            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, do_rest(s, a, v->b[k]) ? NARC_REST : what};
+            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, are_at_rest(s, a, v->b[k]) ? NARC_REST : what};
 }
 
 /* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -231,7 +233,7 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
 static void mark_slot(const narc_contact_step *s, size_t k) {
     const narc_contacts *const c = s->contacts;
     const uint32_t slot = c->order[k];
-    c->marks[slot] = (uint8_t)(s->list->marks[k] | (do_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
+    c->marks[slot] = (uint8_t)(s->list->marks[k] | (are_at_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
 }
 
 /* The marks of a new list in which pairs that were there are as they were: those of other slots. Bodies of new pairs are
@@ -331,8 +333,7 @@ void narc_sort_pairs(const narc_contact_step *s) {
             k = find_changed(&pairs, v.changed, k) - 1;
             continue;
         }
-        const unsigned old = was & NARC_SLOT_STALE & ~(marks / NARC_RESTS); /* at rest it stays so */
-        const unsigned stale = old | (marks & NARC_FLIPPED) | ((was ^ marks) & NARC_SENSOR);
+        const unsigned stale = find_stale(was, marks);
         if (!(changed | stale))
             continue;
         unsigned what = NARC_ASK;
