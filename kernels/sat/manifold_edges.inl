@@ -311,7 +311,7 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
 
-INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
+SHARED struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
                                                    const struct sides *s) {
     const struct edge *const a = &s->a, *const b = &s->b;
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);

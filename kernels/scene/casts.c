@@ -492,7 +492,7 @@ static narc_bodies view_side(const narc_casts *casts, int side, const float *x, 
 
 #if !NARC_SMALL
 /* Asks one cast by itself; where that has no answer, as all are asked. */
-static void ask_one(const narc_batch *contacts, narc_casts *casts, size_t k) {
+static void ask_one(const narc_kernel_table *kernels, const narc_batch *contacts, narc_casts *casts, size_t k) {
     const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
     const narc_one_pair at = {.place = k,
                               .shape_a = a->shape[k],
@@ -508,21 +508,22 @@ static void ask_one(const narc_batch *contacts, narc_casts *casts, size_t k) {
                               .margin = contacts->query->margin};
     const narc_rows row = {.base = (char *)&casts->contact[k], .stride = sizeof casts->contact[0]};
     size_t unused = 0;
-    if (NARC_NAMED(pair)(contacts, &at, false, &casts->contact[k]) < 0)
+    if (kernels->pair(contacts, &at, false, &casts->contact[k]) < 0)
         NARC_NAMED(contact)(contacts, k, 1, &unused, &row);
 }
 #endif
 
 /* What touches at the times of all casts: a row each, as margins are infinite. */
-static void ask_contacts(const narc_batch *contacts, narc_casts *casts) {
+static void ask_contacts(const narc_kernel_table *kernels, const narc_batch *contacts, narc_casts *casts) {
     const narc_rows rows = {.base = (char *)casts->contact, .stride = sizeof casts->contact[0]};
     size_t unused = 0;
 #if !NARC_SMALL
     for (size_t k = 0; casts->count <= NARC_FEW && k < casts->count; k++)
-        ask_one(contacts, casts, k);
+        ask_one(kernels, contacts, casts, k);
     if (casts->count <= NARC_FEW)
         return;
 #endif
+    (void)kernels;
     NARC_NAMED(contact)(contacts, 0, casts->count, &unused, &rows);
 }
 
@@ -556,7 +557,7 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
             first += count;
         }
         place_casts(&casts);
-        ask_contacts(&contacts, &casts);
+        ask_contacts(given->kernels, &contacts, &casts);
         advance_casts(&call, &casts);
     }
     return call.skipped;
