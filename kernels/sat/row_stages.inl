@@ -67,10 +67,21 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
         if (!vm_any(near))
             continue;
         const vm clear = v_lt(best->second, v_sub(best->gap, v_mul(v_set(CLEAR_EDGE), slack)));
-        store_vec2(queue, DIRECTION, k, best->normal);
-        v_store(queue->item[EDGE_CODE] + k, v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4))));
-        pass_on(queue, k, vm_and_not(near, clear), ROW_FIELDS, &queues[DECIDE]);
-        pass_on(queue, k, vm_and(near, clear), FIELDS, queue);
+        const vf code = v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4)));
+        vf item[FIELDS];
+        if (CAPACITY == 1) { /* it stays in its place */
+            store_vec2(queue, DIRECTION, k, best->normal);
+            v_store(queue->item[EDGE_CODE] + k, code);
+            pass_on(queue, k, live, FIELDS, vm_any(clear) ? queue : &queues[DECIDE]);
+            continue;
+        }
+        get_item(queue, k, item, ROW_FIELDS);
+        set_vec2(item, DIRECTION, best->normal);
+        item[EDGE_CODE] = code;
+        if (vm_any(vm_and_not(near, clear)))
+            push(&queues[DECIDE], vm_and_not(near, clear), item, ROW_FIELDS);
+        if (vm_any(vm_and(near, clear)))
+            push(queue, vm_and(near, clear), item, FIELDS);
     }
     pad(queue); /* what was behind them has no edges */
 }
