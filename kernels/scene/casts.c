@@ -515,7 +515,7 @@ NOINLINE void ask_contacts(const narc_shapes *shapes, narc_casts *casts, size_t 
 
 #if !NARC_SMALL
 /* The same of a few casts, each by itself where that has an answer. */
-static void ask_few(const narc_cast_batch *given, narc_casts *casts) {
+NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
     const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
     narc_batch batch;
     batch.shapes = given->batch->shapes;
