@@ -168,8 +168,7 @@ INLINE void write_boxes(const struct call *call, const struct box_pair *pair, co
         const struct sides sides = find_box_sides(call, pair, c, &on_a, &on_b, place, margin);
         answer.reach_a = find_box_reach(pair, &c->a, &on_a);
         answer.reach_b = find_box_reach(pair, &c->b, &on_b);
-        const struct manifold_points points = find_manifold_points(call, &answer, &sides);
-        write_manifolds(to, find_numbers(call, pairs), &answer, &points);
+        write_sides(call, to, pairs, &answer, &sides);
     } else {
         write_rows(call, to, find_numbers(call, pairs), &answer);
     }

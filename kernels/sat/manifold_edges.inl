@@ -311,7 +311,7 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
 
-SHARED struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
+INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
                                                    const struct sides *s) {
     const struct edge *const a = &s->a, *const b = &s->b;
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
@@ -331,6 +331,13 @@ SHARED struct manifold_points find_manifold_points(const struct call *call, cons
     m.count = vi_select(p.two, vi_set(2), vi_set(1));
     write_facing_points(&p, s->to_world, s->n, m.first, m.second);
     return m;
+}
+
+/* Writes the rows of manifolds that may have second points. */
+SHARED void write_sides(const struct call *call, char *const *place, vi pairs, const struct answer *answer,
+                        const struct sides *sides) {
+    const struct manifold_points points = find_manifold_points(call, answer, sides);
+    write_manifolds(place, find_numbers(call, pairs), answer, &points);
 }
 
 /* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */
