@@ -155,9 +155,10 @@ struct lane_rays {
 };
 
 /* Where they meet a body that is no piece, all in front of them: out_fraction is at least 0, -1 of those that are to be
- * asked alone, and NaN of others. False if it is that of all. */
-INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays *rays, struct entry_lanes *entries,
-                          struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
+ * asked alone, and NaN of others. `ignores`: these are not
+ * asked that start in the body. False if it is that of all. */
+INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays *rays, bool ignores,
+                          struct entry_lanes *entries, struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - rays->origin.x, frame->position.y - rays->origin.y};
     const place turned = turn_to_shape(frame, way), middle = {(double)header->bound_x, (double)header->bound_y};
@@ -208,7 +209,7 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
         const vd fraction = distance * d_load(rays->inverse_length + l);
         const vd told = d_select(d_le(fraction, d_set((double)FLT_MAX)), fraction, nan);
         met[h].distance = distance;
-        d_put_floats(out_fraction + l, d_select(d_lt(d_set(0), distance), told, d_set(-1)));
+        d_put_floats(out_fraction + l, d_select(d_lt(d_set(0), distance), told, ignores ? nan : d_set(-1)));
     }
     const vf fraction = v_select(entries->found, v_load(out_fraction), v_set(NAN));
     v_store(out_fraction, v_select(entries->near, v_set(-1), fraction));

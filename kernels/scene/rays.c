@@ -527,28 +527,34 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
     return nearest;
 }
 
-/* Writes a ray's nearest hit to its row. */
-NOINLINE void put_nearest(const narc_ray_batch *batch, struct bundle *b, unsigned k) {
+/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body. */
+NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t rays) {
     struct nearest *const nearest = &b->nearest;
     double(*const from)[LANES] = nearest->met;
-    struct walk *const w = &b->walks[k];
-    struct body_frame frame;
-    const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
-    if (!(nearest->waiting >> k & 1) || !load_body_frame(batch->shapes, batch->bodies, body, &frame))
-        return;
-    const struct meeting met = {.foot = {from[0][k], from[1][k]},
-                                .direction = {from[2][k], from[3][k]},
-                                .entry = {.normal = {from[4][k], from[5][k]},
-                                          .arc = nearest->feature[k] & (ON_EDGE - 1),
-                                          .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
-                                .ahead = from[6][k],
-                                .distance = from[7][k]};
-    nearest->waiting &= ~(1u << k);
-    w->found = put_meeting(&frame, &w->ray, &met, INFINITY, w->rows);
-    w->rows->body = body;
-    w->rows->count = 1;
-    w->limit = b->limits[k];
-    w->limit_fraction = nearest->fraction[k];
+    struct body_frame frame = {.header = NULL};
+    int32_t loaded = INT32_MAX;
+    for (rays &= nearest->waiting; rays; rays &= rays - 1) {
+        const unsigned k = (unsigned)FIND_LOWEST(rays);
+        struct walk *const w = &b->walks[k];
+        const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
+        if (nearest->body[k] != loaded)
+            load_body_frame(batch->shapes, batch->bodies, body, &frame);
+        loaded = nearest->body[k];
+        const struct meeting met = {.foot = {from[0][k], from[1][k]},
+                                    .direction = {from[2][k], from[3][k]},
+                                    .entry = {.normal = {from[4][k], from[5][k]},
+                                              .arc = nearest->feature[k] & (ON_EDGE - 1),
+                                              .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
+                                    .ahead = from[6][k],
+                                    .distance = from[7][k]};
+        put_meeting(&frame, &w->ray, &met, INFINITY, w->rows);
+        w->rows->body = body;
+        w->rows->count = 1;
+        w->found = 1;
+        w->limit = b->limits[k];
+        w->limit_fraction = nearest->fraction[k];
+        nearest->waiting &= ~(1u << k);
+    }
 }
 
 INLINE void select_doubles(vl m, double *p, vd a) { d_store(p, d_select(m, a, d_load(p))); }
@@ -556,14 +562,14 @@ INLINE void select_ints(vm m, int32_t *p, vi a) { vi_store(p, vi_select(m, a, vi
 INLINE void select_floats(vm m, float *p, vf a) { v_store(p, v_select(m, a, v_load(p))); }
 
 /* Casts rays k, k + 1 ... at a body, which has a hit for each ray that it tells nothing of. */
-INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uint32_t body, unsigned k) {
+INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uint32_t body, bool ignores, unsigned k) {
     struct nearest *const nearest = &b->nearest;
     const struct lane_rays rays = {b->walks[0].ray.origin, nearest->direction_x + k, nearest->direction_y + k,
                                    nearest->inverse_length + k};
     struct entry_lanes entries;
     struct half_met met[LANE_HALVES];
     float lanes[V_WIDTH];
-    if (!meet_in_lanes(frame, &rays, &entries, met, lanes))
+    if (!meet_in_lanes(frame, &rays, ignores, &entries, met, lanes))
         return 0;
     const vf fraction = v_load(lanes), least = v_load(nearest->fraction + k);
     const vi number = vi_set((int32_t)(body ^ 0x80000000u));
@@ -596,12 +602,14 @@ INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uin
 }
 
 /* Casts rays at a body; which are to be asked alone? */
-INLINE uint32_t cast_in_lanes(struct bundle *b, const struct body_frame *frame, uint32_t body, uint32_t rays) {
+INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct bundle *b, const struct body_frame *frame,
+                              uint32_t body, uint32_t rays) {
+    const bool ignores = batch->options->inside == NARC_INSIDE_IGNORES;
     uint32_t alone = 0;
     while (rays) {
         const unsigned k = (unsigned)FIND_LOWEST(rays);
         const uint32_t lanes = (uint32_t)(((uint64_t)1 << V_WIDTH) - 1) << k;
-        alone |= cast_lanes(b, frame, body, k) << k & rays;
+        alone |= cast_lanes(b, frame, body, ignores, k) << k & rays;
         rays &= ~lanes;
     }
     return alone;
@@ -618,12 +626,12 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
             continue;
         if (b->in_lanes && !narc_is_piece(frame.header))
-            rays = cast_in_lanes(b, &frame, index->body[NARC_NODE_SLOTS * leaf + slot], rays);
+            rays = cast_in_lanes(batch, b, &frame, index->body[NARC_NODE_SLOTS * leaf + slot], rays);
         for (; rays; rays &= rays - 1) {
             const unsigned k = (unsigned)FIND_LOWEST(rays);
             struct walk *const w = &b->walks[k];
             if (b->in_lanes)
-                put_nearest(batch, b, k);
+                put_hits(batch, b, 1u << k);
             if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
                 cast_at_body(batch, w, &frame, index->body[NARC_NODE_SLOTS * leaf + slot]);
             b->limits[k] = w->limit;
@@ -657,8 +665,8 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
             visit_leaf_together(batch, b, node, slots, d.near[0]);
         do {
             if (!take_slot(&d, b->limit, &level, &slot, &is_near)) {
-                for (; b->in_lanes && b->nearest.waiting;)
-                    put_nearest(batch, b, (unsigned)FIND_LOWEST(b->nearest.waiting));
+                if (b->in_lanes)
+                    put_hits(batch, b, UINT32_MAX);
                 return;
             }
         } while (!is_near);
