@@ -101,8 +101,8 @@ struct arc_lanes {
 INLINE void load_arc_lanes(const struct body_frame *frame, const int32_t *arc, struct arc_lanes *out) {
     int32_t before[V_WIDTH];
     vf field[4];
-    for (int l = 0; l < V_WIDTH; l++)
-        before[l] = arc[l] > 0 ? arc[l] - 1 : (int32_t)frame->header->count - 1;
+    const vi number = vi_load(arc), last = vi_set((int32_t)frame->header->count - 1);
+    vi_store(before, vi_select(vi_lt(vi_set(0), number), vi_sub(number, vi_set(1)), last));
     v_rows(frame->arcs, sizeof *frame->arcs, arc, field);
     v_store(out->center_x, field[0]);
     v_store(out->center_y, field[1]);

@@ -379,10 +379,12 @@ INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned s
 }
 
 INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsigned flips) {
-    d->flips[level] = flips;
     const uint64_t left = (uint64_t)flip_slots(slots, flips) << 8 * (level & 7);
-    d->left |= level < 8 ? left : 0;
-    d->above |= level < 8 ? 0 : left;
+    d->flips[level] = flips;
+    if (level < 8)
+        d->left |= left;
+    else
+        d->above |= left;
 }
 
 /* The next slot that is left, and its level; whether it is no further than the limit. False if there is none. */
@@ -410,18 +412,22 @@ INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, size_t leaf,
            cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]);
 }
 
-static void walk_alone(const narc_ray_batch *batch, struct walk *w) {
-    const narc_index *const index = batch->index;
+/* Leaves the slots of a node that the ray meets to be visited. */
+INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned level, uint32_t at, struct descent *d) {
+    const size_t node = (size_t)index->first_node[level] + at;
+    const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
+    d->node[level] = at;
+    leave_slots(d, level, mask_slots(index, node, slots, w->chosen.mask),
+                narc_find_flips(index->order[node], w->x.backwards, w->y.backwards));
+}
+
+NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     struct descent d;
-    unsigned slot, level = index->level_count - 1;
+    unsigned slot, level = batch->index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
     for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
-        const size_t node = (size_t)index->first_node[level] + below;
-        const uint32_t slots = find_slots(w, &index->nodes[node], d.near[level]);
-        d.node[level] = below;
-        leave_slots(&d, level, mask_slots(index, node, slots, w->chosen.mask),
-                    narc_find_flips(index->order[node], w->x.backwards, w->y.backwards));
+        visit_node(batch->index, w, level, below, &d);
         do {
             if (!take_slot(&d, w->limit, &level, &slot, &is_near) ||
                 (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot)))
