@@ -63,7 +63,7 @@ struct walk {
     narc_ray_hit *rows;
 };
 
-enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
+enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, MOST_ALONE = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
 
 /* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
 #if defined(__wasm__)
@@ -95,7 +95,9 @@ struct bundle {
     float limit;                            /* the largest */
     uint64_t mask;                          /* of all */
     float limits[MOST_TOGETHER + V_WIDTH], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
-    struct walk walks[MOST_TOGETHER];
+    struct walk *walks;
+    size_t alone; /* those that wait in front of them */
+    struct walk all[MOST_ALONE + LEAST_TOGETHER + MOST_TOGETHER];
     bool in_lanes;
     struct nearest nearest;
 };
@@ -679,14 +681,93 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
     }
 }
 
-/* Walks with all that are gathered. */
-static void walk(const narc_ray_batch *batch, struct bundle *b) {
+/* ------------------------------------------------------------------------------------------------ rays side by side */
+
+/* Rays that each go their own way take a step in turn, so that the processor need not wait for one. */
+enum { UNDER_WAY = 16 };
+
+struct stepper {
+    struct walk *walk;
+    struct descent d;
+    unsigned level, slot;
+    uint32_t below;
+};
+
+/* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
+INLINE bool find_step(struct stepper *s) {
+    bool is_near;
+    do {
+        if (!take_slot(&s->d, s->walk->limit, &s->level, &s->slot, &is_near))
+            return false;
+    } while (!is_near);
+    s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
+    return true;
+}
+
+INLINE void begin_steps(const narc_index *index, struct walk *w, struct stepper *out) {
+    out->walk = w;
+    out->d.left = out->d.above = 0;
+    out->below = 0;
+    out->level = index->level_count;
+}
+
+NOINLINE void walk_apart(const narc_ray_batch *batch, struct walk *walks, size_t count) {
+    const narc_index *const index = batch->index;
+    struct walk *const end = walks + count;
+    struct stepper steppers[UNDER_WAY], *at_node[UNDER_WAY], *at_body[UNDER_WAY];
+    size_t node_count = 0, body_count;
+    for (; node_count < UNDER_WAY && walks < end; node_count++) {
+        begin_steps(index, walks++, &steppers[node_count]);
+        at_node[node_count] = &steppers[node_count];
+    }
+    while (node_count > 0) {
+        body_count = 0;
+        const size_t nodes = node_count;
+        node_count = 0;
+        for (size_t k = 0; k < nodes; k++) {
+            struct stepper *const s = at_node[k];
+            visit_node(index, s->walk, s->level - 1, s->below, &s->d);
+            if (!find_step(s)) {
+                if (walks == end)
+                    continue;
+                begin_steps(index, walks++, s);
+            }
+            at_node[node_count] = at_body[body_count] = s;
+            node_count += s->level > 0;
+            body_count += s->level == 0;
+        }
+        for (size_t k = 0; k < body_count; k++) {
+            struct stepper *const s = at_body[k];
+            bool goes_on;
+            do {
+                goes_on = !visit_slot(batch, s->walk, s->d.node[0], s->slot) && find_step(s);
+            } while (goes_on && s->level == 0);
+            if (!goes_on) {
+                if (walks == end)
+                    continue;
+                begin_steps(index, walks++, s);
+            }
+            at_node[node_count++] = s;
+        }
+    }
+}
+
+/* Those that are gathered walk together; or, if there are few, they wait for more that go alone. `last`: no more come. */
+static void walk(const narc_ray_batch *batch, struct bundle *b, bool last) {
     if (NARC_SHORTCUTS && b->count >= LEAST_TOGETHER)
         walk_together(batch, b);
     else
-        for (size_t k = 0; k < b->count; k++)
-            walk_alone(batch, &b->walks[k]);
+        b->alone += b->count;
     b->count = 0;
+    if (b->alone >= MOST_ALONE || last) {
+        if (IN_LANES && b->alone >= LEAST_TOGETHER)
+            walk_apart(batch, b->all, b->alone);
+        else
+            for (size_t k = 0; k < b->alone; k++)
+                walk_alone(batch, &b->all[k]);
+        b->alone = 0;
+    }
+    b->walks = b->all + b->alone;
 }
 
 /* Does a ray go the way of the first one? */
@@ -716,12 +797,12 @@ INLINE bool gather(const narc_ray_batch *batch, const narc_box *scene, const str
         return rays->length[k] > 0;
     const bool joins = joins_first(b, rays, k);
     if (!joins)
-        walk(batch, b);
+        walk(batch, b, false);
     begin_walk(batch, rays, k, rows, &b->walks[b->count]);
     if (!joins)
         b->open = is_open(batch, scene, &b->walks[0]);
     if (++b->count == MOST_TOGETHER)
-        walk(batch, b);
+        walk(batch, b, false);
     return true;
 }
 
@@ -732,13 +813,14 @@ size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count)
     size_t skipped = 0;
     struct read_rays rays;
     struct bundle bundle;
-    bundle.count = 0;
+    bundle.count = bundle.alone = 0;
+    bundle.walks = bundle.all;
     for (size_t k = first; k < first + count; k++) {
         const size_t at = (k - first) % READ, left = first + count - k;
         if (at == 0)
             read_rays(batch, &scene, k, left < READ ? left : READ, &rays);
         skipped += !gather(batch, &scene, &rays, at, k, &bundle);
     }
-    walk(batch, &bundle);
+    walk(batch, &bundle, true);
     return skipped;
 }
