@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ground.c - what ground costs in a step of many bodies: columns of three rounded boxes on hills, which shake a little; by
- * themselves, and with the ground's entries behind them.
+ * ground.c - what ground costs in a step: columns of three rounded boxes on hills, which shake a little, by themselves and
+ * with the ground's entries behind them; balls or boxes, each on the ground, beside a peer's chain.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +46,24 @@ static struct walk walk_hills(size_t pieces, double size) {
     return w;
 }
 
+/* Where arcs and straight edges meet. */
+static void list_points(const struct walk *walk, struct scene *out) {
+    struct vector *points = allocate(2 * walk->count, sizeof *points);
+    size_t count = 0;
+    for (size_t k = 0; k < walk->count; k++)
+        for (int end = 0; end < 2; end++) {
+            const narc_arc *arc = &walk->arcs[k];
+            const double angle = end ? arc->end : arc->start;
+            const double x = arc->center_x + arc->radius * cos(angle), y = arc->center_y + arc->radius * sin(angle);
+            if (count == 0 || hypot(x - points[count - 1].x, y - points[count - 1].y) > 1e-6)
+                points[count++] = (struct vector){x, y};
+        }
+    out->ground = points;
+    out->ground_count = count;
+}
+
 struct country {
+    struct scene scene; /* a peer's */
     narc_shapes *shapes;
     size_t made, pieces, steps;
     narc_body *bodies; /* the boxes, and behind them the ground */
@@ -55,18 +72,17 @@ struct country {
     narc_contacts *contacts[2];
 };
 
-static struct country make_country(const struct walk *walk, size_t count, double pitch) {
+/* Columns of so many bodies, which are 1 high. */
+static struct country make_country(const struct walk *walk, const struct outline *outline, size_t count, int levels,
+                                   double pitch) {
     const size_t most = 4 * walk->count + 100;
     struct country c = {0};
     narc_chain_entry *entries = allocate(most, sizeof *entries);
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t arc_count;
-    uint32_t shape;
+    const uint32_t shape = 0;
     narc_error error;
     must(narc_create_shapes(NULL, &c.shapes), NULL);
+    add_outline(c.shapes, outline);
     must(narc_add_chain(c.shapes, walk->arcs, walk->count, NULL, entries, most, &c.pieces, &error), &error);
-    must(narc_build_box(1, 1, 0.1, arcs, &arc_count, &error), &error);
-    must(narc_add_shape(c.shapes, arcs, arc_count, &shape, &error), &error);
     for (size_t way = 0; way < 2; way++)
         must(narc_create_contacts(NULL, &c.contacts[way], NULL), NULL);
     c.bodies = allocate(count + c.pieces, sizeof *c.bodies);
@@ -74,13 +90,14 @@ static struct country make_country(const struct walk *walk, size_t count, double
     c.runs = allocate(count + c.pieces, sizeof *c.runs);
     c.moved = allocate(count, sizeof *c.moved);
     double at = walk->arcs[0].center_x;
-    for (size_t k = 1; k < walk->count && c.made + 3 <= count; k++) { /* a column stands where an arc begins */
+    for (size_t k = 1; k < walk->count && c.made + (size_t)levels <= count;
+         k++) { /* a column stands where an arc begins */
         const narc_arc *a = &walk->arcs[k];
         const double x = a->center_x + a->radius * cos(a->start), y = a->center_y + a->radius * sin(a->start);
         if (x > at - pitch)
             continue;
         at = x;
-        for (int level = 0; level < 3; level++) {
+        for (int level = 0; level < levels; level++) {
             c.runs[c.made] = NARC_NO_RUN;
             c.moved[c.made] = (uint32_t)c.made;
             c.bodies[c.made++] = (narc_body){x, y + 0.51 + 1.001 * level, 1, 0, 1, shape};
@@ -117,26 +134,58 @@ static size_t step(struct country *c, int way) {
 static void run(struct row *row) {
     struct country *c = row->state;
     const double start = now(), shake = c->steps++ % 2 ? 1e-3 : -1e-3;
-    step(c, row->question->what);
-    row->bench.seconds = 1e-9 * (now() - start);
+    if (row->peer) {
+        row->bench.seconds = row->peer->step(row->peer_state, c->scene.bodies, c->moved, c->made, 0);
+    } else {
+        step(c, row->question->what);
+        row->bench.seconds = 1e-9 * (now() - start);
+    }
     for (size_t k = 0; k < c->made; k++)
         c->bodies[k].x += shake;
+    for (size_t k = 0; k < c->scene.body_count; k++)
+        c->scene.bodies[k].x += (float)shake;
 }
 
-/* On 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. Each column lies on it. */
+static void begin_peer(struct row *row, const struct walk *walk, struct outline *outline) {
+    struct country *c = row->state;
+    c->scene.outlines = outline;
+    c->scene.body_count = c->made;
+    c->scene.bodies = allocate(c->made, sizeof *c->scene.bodies);
+    for (size_t k = 0; k < c->made; k++)
+        c->scene.bodies[k] = (struct body){(float)c->bodies[k].x, (float)c->bodies[k].y, 1, 0, 0};
+    list_points(walk, &c->scene);
+    row->peer_state = row->peer->create(&c->scene);
+    for (int steps = 0; steps < 3; steps++)
+        run(row);
+    row->bench.hits = (double)row->peer->count_touching(row->peer_state);
+}
+
+/* 30,000 bodies on 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. Each column lies on it.
+ * Of few hills a tenth, which single precision has room for. */
 static void prepare(struct row *row) {
-    const size_t count = scaled(30000), pieces = scaled(100000);
+    const bool few = strstr(row->bench.name, "/few-hills/") != NULL, balls = strstr(row->bench.name, "/balls/") != NULL;
     const bool is_short = strstr(row->bench.name, "/short-hills/") != NULL;
-    const double length = is_short ? 1.2 * 1.1 * (double)count / 3 / (double)pieces : 1.1;
-    const double pitch = fmax(1.1, 0.9 * length * (double)pieces / ((double)count / 3));
+    const size_t count = scaled(few ? 3000 : 30000), pieces = scaled(few ? 10000 : 100000), levels = few ? 1 : 3;
+    const double columns = (double)(count / levels);
+    const double length = is_short ? 1.2 * 1.1 * columns / (double)pieces : 1.1;
+    const double pitch = fmax(1.1, 0.9 * length * (double)pieces / columns);
     const struct walk walk = walk_hills(pieces * 4 / 3, length / 0.45);
     struct country *c = row->state = allocate(1, sizeof *c);
-    *c = make_country(&walk, count, pitch);
+    struct outline *outline = allocate(1, sizeof *outline);
+    *outline = balls ? circle_with(0.5) : box_with(0.4, 0.4);
+    for (size_t k = 0; k <= outline->count && !balls; k++)
+        outline->arcs[k].radius = 0.1;
+    *c = make_country(&walk, outline, count, (int)levels, pitch);
+    row->bench.count = 1; /* a step */
+    if (row->peer) {
+        begin_peer(row, &walk, outline);
+        free(walk.arcs);
+        return;
+    }
     const size_t among = step(c, AMONG), none = step(c, NONE);
     step(c, row->question->what); /* whose list of pairs is kept */
-    row->bench.count = 1;         /* a step */
     row->bench.hits = (double)(among - none);
-    row->bench.wrong = among - none < c->made / 3 ? (double)(c->made / 3 - (among - none)) : 0;
+    row->bench.wrong = among - none < c->made / levels ? (double)(c->made / levels - (among - none)) : 0;
     free(walk.arcs);
 }
 

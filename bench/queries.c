@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
  * queries.c - rays, regions and the nearest bodies: settled piles and sparse scenes, in batches and one by one.
- *
- * Chipmunk wants to know how far to look for the nearest body, and takes longer the farther that is; it is told a
- * distance within which every point finds something.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -28,7 +25,7 @@ struct questions {
 };
 
 enum ray_kind { RAY_FAN, RAY_LONG, RAY_SHORT };
-enum nearest_kind { NEAREST, NEAREST_INSIDE, DISTANCE, DISTANCE_OF_ONE };
+enum nearest_kind { NEAREST, DISTANCE };
 
 /* Peers that are asked several questions about a scene have it once. */
 static void *share_peer(const struct row *row) {
@@ -94,8 +91,7 @@ static void run_rays(struct row *row) {
         cast_rays(row, row->batch ? row->batch : row->question->what == RAY_FAN ? FAN : RAYS, q->hits);
 }
 
-/* Peers may differ in what grazes, and Chipmunk tells 0 of a ray that starts in a body; this library has the same answers
- * in all batches. */
+/* Peers may differ in what grazes; this library has the same answers in all batches. */
 static void prepare_rays(struct row *row) {
     struct questions *q = begin(row, RAYS);
     const size_t count = q->asked.count;
@@ -111,7 +107,7 @@ static void prepare_rays(struct row *row) {
         row->bench.hits += expected[k].count / (double)count;
         const float other = q->floats[k];
         if (row->peer)
-            row->bench.wrong += other > 0 && fabs((double)(fraction - other)) > 1e-3;
+            row->bench.wrong += fabs((double)(fraction - other)) > 1e-3;
         else
             row->bench.wrong += hit->count != expected[k].count || (hit->count && hit->fraction != fraction);
     }
@@ -206,10 +202,10 @@ static void prepare_regions(struct row *row) {
 
 /* ------------------------------------------------------------------------------------------------ the nearest body */
 
-static void find_nearest(const struct row *row, size_t batch, bool inside, narc_distance *out) {
+static void find_nearest(const struct row *row, size_t batch, narc_distance *out) {
     const struct questions *q = row->state;
     const narc_bodies bodies = bodies_of_scene(row->scene);
-    const narc_nearest_options options = {.inside = inside, .search.workers = row->threads > 1 ? &row->workers : NULL};
+    const narc_nearest_options options = {.search.workers = row->threads > 1 ? &row->workers : NULL};
     for (size_t k = 0; k < q->asked.count; k += batch) {
         const narc_points points = {.count = batch < q->asked.count - k ? batch : q->asked.count - k,
                                     .x = NARC_POSITION_ARRAY(q->asked.x + k),
@@ -223,19 +219,15 @@ static void find_nearest(const struct row *row, size_t batch, bool inside, narc_
 
 static void run_nearest(struct row *row) {
     struct questions *q = row->state;
-    const int kind = row->question->what;
     if (row->peer) {
         row->peer->ask(row->peer_state, &q->asked, q->floats);
-    } else if (kind <= NEAREST_INSIDE) {
-        find_nearest(row, row->batch ? row->batch : q->asked.count, kind == NEAREST_INSIDE, q->distances);
+    } else if (row->question->what == NEAREST) {
+        find_nearest(row, row->batch ? row->batch : q->asked.count, q->distances);
     } else {
         const narc_bodies bodies = bodies_of_scene(row->scene);
-        const narc_index_column one_each = NARC_ARRAY(q->bodies);
+        const narc_index_column named = NARC_ARRAY(q->bodies);
         narc_error error;
-        must(narc_find_distances(row->scene->shapes, &bodies, &q->points,
-                                 kind == DISTANCE ? one_each : (narc_index_column){q->bodies, 0}, NULL, q->distances,
-                                 &error),
-             &error);
+        must(narc_find_distances(row->scene->shapes, &bodies, &q->points, named, NULL, q->distances, &error), &error);
     }
 }
 
@@ -253,23 +245,21 @@ static void prepare_nearest(struct row *row) {
     }
     q->asked.x = x;
     q->asked.y = y;
-    q->asked.within = row->layout->layout == LAYOUT_SPARSE ? 6 : 2;
     q->points = (narc_points){.count = count, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
     q->bodies = allocate(count, sizeof *q->bodies);
     q->distances = allocate(count, sizeof *q->distances);
     q->floats = allocate(count, sizeof *q->floats);
-    find_nearest(row, count, false, expected);
+    find_nearest(row, count, expected);
     for (size_t k = 0; k < count; k++)
         q->bodies[k] = expected[k].body;
     run_nearest(row);
     for (size_t k = 0; k < count; k++) {
-        const float separation = expected[k].separation, other = q->distances[k].separation;
-        const bool same_question = row->question->what == NEAREST || row->question->what == DISTANCE;
+        const float separation = expected[k].separation;
         row->bench.hits += (separation < 0) / (double)count;
         if (row->peer)
             row->bench.wrong += fabs((double)(separation - q->floats[k])) > 1e-3 && separation > 0;
-        else if (same_question)
-            row->bench.wrong += other != separation;
+        else
+            row->bench.wrong += q->distances[k].separation != separation;
     }
     free(expected);
 }
@@ -280,7 +270,5 @@ const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, R
                                            {"region-48", prepare_regions, run_regions, 48, false},
                                            {"region-3", prepare_regions, run_regions, 3, false},
                                            {"nearest", prepare_nearest, run_nearest, NEAREST, false},
-                                           {"nearest-inside", prepare_nearest, run_nearest, NEAREST_INSIDE, false},
                                            {"distance", prepare_nearest, run_nearest, DISTANCE, false},
-                                           {"distance-of-one", prepare_nearest, run_nearest, DISTANCE_OF_ONE, false},
                                            {.name = NULL}};
