@@ -62,6 +62,8 @@ static void list_points(const struct walk *walk, struct scene *out) {
     out->ground_count = count;
 }
 
+static const float margin = 0.02f;
+
 struct country {
     struct scene scene; /* a peer's */
     narc_shapes *shapes;
@@ -70,6 +72,10 @@ struct country {
     uint8_t *kinds;
     uint32_t *runs, *moved; /* the boxes */
     narc_contacts *contacts[2];
+    struct pair *pairs; /* of boxes and entries; a peer's of segments and boxes */
+    size_t pair_count;
+    narc_manifold *manifolds;
+    uint8_t *touching;
 };
 
 /* Columns of so many bodies, which are 1 high. */
@@ -90,8 +96,8 @@ static struct country make_country(const struct walk *walk, const struct outline
     c.runs = allocate(count + c.pieces, sizeof *c.runs);
     c.moved = allocate(count, sizeof *c.moved);
     double at = walk->arcs[0].center_x;
-    for (size_t k = 1; k < walk->count && c.made + (size_t)levels <= count;
-         k++) { /* a column stands where an arc begins */
+    /* A column stands where an arc begins. */
+    for (size_t k = 1; k < walk->count && c.made + (size_t)levels <= count; k++) {
         const narc_arc *a = &walk->arcs[k];
         const double x = a->center_x + a->radius * cos(a->start), y = a->center_y + a->radius * sin(a->start);
         if (x > at - pitch)
@@ -112,14 +118,14 @@ static struct country make_country(const struct walk *walk, const struct outline
     return c;
 }
 
-enum way { NONE, AMONG };
+/* A step without the ground's entries, or with them; manifolds of pairs with them. */
+enum way { NONE, AMONG, PAIRS };
 
-/* Rows of a step; merged, those of the ground. */
-static size_t step(struct country *c, int way) {
+static const narc_step_result *step(struct country *c, int way) {
     const narc_bodies bodies = narc_view_bodies(c->bodies, way == AMONG ? c->made + c->pieces : c->made);
     const narc_pair_filter filter = {.kind = {c->kinds, 1}};
     const narc_step asked = {.bodies = &bodies,
-                             .margin = 0.02f,
+                             .margin = margin,
                              .skin = 0.05f,
                              .run = NARC_ARRAY(c->runs),
                              .moved = NARC_ARRAY(c->moved),
@@ -128,22 +134,64 @@ static size_t step(struct country *c, int way) {
     const narc_step_result *result;
     narc_error error;
     must(narc_update_contacts(c->contacts[way], c->shapes, &asked, &result, &error), &error);
-    return result->touching_count;
+    return result;
+}
+
+static void keep_pairs(struct country *c, const narc_step_result *result) {
+    const uint32_t *a = result->pairs.a.base, *b = result->pairs.b.base;
+    c->pair_count = result->count;
+    c->pairs = allocate(c->pair_count, sizeof *c->pairs);
+    c->manifolds = allocate(c->pair_count, sizeof *c->manifolds);
+    for (size_t k = 0; k < c->pair_count; k++)
+        c->pairs[k] = (struct pair){a[result->order[k]], b[result->order[k]]};
+}
+
+static size_t find_rows(struct country *c) {
+    const narc_bodies bodies = narc_view_bodies(c->bodies, c->made + c->pieces);
+    const narc_pairs pairs = {.count = c->pair_count, .a = NARC_COLUMN(c->pairs, a), .b = NARC_COLUMN(c->pairs, b)};
+    size_t found;
+    narc_error error;
+    must(narc_find_manifolds(c->shapes, &bodies, &pairs, &(narc_query){.margin = margin}, c->manifolds, c->pair_count,
+                             &found, &error),
+         &error);
+    return found;
 }
 
 static void run(struct row *row) {
     struct country *c = row->state;
     const double start = now(), shake = c->steps++ % 2 ? 1e-3 : -1e-3;
-    if (row->peer) {
+    const bool pairs = row->question->what == PAIRS;
+    if (row->peer && pairs)
+        row->peer->ask(row->peer_state, &(struct asked){.count = c->pair_count, .pairs = c->pairs}, c->touching);
+    else if (row->peer)
         row->bench.seconds = row->peer->step(row->peer_state, c->scene.bodies, c->moved, c->made, 0);
-    } else {
+    else if (pairs)
+        find_rows(c);
+    else
         step(c, row->question->what);
+    if (!row->peer || pairs)
         row->bench.seconds = 1e-9 * (now() - start);
-    }
     for (size_t k = 0; k < c->made; k++)
         c->bodies[k].x += shake;
     for (size_t k = 0; k < c->scene.body_count; k++)
         c->scene.bodies[k].x += (float)shake;
+}
+
+/* Bodies and points go from right to left. */
+static void pair_segments(struct country *c) {
+    const struct vector *points = c->scene.ground;
+    const double reach = 0.5 + (double)margin;
+    size_t first = 1;
+    c->pairs = allocate(16 * c->made, sizeof *c->pairs);
+    for (size_t k = 0; k < c->made; k++) {
+        const double x = c->bodies[k].x, y = c->bodies[k].y;
+        while (points[first + 1].x > x + reach)
+            first++;
+        for (size_t s = first; s + 2 < c->scene.ground_count && points[s].x >= x - reach; s++)
+            if (fmin(points[s].y, points[s + 1].y) <= y + reach && fmax(points[s].y, points[s + 1].y) >= y - reach)
+                c->pairs[c->pair_count++] = (struct pair){(uint32_t)s, (uint32_t)k};
+    }
+    c->touching = allocate(c->pair_count, 1);
 }
 
 static void begin_peer(struct row *row, const struct walk *walk, struct outline *outline) {
@@ -155,9 +203,13 @@ static void begin_peer(struct row *row, const struct walk *walk, struct outline 
         c->scene.bodies[k] = (struct body){(float)c->bodies[k].x, (float)c->bodies[k].y, 1, 0, 0};
     list_points(walk, &c->scene);
     row->peer_state = row->peer->create(&c->scene);
+    pair_segments(c);
     for (int steps = 0; steps < 3; steps++)
         run(row);
-    row->bench.hits = (double)row->peer->count_touching(row->peer_state);
+    size_t found = row->peer->count_touching(row->peer_state);
+    for (size_t k = 0; k < c->pair_count; k++)
+        found += c->touching[k];
+    row->bench.hits = (double)found / (double)row->bench.count;
 }
 
 /* 30,000 bodies on 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. Each column lies on it.
@@ -176,18 +228,23 @@ static void prepare(struct row *row) {
     for (size_t k = 0; k <= outline->count && !balls; k++)
         outline->arcs[k].radius = 0.1;
     *c = make_country(&walk, outline, count, (int)levels, pitch);
-    row->bench.count = 1; /* a step */
+    row->bench.count = few ? c->made : 1; /* bodies, steps */
     if (row->peer) {
         begin_peer(row, &walk, outline);
         free(walk.arcs);
         return;
     }
-    const size_t among = step(c, AMONG), none = step(c, NONE);
-    step(c, row->question->what); /* whose list of pairs is kept */
-    row->bench.hits = (double)(among - none);
-    row->bench.wrong = among - none < c->made / levels ? (double)(c->made / levels - (among - none)) : 0;
+    size_t found = step(c, AMONG)->touching_count - step(c, NONE)->touching_count;
+    if (row->question->what == PAIRS) {
+        keep_pairs(c, step(c, AMONG));
+        found = find_rows(c);
+    }
+    row->bench.hits = (double)found / (double)row->bench.count;
+    row->bench.wrong = found < c->made / levels ? (double)(c->made / levels - found) : 0;
     free(walk.arcs);
 }
 
-const struct question ground_questions[] = {
-    {"ground-none", prepare, run, NONE, true}, {"ground-among", prepare, run, AMONG, true}, {.name = NULL}};
+const struct question ground_questions[] = {{"ground-none", prepare, run, NONE, true},
+                                            {"ground-among", prepare, run, AMONG, true},
+                                            {"ground-pairs", prepare, run, PAIRS, true},
+                                            {.name = NULL}};

@@ -56,13 +56,13 @@ static const struct group groups[] = {
     {"ray-fan ray-long ray-short", "gons8", SCENES, BOTH " box2d"},
     {"ray-fan ray-long ray-short", "n8", SCENES, "BEST"},
     {"region-48 region-3", "gons8", SCENES, "BEST BEST/by1 box2d geos"},
-    {"nearest", "gons8", SCENES, "BEST BEST/by1 geos"},
+    {"nearest", "gons8", SCENES, "BEST BEST/by1"},
     {"nearest", "n8", SCENES, "BEST BEST/by1"},
     {"distance", "n8", SCENES, "BEST"},
     {FLIGHTS, "squares slabs gons8 n8", "flights", BOTH " box2d"},
     {"index-good index-fast index-refit", "gons8", SCENES, "BEST"},
     {"ground-none ground-among", "boxes", "hills short-hills", "BEST avx2"},
-    {"ground-among", "balls boxes", "few-hills", "BEST avx2 box2d"},
+    {"ground-among ground-pairs", "balls boxes", "few-hills", "BEST avx2 box2d"},
 };
 
 static struct row *rows[MAX_ROWS];
@@ -79,8 +79,8 @@ size_t batch_of(const struct row *row, size_t done) {
 /* ------------------------------------------------------------------------------------------------ rows */
 
 static const struct question *find_question(const char *query) {
-    static const struct question *const lists[] = {pair_questions,   step_questions,  scene_questions,
-                                                   impact_questions, index_questions, ground_questions};
+    static const struct question *const lists[] = {pair_questions, step_questions, scene_questions, impact_questions,
+                                                   ground_questions};
     for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
         for (const struct question *question = lists[k]; question->name; question++)
             if (strcmp(question->name, query) == 0)

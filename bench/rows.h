@@ -40,9 +40,8 @@ struct row {
 /* Behind the last one comes one without a name. */
 extern const struct question pair_questions[];  /* overlaps, contacts, manifolds; bits of all peers */
 extern const struct question step_questions[];  /* from bodies to manifolds, and what an engine does besides */
-extern const struct question scene_questions[]; /* rays, regions, the nearest bodies */
+extern const struct question scene_questions[]; /* rays, regions, the nearest bodies, indices */
 extern const struct question impact_questions[];
-extern const struct question index_questions[];
 extern const struct question ground_questions[];
 
 /* Makes and registers all rows. */

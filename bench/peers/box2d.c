@@ -129,6 +129,9 @@ static size_t overlap(void *context, const struct asked *asked, void *out) {
 struct world {
     b2WorldId id;
     b2BodyId *bodies;
+    b2ChainSegment *segments; /* of the ground */
+    struct shape shape;       /* of all on it */
+    const struct body *at;
 };
 
 static struct world *create_bodies(const struct scene *scene, b2BodyType type) {
@@ -158,6 +161,12 @@ static struct world *create_bodies(const struct scene *scene, b2BodyType type) {
         b2Vec2 *points = allocate(scene->ground_count, sizeof *points);
         for (size_t k = 0; k < scene->ground_count; k++)
             points[k] = (b2Vec2){(float)scene->ground[k].x, (float)scene->ground[k].y};
+        world->segments = allocate(scene->ground_count, sizeof *world->segments);
+        for (size_t k = 1; k + 2 < scene->ground_count; k++)
+            world->segments[k] = (b2ChainSegment){
+                .ghost1 = points[k - 1], .segment = {points[k], points[k + 1]}, .ghost2 = points[k + 2]};
+        world->shape = shape_of(scene->outlines);
+        world->at = scene->bodies;
         const b2BodyDef still = b2DefaultBodyDef();
         b2ChainDef chain = b2DefaultChainDef();
         chain.points = points;
@@ -194,6 +203,23 @@ static size_t count_touching(void *world) {
     for (size_t k = 0; k < sizeof counters.colorCounts / sizeof counters.colorCounts[0]; k++)
         count += (size_t)counters.colorCounts[k];
     return count;
+}
+
+static size_t collide_ground(void *context, const struct asked *asked, void *out) {
+    const struct world *world = context;
+    uint8_t *colliding = out;
+    for (size_t k = 0; k < asked->count; k++) {
+        const b2ChainSegment *segment = &world->segments[asked->pairs[k].a];
+        const struct body *body = &world->at[asked->pairs[k].b];
+        const b2Transform at = {{body->x, body->y}, {body->cosine, body->sine}};
+        b2SimplexCache cache = {0};
+        const b2LocalManifold manifold =
+            world->shape.type == CIRCLE
+                ? b2CollideChainSegmentAndCircle(segment, &world->shape.as.circle, at)
+                : b2CollideChainSegmentAndPolygon(segment, &world->shape.as.polygon, at, &cache);
+        colliding[k] = manifold.pointCount > 0;
+    }
+    return 0;
 }
 
 static void *create_still(struct scene *scene) {
@@ -305,8 +331,8 @@ const struct peer box2d_collide = BOX2D("contact", .create = create, .ask = coll
 const struct peer box2d_overlap = BOX2D("overlap", .create = create, .ask = overlap);
 const struct peer box2d_world =
     BOX2D("stay", .own_clock = true, .create = create_moving, .step = step, .count_touching = count_touching);
-const struct peer box2d_ground =
-    BOX2D("ground", .own_clock = true, .create = create_moving, .step = step, .count_touching = count_touching);
+const struct peer box2d_ground = BOX2D("ground", .own_clock = true, .create = create_moving, .ask = collide_ground,
+                                       .step = step, .count_touching = count_touching);
 const struct peer box2d_rays = BOX2D("ray", .create = create_still, .ask = cast);
 const struct peer box2d_regions = BOX2D("region", .create = create_tree, .ask = find_regions);
 const struct peer box2d_impacts = BOX2D("impact", .create = create_nothing, .ask = find_impacts);

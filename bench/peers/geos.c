@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * geos.c - regions and the nearest body in GEOS' packed R-tree: GEOSSTRtree_query(), GEOSSTRtree_nearest(). Each
- * question is a geometry, which is made outside of the tree but within the time. The first question, which is not
- * timed, builds the tree.
+ * geos.c - regions in GEOS' packed R-tree: GEOSSTRtree_query(). Each question is a geometry, which is made outside of the
+ * tree but within the time. The first question, which is not timed, builds the tree.
  */
 #include "peers.h"
 
@@ -17,19 +16,10 @@ struct tree {
     GEOSSTRtree *tree;
 };
 
-static struct tree *create_tree(void) {
-    struct tree *t = allocate(1, sizeof *t);
-    t->context = GEOS_init_r();
-    t->tree = GEOSSTRtree_create_r(t->context, SLOTS);
-    return t;
-}
-
 static GEOSGeometry *make_rectangle(GEOSContextHandle_t context, const narc_box *box) {
     return GEOSGeom_createRectangle_r(context, (double)box->min_x, (double)box->min_y, (double)box->max_x,
                                       (double)box->max_y);
 }
-
-/* ------------------------------------------------------------------------------------------------ regions */
 
 /* The pairs of the region that is asked for. */
 struct found {
@@ -54,7 +44,9 @@ static size_t find_regions(void *tree, const struct asked *asked, void *out) {
 }
 
 static void *create_boxes(struct scene *scene) {
-    struct tree *t = create_tree();
+    struct tree *t = allocate(1, sizeof *t);
+    t->context = GEOS_init_r();
+    t->tree = GEOSSTRtree_create_r(t->context, SLOTS);
     index_scene(scene);
     for (uintptr_t k = 0; k < scene->body_count; k++)
         GEOSSTRtree_insert_r(t->context, t->tree, make_rectangle(t->context, &scene->boxes[k]), (void *)k);
@@ -63,42 +55,3 @@ static void *create_boxes(struct scene *scene) {
 
 const struct peer geos_regions = {
     .question = "region", .name = "geos", .max_edges = MAX_EDGES, .create = create_boxes, .ask = find_regions};
-
-/* ------------------------------------------------------------------------------------------------ nearest */
-
-static void *create_polygons(struct scene *scene) {
-    struct tree *t = create_tree();
-    for (size_t k = 0; k < scene->body_count; k++) {
-        const struct body *b = &scene->bodies[k];
-        const struct outline *outline = &scene->outlines[b->shape];
-        const unsigned corners = (unsigned)outline->count;
-        GEOSCoordSequence *ring = GEOSCoordSeq_create_r(t->context, corners + 1, 2);
-        for (unsigned i = 0; i <= corners; i++) {
-            const struct arc *at = &outline->arcs[i % corners];
-            GEOSCoordSeq_setXY_r(t->context, ring, i,
-                                 (double)b->x + (double)b->cosine * at->x - (double)b->sine * at->y,
-                                 (double)b->y + (double)b->sine * at->x + (double)b->cosine * at->y);
-        }
-        GEOSGeometry *polygon =
-            GEOSGeom_createPolygon_r(t->context, GEOSGeom_createLinearRing_r(t->context, ring), NULL, 0);
-        GEOSSTRtree_insert_r(t->context, t->tree, polygon, polygon);
-    }
-    return t;
-}
-
-/* 0 within a polygon. The tree gives the body alone. */
-static size_t find_nearest(void *polygons, const struct asked *asked, void *out) {
-    const struct tree *t = polygons;
-    float *distances = out;
-    for (size_t k = 0; k < asked->count; k++) {
-        GEOSGeometry *point = GEOSGeom_createPointFromXY_r(t->context, (double)asked->x[k], (double)asked->y[k]);
-        double distance = 0;
-        GEOSDistance_r(t->context, point, GEOSSTRtree_nearest_r(t->context, t->tree, point), &distance);
-        distances[k] = (float)distance;
-        GEOSGeom_destroy_r(t->context, point);
-    }
-    return 0;
-}
-
-const struct peer geos_nearest = {
-    .question = "nearest", .name = "geos", .max_edges = MAX_EDGES, .create = create_polygons, .ask = find_nearest};

@@ -24,12 +24,11 @@ MISSING(ccd_mpr, "overlap", "ccd-mpr", "libccd");
 #endif
 #ifndef BENCH_GEOS
 MISSING(geos_regions, "region", "geos", "GEOS");
-MISSING(geos_nearest, "nearest", "geos", "GEOS");
 #endif
 
 static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_rays,
                                            &box2d_ground,  &box2d_regions, &box2d_impacts, &ccd_gjk,
-                                           &ccd_mpr,       &geos_regions,  &geos_nearest,  &disc_loop};
+                                           &ccd_mpr,       &geos_regions,  &disc_loop};
 
 const struct peer *find_peer(const char *query, const char *name) {
     for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)
