@@ -24,8 +24,7 @@ struct table {
 /* The plot's curves; see plots.gp. */
 static const char series[] = "narc overlap = overlap/$2/pile/BEST; narc overlap, AVX2 = overlap/$2/pile/avx2;"
                              "narc contact = contact/$2/pile/BEST; narc contact, AVX2 = contact/$2/pile/avx2;"
-                             "Box2D b2CollidePolygons = contact/$2/pile/box2d; Box2D GJK = overlap/$2/pile/box2d;"
-                             "libccd GJK = overlap/$2/pile/ccd-gjk; libccd MPR = overlap/$2/pile/ccd-mpr";
+                             "Box2D b2CollidePolygons = contact/$2/pile/box2d; Box2D GJK = overlap/$2/pile/box2d";
 static const char sizes[] = "4 = n4; 6 = n6; 8 = n8; 12 = n12; 16 = n16";
 
 static const struct table tables[] = {
@@ -83,7 +82,7 @@ static const struct table tables[] = {
      1},
     {"ns a region | bodies", "that finds 48 = region-48; that finds 3 = region-3", SCENES,
      "batch = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1;"
-     "Box2D (times batch) = $1/gons8/$2/box2d / 1; GEOS = $1/gons8/$2/geos / 1",
+     "Box2D (times batch) = $1/gons8/$2/box2d / 1",
      1},
     {"ns a point: the nearest body", SCENES, "",
      "8-gons = nearest/gons8/$1/BEST; one by one = nearest/gons8/$1/BEST/by1;"
