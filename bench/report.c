@@ -13,7 +13,7 @@
 
 /* Lists of "title = value", divided by ";". A table has a line for each of `lines` and each of `others`, and in it the
  * time of each column's row: "$1" in its name is the value of the first, "$2" of the second. A column that ends with
- * "/ 2" is also told in times of the second one. */
+ * "/ 2" also tells how many times as long the second one is. */
 struct table {
     const char *title, *lines, *others, *columns;
     double unit; /* ns */
@@ -32,16 +32,17 @@ static const struct table tables[] = {
      "4 arcs = n4; 8 arcs = n8; 12 arcs = n12; rounded 8-gons = rounded; boxes = boxes; discs = discs; "
      "capsules = capsules; all kinds = kinds",
      "64 = pile; 4,096 = pile-unlike",
-     "overlap = overlap/$1/$2/BEST; contact = contact/$1/$2/BEST; AVX2 = contact/$1/$2/avx2;"
-     "manifolds = manifold/$1/$2/BEST; AVX2 = manifold/$1/$2/avx2;"
-     "Box2D (times contact) = contact/$1/$2/box2d / 2; a loop = contact/$1/$2/loop / 2",
+     "overlap = overlap/$1/$2/BEST; contact = contact/$1/$2/BEST / 6; AVX2 = contact/$1/$2/avx2 / 6;"
+     "manifolds = manifold/$1/$2/BEST / 6; AVX2 = manifold/$1/$2/avx2 / 6; Box2D = contact/$1/$2/box2d;"
+     "a loop = contact/$1/$2/loop",
      1},
     {"ns a pair by itself | row",
      "boxes = boxes; capsules = capsules; 8 arcs, 8-gons = n8; 8-gons = gons8; rounded 5-gons = rounded5;"
      "ball and box = balls-boxes; two balls = discs",
      "contact = contact; manifold = manifold",
-     "two bodies = $2/$1/pile-2000/BEST/alone; AVX2 = $2/$1/pile-2000/avx2/alone; columns = $2/$1/pile-2000/BEST/by1;"
-     "AVX2 = $2/$1/pile-2000/avx2/by1; Box2D (times two bodies) = contact/$1/pile-2000/box2d / 1",
+     "two bodies = $2/$1/pile-2000/BEST/alone / 5; AVX2 = $2/$1/pile-2000/avx2/alone / 5;"
+     "columns = $2/$1/pile-2000/BEST/by1 / 5; AVX2 = $2/$1/pile-2000/avx2/by1 / 5;"
+     "Box2D = contact/$1/pile-2000/box2d",
      1},
     {"ns a pair, 8 arcs, 30,000 bodies", "contact = contact", "",
      "two bodies = $1/n8/pile/BEST/alone; calls of 1 = $1/n8/pile/BEST/by1; 4 = $1/n8/pile/BEST/by4;"
@@ -49,8 +50,8 @@ static const struct table tables[] = {
      "65,536 = $1/n8/pile/BEST/by65536",
      1},
     {"ns a pair, boxes at rest | shapes", "pyramid = pyramid", "16 = -templates; 4,096 = ",
-     "overlap = overlap/squares/$1$2/BEST; contact = contact/squares/$1$2/BEST;"
-     "manifolds = manifold/squares/$1$2/BEST; Box2D (times manifolds) = contact/squares/$1$2/box2d / 3",
+     "overlap = overlap/squares/$1$2/BEST; contact = contact/squares/$1$2/BEST / 4;"
+     "manifolds = manifold/squares/$1$2/BEST / 4; Box2D = contact/squares/$1$2/box2d",
      1},
     {"ns a pair, 8 arcs, 64 shapes",
      "boxes = boxes; pairs = pairs; both and manifolds = plain; a step of contacts that stay = stay-moving", "",
@@ -59,31 +60,29 @@ static const struct table tables[] = {
      "8 arcs = n8/pile; a shape a body = n8/pile-each; 4 arcs = n4/pile; 8-gons = gons8/pile; boxes = boxes/pile;"
      "capsules = capsules/pile; all kinds = kinds/pile; squares, pyramids = squares/pyramid-templates",
      "move = moving; settle = settled",
-     "narc = stay-$2/$1/BEST; AVX2 = stay-$2/$1/avx2 / 1; Box2D = stay-$2/$1/box2d / 1; recycled = "
-     "stay-$2-recycled/$1/BEST;"
-     "AVX2 = stay-$2-recycled/$1/avx2 / 4; Box2D = stay-$2-recycled/$1/box2d / 4",
+     "narc = stay-$2/$1/BEST / 3; AVX2 = stay-$2/$1/avx2 / 3; Box2D = stay-$2/$1/box2d;"
+     "recycled = stay-$2-recycled/$1/BEST / 6; AVX2 = stay-$2-recycled/$1/avx2 / 6;"
+     "Box2D = stay-$2-recycled/$1/box2d",
      1},
     {"ns a pair, a whole step | move",
      "30,000 of 8 arcs = n8/pile; 10,000 boxes = boxes/pile-10000; squares, pyramids = squares/pyramid-templates",
      "10 % = 1of10; 1 % = 1of100; none = 1of0",
-     "narc = stay-moving/$1/BEST/$2; Box2D = stay-moving/$1/box2d/$2 / 1; recycled = stay-moving-recycled/$1/BEST/$2;"
-     "Box2D = stay-moving-recycled/$1/box2d/$2 / 3",
+     "narc = stay-moving/$1/BEST/$2 / 2; Box2D = stay-moving/$1/box2d/$2;"
+     "recycled = stay-moving-recycled/$1/BEST/$2 / 4; Box2D = stay-moving-recycled/$1/box2d/$2",
      1},
     {"ns a pair, all pairs new", "8 arcs = n8; boxes = boxes; all kinds = kinds", "",
-     "narc = stay-rain/$1/pile/BEST; plain calls = plain/$1/pile/BEST / 1; Box2D = stay-rain/$1/pile/box2d / 1", 1},
+     "narc = stay-rain/$1/pile/BEST / 3; plain calls = plain/$1/pile/BEST / 3; Box2D = stay-rain/$1/pile/box2d", 1},
     {"ns a pair, 30,000 bodies, n =", series, NULL, sizes, 1},
     {"ns a pair, 30,000 bodies | shapes", "overlap = overlap; contact = contact", "boxes = boxes; 8 arcs = n8",
-     "scalar = $1/$2/pile/scalar; sse41 = $1/$2/pile/sse41; neon = $1/$2/pile/neon; avx2 = $1/$2/pile/avx2;"
-     "avx512 = $1/$2/pile/avx512",
+     "scalar = $1/$2/pile/scalar; sse41 = $1/$2/pile/sse41 / 1; neon = $1/$2/pile/neon / 1;"
+     "avx2 = $1/$2/pile/avx2 / 1; avx512 = $1/$2/pile/avx512 / 1",
      1},
     {"ns a ray | bodies", "a fan of 1,080 = ray-fan; long = ray-long; short = ray-short", SCENES,
-     "8 arcs = $1/n8/$2/BEST; 8-gons = $1/gons8/$2/BEST; AVX2 = $1/gons8/$2/avx2;"
-     "one by one = $1/gons8/$2/BEST/by1; AVX2 = $1/gons8/$2/avx2/by1; Box2D (times 8-gons) = $1/gons8/$2/box2d / 2",
+     "8 arcs = $1/n8/$2/BEST; 8-gons = $1/gons8/$2/BEST / 6; AVX2 = $1/gons8/$2/avx2 / 6;"
+     "one by one = $1/gons8/$2/BEST/by1 / 6; AVX2 = $1/gons8/$2/avx2/by1 / 6; Box2D = $1/gons8/$2/box2d",
      1},
     {"ns a region | bodies", "that finds 48 = region-48; that finds 3 = region-3", SCENES,
-     "batch = $1/gons8/$2/BEST; one by one = $1/gons8/$2/BEST/by1;"
-     "Box2D (times batch) = $1/gons8/$2/box2d / 1",
-     1},
+     "batch = $1/gons8/$2/BEST / 3; one by one = $1/gons8/$2/BEST/by1 / 3; Box2D = $1/gons8/$2/box2d", 1},
     {"ns a point: the nearest body", SCENES, "",
      "8-gons = nearest/gons8/$1/BEST; one by one = nearest/gons8/$1/BEST/by1;"
      "8 arcs = nearest/n8/$1/BEST;"
@@ -91,8 +90,9 @@ static const struct table tables[] = {
      1},
     {"ns a pair, times of impact | motion", "boxes 1 : 1 = squares; boxes 1 : 8 = slabs; 8-gons = gons8; 8 arcs = n8",
      "straight = straight; turning by up to 1 = turning; turning by up to 6 = turning-6",
-     "cast = impact-$2/$1/flights/BEST; AVX2 = impact-$2/$1/flights/avx2; one by one = impact-$2/$1/flights/BEST/by1;"
-     "AVX2 = impact-$2/$1/flights/avx2/by1; Box2D (times one by one) = impact-$2/$1/flights/box2d / 3",
+     "batch = impact-$2/$1/flights/BEST / 5; AVX2 = impact-$2/$1/flights/avx2 / 5;"
+     "one by one = impact-$2/$1/flights/BEST/by1 / 5; AVX2 = impact-$2/$1/flights/avx2/by1 / 5;"
+     "Box2D = impact-$2/$1/flights/box2d",
      1},
     {"ns a box of an index", SCENES, "",
      "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST;"
@@ -101,14 +101,14 @@ static const struct table tables[] = {
     {"ns, a million bodies, two threads",
      "boxes, pairs and manifolds = plain/n8; a step of contacts that stay = stay-moving/n8;"
      "a region = region-48/gons8; a point = nearest/gons8; a box of an index = index-good/gons8",
-     "", "two threads = $1/pile-1000000/BEST/2threads; one (times two) = $1/pile-1000000/BEST / 1", 1},
+     "", "two threads = $1/pile-1000000/BEST/2threads / 2; one = $1/pile-1000000/BEST", 1},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
-     "without it = ground-none/boxes/$1/BEST; with it = ground-among/boxes/$1/BEST / 1;"
-     "AVX2 = ground-none/boxes/$1/avx2; with it = ground-among/boxes/$1/avx2 / 3",
+     "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
+     "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",
      1000},
     {"ns a body on ground | ", "balls = balls; boxes = boxes", "pairs that are there = pairs; a step = among",
-     "narc = ground-$2/$1/few-hills/BEST; AVX2 = ground-$2/$1/few-hills/avx2;"
-     "Box2D (times narc) = ground-$2/$1/few-hills/box2d / 1",
+     "narc = ground-$2/$1/few-hills/BEST / 3; AVX2 = ground-$2/$1/few-hills/avx2 / 3;"
+     "Box2D = ground-$2/$1/few-hills/box2d",
      1},
 };
 
@@ -194,8 +194,8 @@ static void print_table(const struct table *table, const char *best_isa, FILE *o
                     fputc(' ', out);
                     print_number(time / table->unit, out);
                 }
-                if (!isnan(time / over))
-                    fprintf(out, time < over ? " (%.2f)" : " (%.1f)", time / over);
+                if (!isnan(over / time))
+                    fprintf(out, over < 2 * time ? " (%.2f)" : " (%.1f)", over / time);
                 fprintf(out, " |");
             }
             fputc('\n', out);
