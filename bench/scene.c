@@ -30,8 +30,6 @@ static const struct family families[] = {
     {"gons4", FORM_POLYGON, 4, "n4"},
     {"gons6", FORM_POLYGON, 6, "n6"},
     {"gons8", FORM_POLYGON, 8, "n8"},
-    {"gons12", FORM_POLYGON, 12, "n12"},
-    {"gons16", FORM_POLYGON, 16, "n16"},
 };
 enum { FAMILIES = sizeof families / sizeof families[0] };
 
