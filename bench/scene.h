@@ -10,10 +10,6 @@
 #include "narc_scene.h"
 #include "shapes.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A pair whose exact separation is closer to 0 than this may have either answer. */
 #define TOUCHING 1e-5
 
@@ -88,9 +84,5 @@ void find_boxes(const struct scene *scene, double room, const narc_workers *work
 /* Bodies and pairs of a scene that has shapes. */
 void make_pyramid(struct scene *scene);
 void make_pile(struct scene *scene);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

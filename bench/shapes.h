@@ -10,10 +10,6 @@
 
 #include "bodies.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { MAX_EDGES = 16 };
 
 /* An arc covers the outward normals from its start normal to that of the next arc, a turn by less than pi, or half a turn
@@ -66,9 +62,5 @@ double extent_of(const struct outline *outline);
 
 /* Adds an outline to a store, as a shape of its own. */
 void add_outline(narc_shapes *shapes, const struct outline *outline);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -7,10 +7,6 @@
 
 #include "scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct ray {
     float x, y, motion_x, motion_y;
 };
@@ -58,9 +54,5 @@ const char *box2d_name(void); /* with its version */
 extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_ground, box2d_rays, box2d_regions,
     box2d_impacts;
 extern const struct peer disc_loop;
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
