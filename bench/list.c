@@ -21,7 +21,7 @@ struct group {
 #define ALONE   "boxes capsules n8 gons8 rounded5 balls-boxes discs"
 #define STEPS   "boxes pairs plain stay-moving"
 #define STAY    "stay-moving stay-moving-recycled stay-settled stay-settled-recycled"
-#define PARTLY  "BEST BEST/1of10 BEST/1of100 BEST/1of0 box2d/1of10 box2d/1of100 box2d/1of0"
+#define PARTLY  "BEST BEST/1of10 BEST/1of100 box2d/1of10 box2d/1of100"
 #define SCENES  "pile-1000 pile pile-1000000"
 #define FLIGHTS "impact-straight impact-turning impact-turning-6"
 #define BOTH    "BEST BEST/by1 avx2 avx2/by1"
@@ -35,8 +35,6 @@ static const struct group groups[] = {
     {"contact", ALONE, "pile-2000", "box2d"},
     {"contact", "n8", "pile", "BEST/alone BEST/by1 BEST/by4 BEST/by16 BEST/by64 BEST/by256 BEST/by65536"},
     {STEPS, "n8", "pile-2000 pile pile-1000000", "BEST"},
-    {"plain stay-moving", "n8", "pile-1000000", "BEST/2threads"},
-    {"region-48 nearest index-good", "gons8", "pile-1000000", "BEST/2threads"},
     {"manifold", "n8", "pile-1000000", "BEST"},
     {STAY, "n4 n8 gons8 boxes capsules kinds", "pile", "BEST avx2 box2d"},
     {STAY, "n8", "pile-each", "BEST box2d"},
@@ -67,6 +65,7 @@ static const struct group groups[] = {
 static struct row *rows[MAX_ROWS];
 static size_t row_count;
 static const char *best;
+static unsigned threads;
 
 const struct row *get_row(size_t index) { return index < row_count ? rows[index] : NULL; }
 
@@ -106,7 +105,6 @@ static void run(struct bench_row *bench_row) {
 /* What stands behind who answers. */
 static void read_suffix(struct row *row, const char *suffix) {
     size_t number;
-    row->threads = 1;
     row->one_of = 1;
     for (; *suffix; suffix += strcspn(suffix, "/")) {
         suffix++;
@@ -114,10 +112,8 @@ static void read_suffix(struct row *row, const char *suffix) {
             row->batch = number;
         else if (sscanf(suffix, "1of%zu", &number) == 1)
             row->one_of = number;
-        else if (strcmp(suffix, "alone") == 0)
-            row->alone = true;
         else
-            row->threads = 2;
+            row->alone = true;
     }
 }
 
@@ -134,9 +130,7 @@ static const struct family *family_for(const struct peer *peer, const struct fam
 static const char *find_missing(const struct row *row) {
     if (row->peer && row->peer->missing)
         return row->peer->missing;
-    if (!row->peer && !narc_isa_supported(row->isa))
-        return "not supported here";
-    return row->threads > narc_openmp_workers(0).count ? "fewer threads here" : NULL;
+    return !row->peer && !narc_isa_supported(row->isa) ? "not supported here" : NULL;
 }
 
 static bool is_listed(const char *name) {
@@ -172,10 +166,10 @@ static void add_row(const char *query, const char *family, const char *layout, c
     }
     if (row.peer && row.family)
         row.family = family_for(row.peer, row.family);
-    row.workers = narc_openmp_workers(row.threads);
+    row.workers = narc_openmp_workers(threads);
     row.bench = (struct bench_row){.prepare = prepare,
                                    .run = run,
-                                   .threaded = row.threads > 1,
+                                   .threaded = threads > 1,
                                    .own_clock = row.question->own_clock || (row.peer && row.peer->own_clock),
                                    .must_be_right = !row.peer};
     memcpy(row.bench.name, name, sizeof name);
@@ -211,7 +205,8 @@ static void add_group(const struct group *group) {
                 }
 }
 
-void list_rows(const char *best_isa) {
+void list_rows(const char *best_isa, unsigned on_threads) {
+    threads = on_threads;
     best = best_isa;
     for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++)
         add_group(&groups[k]);

@@ -14,13 +14,17 @@ enum { DEFAULT_PAIRS = 65536, LEAST_PAIRS = 1024, MOST_PAIRS = 1 << 24 };
 int main(int argc, char **argv) {
     const char *out_folder = NULL;
     size_t pairs = DEFAULT_PAIRS;
+    unsigned threads = 1;
     int kept = 1; /* Google Benchmark's options */
     for (int k = 1; k < argc; k++) {
         const char *folder = option_value(argv[k], "--out="), *count = option_value(argv[k], "--pairs=");
+        const char *workers = option_value(argv[k], "--threads=");
         if (folder)
             out_folder = folder;
         else if (count)
             pairs = (size_t)strtoul(count, NULL, 10);
+        else if (workers)
+            threads = (unsigned)strtoul(workers, NULL, 10);
         else
             argv[kept++] = argv[k];
     }
@@ -36,7 +40,7 @@ int main(int argc, char **argv) {
     bench_describe("best_isa", best);
     bench_describe("box2d", box2d_name());
     set_pairs(pairs);
-    list_rows(best);
+    list_rows(best, threads);
     const int status = bench_run(kept, argv);
     if (status != 0)
         return status;

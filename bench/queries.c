@@ -147,7 +147,7 @@ static void add_key(struct tally *tally, uint64_t key) {
 /* So many regions in a call. */
 static struct tally ask_index(const struct row *row, size_t batch, bool check) {
     const struct questions *q = row->state;
-    const narc_index_query query = {.workers = row->threads > 1 ? &row->workers : NULL};
+    const narc_index_query query = {.workers = &row->workers};
     struct tally tally = {0, 0};
     for (size_t k = 0; k < q->asked.count; k += batch) {
         const size_t part = batch < q->asked.count - k ? batch : q->asked.count - k;
@@ -197,7 +197,7 @@ static narc_points points_from(const struct questions *q, size_t first, size_t c
 static void find_nearest(const struct row *row, size_t batch, narc_distance *out) {
     const struct questions *q = row->state;
     const narc_bodies bodies = bodies_of_scene(row->scene);
-    const narc_nearest_options options = {.search.workers = row->threads > 1 ? &row->workers : NULL};
+    const narc_nearest_options options = {.search.workers = &row->workers};
     for (size_t k = 0; k < q->asked.count; k += batch) {
         const narc_points points = points_from(q, k, batch < q->asked.count - k ? batch : q->asked.count - k);
         narc_error error;
@@ -250,8 +250,7 @@ enum build { GOOD, FAST, REFIT };
 
 static void run_build(struct row *row) {
     struct scene *scene = row->scene;
-    const narc_index_options options = {.fast = row->question->what == FAST,
-                                        .workers = row->threads > 1 ? &row->workers : NULL};
+    const narc_index_options options = {.fast = row->question->what == FAST, .workers = &row->workers};
     narc_index *index = row->state;
     narc_error error;
     if (row->question->what == REFIT)

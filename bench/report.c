@@ -66,7 +66,7 @@ static const struct table tables[] = {
      1},
     {"ns a pair, a whole step | move",
      "30,000 of 8 arcs = n8/pile; 10,000 boxes = boxes/pile-10000; squares, pyramids = squares/pyramid-templates",
-     "10 % = 1of10; 1 % = 1of100; none = 1of0",
+     "10 % = 1of10; 1 % = 1of100",
      "narc = stay-moving/$1/BEST/$2 / 2; Box2D = stay-moving/$1/box2d/$2;"
      "recycled = stay-moving-recycled/$1/BEST/$2 / 4; Box2D = stay-moving-recycled/$1/box2d/$2",
      1},
@@ -98,10 +98,6 @@ static const struct table tables[] = {
      "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST;"
      "refitted = index-refit/gons8/$1/BEST",
      1},
-    {"ns, a million bodies, two threads",
-     "boxes, pairs and manifolds = plain/n8; a step of contacts that stay = stay-moving/n8;"
-     "a region = region-48/gons8; a point = nearest/gons8; a box of an index = index-good/gons8",
-     "", "two threads = $1/pile-1000000/BEST/2threads / 2; one = $1/pile-1000000/BEST", 1},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",
@@ -219,8 +215,8 @@ static void print_differences(FILE *out) {
 }
 
 static void print_machine(const char *best_isa, FILE *out) {
-    fprintf(out, "%s, %s, %s; %s unless said otherwise; one thread; beside %s\n\n", processor_name(), compiler_name,
-            compiler_flags, best_isa, box2d_name());
+    fprintf(out, "%s, %s, %s; %s unless said otherwise; beside %s\n\n", processor_name(), compiler_name, compiler_flags,
+            best_isa, box2d_name());
 }
 
 static void print_tables(const char *best_isa, FILE *out) {

@@ -27,7 +27,6 @@ struct row {
     const struct layout_kind *layout;
     const struct peer *peer; /* NULL: this library, */
     const char *isa;         /* on this instruction set */
-    unsigned threads;        /* "/2threads" */
     bool alone;              /* "/alone": calls of two bodies */
     size_t batch;            /* "/by16": that many questions in a call; 0: all */
     size_t one_of;           /* "/1of20" */
@@ -45,7 +44,7 @@ extern const struct question impact_questions[];
 extern const struct question ground_questions[];
 
 /* Makes and registers all rows. */
-void list_rows(const char *best_isa);
+void list_rows(const char *best_isa, unsigned threads);
 const struct row *get_row(size_t index); /* NULL behind the last one */
 
 /* The number of a row's questions in a call. */
