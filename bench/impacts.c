@@ -9,7 +9,7 @@
 #include "random.h"
 #include "rows.h"
 
-enum { PAIRS = 1000, POINTS = 8 };
+enum { PAIRS = 10000, POINTS = 8 };
 
 struct flights {
     narc_shapes *shapes;

@@ -40,9 +40,9 @@ static const struct table tables[] = {
      "boxes = boxes; capsules = capsules; 8 arcs, 8-gons = n8; 8-gons = gons8; rounded 5-gons = rounded5;"
      "ball and box = balls-boxes; two balls = discs",
      "contact = contact; manifold = manifold",
-     "two bodies = $2/$1/pile-2000/BEST/alone / 5; AVX2 = $2/$1/pile-2000/avx2/alone / 5;"
-     "columns = $2/$1/pile-2000/BEST/by1 / 5; AVX2 = $2/$1/pile-2000/avx2/by1 / 5;"
-     "Box2D = contact/$1/pile-2000/box2d",
+     "two bodies = $2/$1/pile/BEST/alone / 5; AVX2 = $2/$1/pile/avx2/alone / 5;"
+     "columns = $2/$1/pile/BEST/by1 / 5; AVX2 = $2/$1/pile/avx2/by1 / 5;"
+     "Box2D = contact/$1/pile/box2d",
      1},
     {"ns a pair, 8 arcs, 30,000 bodies", "contact = contact", "",
      "two bodies = $1/n8/pile/BEST/alone; calls of 1 = $1/n8/pile/BEST/by1; 4 = $1/n8/pile/BEST/by4;"
