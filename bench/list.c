@@ -22,14 +22,14 @@ struct group {
 #define STEPS   "boxes pairs plain stay-moving"
 #define STAY    "stay-moving stay-moving-recycled stay-settled stay-settled-recycled"
 #define PARTLY  "BEST BEST/1of10 BEST/1of100 box2d/1of10 box2d/1of100"
-#define SCENES  "pile-1000 pile pile-1000000"
+#define SCENES  "pile pile-1000000"
 #define FLIGHTS "impact-straight impact-turning impact-turning-6"
 #define BOTH    "BEST BEST/by1 avx2 avx2/by1"
 
 static const struct group groups[] = {
-    {QUERIES, KINDS, "pile pile-unlike", "BEST"},
+    {QUERIES, KINDS, "pile", "BEST"},
     {"contact manifold", KINDS, "pile", "avx2"},
-    {"contact", KINDS, "pile pile-unlike", "box2d"},
+    {"contact", KINDS, "pile", "box2d"},
     {"contact", "discs", "pile", "loop"},
     {"contact manifold", ALONE, "pile", "BEST/alone avx2/alone BEST/by1 avx2/by1"},
     {"contact", ALONE, "pile", "box2d"},

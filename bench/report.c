@@ -19,7 +19,7 @@ struct table {
     double unit; /* ns */
 };
 
-#define SCENES "1,000 = pile-1000; 30,000 = pile; 1,000,000 = pile-1000000"
+#define SCENES "30,000 = pile; 1,000,000 = pile-1000000"
 
 /* The plot's curves; see plots.gp. */
 static const char series[] = "narc overlap = overlap/$2/pile/BEST; narc overlap, AVX2 = overlap/$2/pile/avx2;"
@@ -28,13 +28,13 @@ static const char series[] = "narc overlap = overlap/$2/pile/BEST; narc overlap,
 static const char sizes[] = "4 = n4; 6 = n6; 8 = n8; 12 = n12; 16 = n16";
 
 static const struct table tables[] = {
-    {"ns a pair, 30,000 bodies | shapes",
+    {"ns a pair, 30,000 bodies",
      "4 arcs = n4; 8 arcs = n8; 12 arcs = n12; rounded 8-gons = rounded; boxes = boxes; discs = discs; "
      "capsules = capsules; all kinds = kinds",
-     "64 = pile; 4,096 = pile-unlike",
-     "overlap = overlap/$1/$2/BEST; contact = contact/$1/$2/BEST / 6; AVX2 = contact/$1/$2/avx2 / 6;"
-     "manifolds = manifold/$1/$2/BEST / 6; AVX2 = manifold/$1/$2/avx2 / 6; Box2D = contact/$1/$2/box2d;"
-     "a loop = contact/$1/$2/loop",
+     "",
+     "overlap = overlap/$1/pile/BEST; contact = contact/$1/pile/BEST / 6; AVX2 = contact/$1/pile/avx2 / 6;"
+     "manifolds = manifold/$1/pile/BEST / 6; AVX2 = manifold/$1/pile/avx2 / 6; Box2D = contact/$1/pile/box2d;"
+     "a loop = contact/$1/pile/loop",
      1},
     {"ns a pair by itself | row",
      "boxes = boxes; capsules = capsules; 8 arcs, 8-gons = n8; 8-gons = gons8; rounded 5-gons = rounded5;"
@@ -72,7 +72,6 @@ static const struct table tables[] = {
      1},
     {"ns a pair, all pairs new", "8 arcs = n8; boxes = boxes; all kinds = kinds", "",
      "narc = stay-rain/$1/pile/BEST / 3; plain calls = plain/$1/pile/BEST / 3; Box2D = stay-rain/$1/pile/box2d", 1},
-    {"ns a pair, 30,000 bodies, n =", series, NULL, sizes, 1},
     {"ns a pair, 30,000 bodies | shapes", "overlap = overlap; contact = contact", "boxes = boxes; 8 arcs = n8",
      "scalar = $1/$2/pile/scalar; sse41 = $1/$2/pile/sse41 / 1; neon = $1/$2/pile/neon / 1;"
      "avx2 = $1/$2/pile/avx2 / 1; avx512 = $1/$2/pile/avx512 / 1",
@@ -102,7 +101,7 @@ static const struct table tables[] = {
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",
      1000},
-    {"ns a body on ground | ", "balls = balls; boxes = boxes", "pairs that are there = pairs; a step = among",
+    {"ns a body on ground | what", "balls = balls; boxes = boxes", "pairs that are there = pairs; a step = among",
      "narc = ground-$2/$1/few-hills/BEST / 3; AVX2 = ground-$2/$1/few-hills/avx2 / 3;"
      "Box2D = ground-$2/$1/few-hills/box2d",
      1},
@@ -155,20 +154,18 @@ static void print_head(const char *title, const struct item *columns, size_t cou
     fputc('\n', out);
 }
 
-/* Lines and columns of which a row ran. Where the lines have the rows' names, columns stand for "$2" in them. */
+/* Lines and columns of which a row ran. */
 static void print_table(const struct table *table, const char *best_isa, FILE *out) {
     struct item lines[MOST_ITEMS], others[MOST_ITEMS], columns[MOST_ITEMS];
     double times[MOST_ITEMS][MOST_ITEMS][MOST_ITEMS];
     const size_t line_count = read_items(table->lines, lines);
-    const size_t other_count = read_items(table->others ? table->others : "", others);
+    const size_t other_count = read_items(table->others, others);
     const size_t count = read_items(table->columns, columns);
     bool column_ran[MOST_ITEMS] = {false}, line_ran[MOST_ITEMS][MOST_ITEMS] = {{false}}, any = false;
     for (size_t i = 0; i < line_count; i++)
         for (size_t j = 0; j < other_count; j++)
             for (size_t k = 0; k < count; k++) {
-                const char *row = table->others ? columns[k].value : lines[i].value;
-                times[i][j][k] = time_in(row, table->others ? lines[i].value : "",
-                                         table->others ? others[j].value : columns[k].value, best_isa);
+                times[i][j][k] = time_in(columns[k].value, lines[i].value, others[j].value, best_isa);
                 const bool ran = !isnan(times[i][j][k]);
                 line_ran[i][j] |= ran;
                 column_ran[k] |= ran;
@@ -222,13 +219,13 @@ static void print_machine(const char *best_isa, FILE *out) {
 static void print_tables(const char *best_isa, FILE *out) {
     for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++)
         print_table(&tables[k], best_isa, out);
-    print_differences(out);
 }
 
 void print_report(const char *best_isa, FILE *out) {
     fputc('\n', out);
     print_machine(best_isa, out);
     print_tables(best_isa, out);
+    print_differences(out);
 }
 
 /* ------------------------------------------------------------------------------------------------ the plot */
