@@ -95,7 +95,9 @@ typedef struct narc_entry_ends {
  *   point      x, y on A, then on B; of the second point anything where there is none
  *   radius_a   what lies between these and the surface of A; and of B
  *   apart      the distance of the first point's two places, as it was
- *   lever      the smaller body's diameter */
+ *   lever      the smaller body's diameter
+ * Of a pair without a row (normal 0): A's position, and which place of B lay there; apart is how far the bodies may move
+ * against each other before there can be a row, and lever, below 0, less how far from A's position they may touch. */
 typedef struct narc_kept_row {
     float rotation[2], normal[2];
     float point[2][4];
@@ -194,6 +196,7 @@ enum { NARC_ORDER_BODIES = 128 };
  * those of a mover follow each other, its row is the one with the number of A, and says whom it hits first; all such
  * rows are misses before. */
 typedef struct narc_cast_batch {
+    const struct narc_kernel_table *kernels; /* in use; few casts go to others, which ask its pair kernel */
     const narc_batch *batch;
     narc_motions motions[2];
     float target, tolerance;
