@@ -549,19 +549,22 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
     return nearest;
 }
 
-/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body. */
+/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body, often by the same feature. */
 NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t rays) {
     struct nearest *const nearest = &b->nearest;
     double(*const from)[LANES] = nearest->met;
+    const narc_ray_hit *last = NULL;
     struct body_frame frame = {.header = NULL};
-    int32_t loaded = INT32_MAX;
+    int32_t loaded = INT32_MAX, feature = 0;
     for (rays &= nearest->waiting; rays; rays &= rays - 1) {
         const unsigned k = (unsigned)FIND_LOWEST(rays);
         struct walk *const w = &b->walks[k];
         const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
         if (nearest->body[k] != loaded)
             load_body_frame(batch->shapes, batch->bodies, body, &frame);
+        const bool is_same = last && nearest->body[k] == loaded && nearest->feature[k] == feature;
         loaded = nearest->body[k];
+        feature = nearest->feature[k];
         const struct meeting met = {.foot = {from[0][k], from[1][k]},
                                     .direction = {from[2][k], from[3][k]},
                                     .entry = {.normal = {from[4][k], from[5][k]},
@@ -569,7 +572,14 @@ NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t r
                                               .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
                                     .ahead = from[6][k],
                                     .distance = from[7][k]};
-        put_meeting(&frame, &w->ray, &met, INFINITY, w->rows);
+        put_place(&frame, &w->ray, &met, INFINITY, w->rows);
+        if (is_same) {
+            w->rows->feature = last->feature;
+            w->rows->radius = last->radius;
+        } else {
+            put_feature(&frame, &met.entry, w->rows);
+        }
+        last = w->rows;
         w->rows->body = body;
         w->rows->count = 1;
         w->found = 1;
