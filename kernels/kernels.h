@@ -95,7 +95,9 @@ typedef struct narc_entry_ends {
  *   point      x, y on A, then on B; of the second point anything where there is none
  *   radius_a   what lies between these and the surface of A; and of B
  *   apart      the distance of the first point's two places, as it was
- *   lever      the smaller body's diameter */
+ *   lever      the smaller body's diameter
+ * Of a pair without a row (normal 0): A's position, and which place of B lay there; apart is how far the bodies may move
+ * against each other before there can be a row, and lever, below 0, less how far from A's position they may touch. */
 typedef struct narc_kept_row {
     float rotation[2], normal[2];
     float point[2][4];

@@ -315,7 +315,7 @@ typedef struct slot_lists {
 /* Finds out what is to be done with a slot, the bodies of which have changed in the ways `found`. What differs from slot to
  * slot as chance has it is without a branch. */
 INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool special, bool more,
-                      unsigned follow, uint8_t *all_flags, slot_lists *to) {
+                      uint8_t *all_flags, slot_lists *to) {
     const uint32_t slot = (uint32_t)k;
     const unsigned changed = found & NARC_ALL_CHANGED, was = all_flags[k], marks = v->marks[k];
     const unsigned stale = find_stale(was, marks);
@@ -326,7 +326,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
         what = find_special(s, v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
     if (what == NARC_ASK) { /* one that touches is better asked */
-        const unsigned follows = !stale & !reshaped & ((was & follow) != 0);
+        const unsigned follows = !stale & !reshaped & ((was & NARC_SLOT_KEPT) != 0);
         what = !touches && are_apart(v, v->a[k], v->b[k]) ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK;
     }
     if (what == NARC_NOTHING)
@@ -337,7 +337,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
     *to->asked = *to->known = *to->candidates = slot;
     to->asked += asks - entry;
     to->known += entry;
-    to->candidates += (what == NARC_FOLLOW) & touches;
+    to->candidates += what == NARC_FOLLOW;
     if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
         do_more(s, slot, what);
 }
@@ -352,17 +352,16 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
                              uint8_t other[CHUNK], uint32_t **candidates) {
     const uint32_t *const a = v->a + first, *const b = v->b + first;
     const uint8_t *const changed = v->changed;
-    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, state[CHUNK] = {0}, now[CHUNK] = {0}, odd[CHUNK];
+    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, odd[CHUNK];
     uint32_t *to = *candidates;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
         now[i] = changed[a[i]] | changed[b[i]];
     memcpy(flags, v->flags + first, n);
     memcpy(marks, v->marks + first, n);
-    memcpy(state, v->state + first, n);
     for (size_t i = 0; i < CHUNK; i++)
         odd[i] = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
-                 (marks[i] & SPECIAL) | (~state[i] & NARC_TOUCHING) | (now[i] & NARC_RESHAPED);
+                 (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
     for (size_t i = 0; i < n; i++) {
         const unsigned stirs = now[i] & NARC_ALL_CHANGED;
         *to = (uint32_t)(first + i);
@@ -391,23 +390,22 @@ void narc_sort_pairs(const narc_contact_step *s) {
     const pair_view v = view;
     uint8_t *const flags = c->flags;
     slot_lists to = {c->asked, c->known, c->candidates};
-    const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
-    const bool rests = follow && !ground && !more && c->candidate_count > count / 4; /* as in the last step */
+    const bool rests = !ground && !more && c->candidate_count > count / 4; /* as in the last step */
     c->sensor_count = 0;
     for (size_t first = 0; first < count && rests; first += CHUNK) {
         uint8_t found[CHUNK], other[CHUNK];
         const size_t n = count - first < CHUNK ? count - first : CHUNK;
         const size_t others = pass_followers(&v, kept, first, n, found, other, &to.candidates);
         for (size_t i = 0; i < others; i++)
-            sort_slot(s, &v, first + other[i], found[other[i]], ground, more, follow, flags, &to);
+            sort_slot(s, &v, first + other[i], found[other[i]], ground, more, flags, &to);
     }
     for (size_t k = 0; k < count && !rests; k++) {
         const unsigned found = v.changed[v.a[k]] | v.changed[v.b[k]];
         if (kept && !found)
             k = find_changed(&v, k, count) - 1;
         else
-            sort_slot(s, &v, k, found, ground, more, follow, flags, &to);
+            sort_slot(s, &v, k, found, ground, more, flags, &to);
     }
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t slot = c->order[c->work[i].pair], what = c->work[i].what;
