@@ -521,7 +521,7 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
     batch.shapes = given->batch->shapes;
     batch.query = &all_rows;
     for (size_t k = 0; k < casts->count; k++) {
-        const narc_one_pair at = {.place = k,
+        const narc_one_pair at = {.number = (uint32_t)k,
                                   .shape_a = a->shape[k],
                                   .shape_b = b->shape[k],
                                   .x = casts->x_now[k],
