@@ -112,23 +112,31 @@ INLINE void run_stages(const struct call *call, const struct course *course, str
     }
 }
 
-/* Asks the cache for what pairs from `first` to before `end` read: for one block the shapes, for the next one the bodies.
- * Of the many pieces of ground each is another shape, and it would take longer to wait for them than to answer. */
-NOINLINE void fetch_ahead(const struct sources *given, const narc_shapes *shapes, size_t first, size_t end) {
-    const narc_index_column a = given->pairs.a, b = given->pairs.b;
-    if (!a.base || !b.base || given->selection.base)
+/* Asks the cache for what pairs read that come after the block that begins with number `block` of a call: for one block
+ * the shapes, for the next one the bodies, and before the first block for that, too. Of the many pieces of ground each is
+ * another shape, and it would take longer to wait for them than to answer. */
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, size_t block) {
+    const narc_shapes *const shapes = call->batch->shapes;
+    const narc_index_column a = given->pairs.a, b = given->pairs.b, selection = given->selection;
+    HAS_EFFECT;
+    if (!a.base || !b.base || call->count <= BLOCK)
         return;
-    for (size_t k = first; k < end && k < first + BLOCK; k++) {
-        const uint32_t shape_a = narc_index_at(given->a.shape, narc_index_at(a, k));
-        const uint32_t shape_b = narc_index_at(given->b.shape, narc_index_at(b, k));
-        FETCH(&shapes->headers[shape_a]);
-        FETCH(&shapes->headers[shape_b]);
-        FETCH(&shapes->boxes[shape_a]);
-        FETCH(&shapes->boxes[shape_b]);
-    }
-    for (size_t k = first + BLOCK; k < end && k < first + 2 * BLOCK; k++) {
-        FETCH(narc_at(given->a.shape.base, given->a.shape.stride, narc_index_at(a, k)));
-        FETCH(narc_at(given->b.shape.base, given->b.shape.stride, narc_index_at(b, k)));
+    for (size_t k = block > 0 ? block + BLOCK : 0; k < call->count && k < block + 3 * BLOCK; k++) {
+        const size_t number = selection.base ? narc_index_at(selection, call->first + k) : call->first + k;
+        const uint32_t body_a = narc_index_at(a, number), body_b = narc_index_at(b, number);
+        if (k < block + 2 * BLOCK) {
+            const uint32_t shape_a = narc_index_at(given->a.shape, body_a);
+            const uint32_t shape_b = narc_index_at(given->b.shape, body_b);
+            FETCH(&shapes->headers[shape_a]);
+            FETCH(&shapes->headers[shape_b]);
+            if (call->boxes) {
+                FETCH(&shapes->boxes[shape_a]);
+                FETCH(&shapes->boxes[shape_b]);
+            }
+        } else {
+            FETCH(narc_at(given->a.shape.base, given->a.shape.stride, body_a));
+            FETCH(narc_at(given->b.shape.base, given->b.shape.stride, body_b));
+        }
     }
 }
 
@@ -150,7 +158,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(&given, call->first + block, n, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
-            fetch_ahead(&given, call->batch->shapes, call->first + block + BLOCK, call->first + call->count);
+            fetch_ahead(call, &given, block);
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
@@ -169,7 +177,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             const vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces))
-                fetch_pieces(call, circles.valid, item);
+                fetch_pieces(call, vm_and_not(circles.valid, circles.apart), item);
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||
