@@ -33,10 +33,14 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
 
+/* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
+typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
+
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
     detour *take;   /* if call->boxes: what comes before all else */
     triage *settle; /* what is answered as it is set up; all others go to stage `first` */
+    dropping *drop; /* if call->concave: what of them goes no further; or NULL */
     int fields;     /* what travels from there on */
     stage *const *stages;
     int first;
@@ -112,32 +116,56 @@ INLINE void run_stages(const struct call *call, const struct course *course, str
     }
 }
 
-/* Asks the cache for what pairs read that come after the block that begins with number `block` of a call: for one block
- * the shapes, for the next one the bodies, and before the first block for that, too. Of the many pieces of ground each is
- * another shape, and it would take longer to wait for them than to answer. */
-NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, size_t block) {
+/* The shapes of the pairs of a call, from number `first` to before `end`, are asked of the cache: first where the bodies tell
+ * them, then the headers, then the records of pieces. */
+enum fetching { FETCH_BODIES, FETCH_HEADERS, FETCH_PIECES };
+
+INLINE void fetch_range(const struct call *call, const struct sources *given, size_t first, size_t end,
+                        enum fetching what) {
     const narc_shapes *const shapes = call->batch->shapes;
-    const narc_index_column a = given->pairs.a, b = given->pairs.b, selection = given->selection;
-    HAS_EFFECT;
-    if (!a.base || !b.base || call->count <= BLOCK)
-        return;
-    for (size_t k = block > 0 ? block + BLOCK : 0; k < call->count && k < block + 3 * BLOCK; k++) {
+    const narc_index_column selection = given->selection, of_a = given->pairs.a, of_b = given->pairs.b;
+    for (size_t k = first; k < end && k < call->count; k++) {
         const size_t number = selection.base ? narc_index_at(selection, call->first + k) : call->first + k;
-        const uint32_t body_a = narc_index_at(a, number), body_b = narc_index_at(b, number);
-        if (k < block + 2 * BLOCK) {
-            const uint32_t shape_a = narc_index_at(given->a.shape, body_a);
-            const uint32_t shape_b = narc_index_at(given->b.shape, body_b);
-            FETCH(&shapes->headers[shape_a]);
-            FETCH(&shapes->headers[shape_b]);
-            if (call->boxes) {
-                FETCH(&shapes->boxes[shape_a]);
-                FETCH(&shapes->boxes[shape_b]);
-            }
-        } else {
-            FETCH(narc_at(given->a.shape.base, given->a.shape.stride, body_a));
-            FETCH(narc_at(given->b.shape.base, given->b.shape.stride, body_b));
+        const size_t a = of_a.base ? narc_index_at(of_a, number) : number;
+        const size_t b = of_b.base ? narc_index_at(of_b, number) : number;
+        const char *const shape_a = narc_at(given->a.shape.base, given->a.shape.stride, a);
+        const char *const shape_b = narc_at(given->b.shape.base, given->b.shape.stride, b);
+        if (what == FETCH_BODIES) {
+            FETCH(shape_a);
+            FETCH(shape_b);
+            continue;
         }
+        const narc_shape_header *const header_a = &shapes->headers[narc_index_at(given->a.shape, a)];
+        const narc_shape_header *const header_b = &shapes->headers[narc_index_at(given->b.shape, b)];
+        if (what == FETCH_HEADERS) {
+            FETCH(header_a);
+            FETCH(header_b);
+            continue;
+        }
+        fetch_piece(shapes, header_a);
+        fetch_piece(shapes, header_b);
     }
+}
+
+/* Has the first pair of a call a piece? */
+INLINE bool begins_with_piece(const struct call *call, const struct sources *given) {
+    const narc_shape_header *const headers = call->batch->shapes->headers;
+    const size_t number = narc_pair_at(call->batch, call->first);
+    const size_t a = given->pairs.a.base ? narc_index_at(given->pairs.a, number) : number;
+    const size_t b = given->pairs.b.base ? narc_index_at(given->pairs.b, number) : number;
+    return call->count > 0 && (narc_is_piece(&headers[narc_index_at(given->a.shape, a)]) ||
+                               narc_is_piece(&headers[narc_index_at(given->b.shape, b)]));
+}
+
+/* What pairs read that come after the block that begins with number `block`: of one block the records of pieces, of the
+ * next one the headers, of a third one the bodies; before the first block for that, too. Of the many pieces of ground each
+ * is another shape, and it would take longer to wait for them than to answer. */
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, size_t block) {
+    const size_t pieces = block > 0 ? block + BLOCK : 0, headers = block > 0 ? block + 2 * BLOCK : 0;
+    HAS_EFFECT;
+    fetch_range(call, given, block > 0 ? block + 3 * BLOCK : 0, block + 4 * BLOCK, FETCH_BODIES);
+    fetch_range(call, given, headers, block + 3 * BLOCK, FETCH_HEADERS);
+    fetch_range(call, given, pieces, block + 2 * BLOCK, FETCH_PIECES);
 }
 
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
@@ -152,13 +180,15 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                                                                : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
+    bool meets_pieces = false; /* do pairs of the last block? */
     for (int s = 0; s < course->end; s++)
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(&given, call->first + block, n, &indices);
-        if (NARC_PIECES && !LIKELY(!call->pieces))
+        if (NARC_PIECES && !LIKELY(!call->pieces) && (block == 0 ? begins_with_piece(call, &given) : meets_pieces))
             fetch_ahead(call, &given, block);
+        meets_pieces = false;
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
@@ -175,9 +205,11 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             const struct filter circles =
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
-            const vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces))
-                fetch_pieces(call, vm_and_not(circles.valid, circles.apart), item);
+                meets_pieces = meets_pieces || vm_any(have_pieces(item));
+            vm open = course->settle(call, block + (size_t)k, &circles, item);
+            if (course->drop && meets_pieces && call->concave)
+                open = course->drop(call, &indices, k, open, item);
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||

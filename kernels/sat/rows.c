@@ -20,6 +20,7 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "piece/beside.inl"
 #include "piece/concave_detour.inl"
 #include "piece/pieces.inl"
 #include "sat/answers.inl"
@@ -103,6 +104,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    question->edges};
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
+                                  .drop = NARC_PIECES && NARC_SHORTCUTS ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
