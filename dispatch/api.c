@@ -16,7 +16,7 @@ const char *narc_version(void) {
 /* The sine of NARC_FLAT_ANGLE. */
 #define FLAT_SINE 0x1.bd679ap-2f
 
-static float find_flat_sine(float angle) {
+float narc_find_flat_sine(float angle) {
     return angle == 0 ? FLAT_SINE : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
 }
 
@@ -31,6 +31,13 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
         *out_kernels = NARC_KERNELS_FOR(out_batch->count, *out_kernels);
     return status;
 }
+
+/* The kernel for so many pairs. */
+#if NARC_SMALL
+#define KERNEL_FOR(count, few, kernel) (kernel)
+#else
+#define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
+#endif
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, uint64_t *out_bits, narc_error *error) {
@@ -55,8 +62,8 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
     dense.dense = 1;
     batch.query = &dense;
     batch.row_size = sizeof *out_separations;
-    return narc_answer_rows(kernels->separation, &batch, out_separations, out_separations ? SIZE_MAX : 0, &found,
-                            error);
+    return narc_answer_rows(KERNEL_FOR(batch.count, narc_find_few_separations, kernels->separation), &batch,
+                            out_separations, out_separations ? SIZE_MAX : 0, &found, error);
 }
 #endif
 
@@ -68,8 +75,8 @@ narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size
         return status;
     batch->row_size = sizeof *out_rows;
     batch->more_at = NARC_MORE_AT(narc_contact, count);
-    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->contact, batch, out_rows, capacity, out_count,
-                            error);
+    return narc_answer_rows(KERNEL_FOR(batch->count, narc_find_few_contacts, kernels->contact), batch, out_rows,
+                            capacity, out_count, error);
 }
 
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -88,9 +95,9 @@ narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, si
         return status;
     batch->row_size = sizeof *out_rows;
     batch->more_at = NARC_MORE_AT(narc_manifold, count);
-    batch->flat_sine = find_flat_sine(batch->query->flat_angle);
-    return narc_answer_rows(NARC_KERNELS_FOR(batch->count, kernels)->manifold, batch, out_rows, capacity, out_count,
-                            error);
+    batch->flat_sine = narc_find_flat_sine(batch->query->flat_angle);
+    return narc_answer_rows(KERNEL_FOR(batch->count, narc_find_few_manifolds, kernels->manifold), batch, out_rows,
+                            capacity, out_count, error);
 }
 
 narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,

@@ -27,6 +27,9 @@ narc_status narc_check_count(size_t count, size_t most, const char *items, narc_
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
 
+/* The sine of a query's flat angle; below 0: no second points. */
+float narc_find_flat_sine(float angle);
+
 /* A range of `*count` items from `first` on; 0 of them: to the end of `total`. */
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error);
 
@@ -51,6 +54,9 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
                                  narc_error *error);
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
                              size_t *out_count, narc_error *error);
+
+/* Row kernels for a few pairs, of which each is asked by itself: NARC_FEW at most. */
+narc_row_kernel narc_find_few_contacts, narc_find_few_manifolds, narc_find_few_separations;
 
 /* The rows of narc_find_contacts() and narc_find_manifolds() of a batch that was begun. */
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,

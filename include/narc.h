@@ -13,8 +13,8 @@
  *       narc_find_contacts()     a row for each pair that collides: separation, normal, point, features and curvatures
  *       narc_find_manifolds()    the same for solvers: one or two points a pair, with ids that carry impulses over
  *
- *   They share one narc_query, of which all may be left out. A batch may have one pair: below some pairs a call leaves
- *   out what only large batches need.
+ *   They share one narc_query, of which all may be left out. Two bodies alone are asked by narc_find_contact() and
+ *   narc_find_manifold(), which leave out what only batches need.
  *
  *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h, a library of
  *   its own.
@@ -58,11 +58,11 @@
  *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
  *     narc_find_contacts(shapes, &bodies, &pairs, NULL, contact, 5000, &found, NULL);
  *
- * One pair, of two bodies that it brings along:
+ * Two bodies:
  *
- *     narc_body two[2] = {{.cosine = 1, .scale = 1, .shape = box}, {.x = 1.5, .cosine = 1, .scale = 1, .shape = lens}};
- *     narc_bodies bodies = narc_view_bodies(two, 2);
- *     narc_find_contacts(shapes, &bodies, &(narc_pairs){.count = 1}, NULL, contact, 1, &found, NULL);
+ *     narc_body a = {.cosine = 1, .scale = 1, .shape = box}, b = {.x = 1.5, .cosine = 1, .scale = 1, .shape = lens};
+ *     narc_contact contact;
+ *     if (narc_find_contact(shapes, &a, &b, NULL, &contact, NULL) == NARC_OK && contact.count > 0) ...
  *
  * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack.
  */
@@ -138,6 +138,18 @@ NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bo
 NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                          const narc_query *query, narc_manifold *out_rows, size_t capacity,
                                          size_t *out_count, narc_error *error);
+
+/* The contact or the manifold of two bodies, which is row 0, dense, of a batch of that pair, to the last bit: for engines'
+ * own loops, editors and whatever asks one pair after the other, at a fraction of a batch's price.
+ *   query     NULL: defaults. What counts of it is margin, second_margin, flat_angle, front_only and out_skipped
+ *   out_row   is written in any case: count 0 where they are not closer than the margin (see narc_query.dense)
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, a query out of range),
+ * NARC_ERROR_NOT_FINITE (of a query), NARC_ERROR_INDEX (a shape that is not there), and those for NARC_ISA. Allocates
+ * nothing. Not in narc_small.wasm. */
+NARC_API narc_status narc_find_contact(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
+                                       const narc_query *query, narc_contact *out_row, narc_error *error);
+NARC_API narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
+                                        const narc_query *query, narc_manifold *out_row, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ rows again */
 

@@ -394,6 +394,16 @@ auto find_manifolds(const narc_shapes *shapes, const narc_bodies &bodies, const 
     return detail::find_rows(narc_find_manifolds, shapes, bodies, pairs, query, rows, field...);
 }
 
+// Of two bodies; count 0: none.
+inline result<narc_contact> find_contact(const narc_shapes *shapes, const narc_body &a, const narc_body &b,
+                                         const narc_query &query = {}) {
+    return detail::ask<narc_contact>(narc_find_contact, shapes, &a, &b, &query);
+}
+inline result<narc_manifold> find_manifold(const narc_shapes *shapes, const narc_body &a, const narc_body &b,
+                                           const narc_query &query = {}) {
+    return detail::ask<narc_manifold>(narc_find_manifold, shapes, &a, &b, &query);
+}
+
 // Contacts again, as narc_refined_contact: `rows` is a span, an array or a vector of them.
 template <class Rows>
 auto refine_contacts(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,

@@ -95,12 +95,22 @@ typedef struct narc_entry_ends {
  *   point      x, y on A, then on B; of the second point anything where there is none
  *   radius_a   what lies between these and the surface of A; and of B
  *   apart      the distance of the first point's two places, as it was
- *   lever      the smaller body's diameter */
+ *   lever      the smaller body's diameter
+ * Of a pair without a row (normal 0): A's position, and which place of B lay there; apart is how far the bodies may move
+ * against each other before there can be a row, and lever, below 0, less how far from A's position they may touch. */
 typedef struct narc_kept_row {
     float rotation[2], normal[2];
     float point[2][4];
     float radius_a, radius_b, apart, lever;
 } narc_kept_row;
+
+/* One pair by itself: the position of B less that of A, as a batch has it, and the rest of both bodies. */
+typedef struct narc_one_pair {
+    size_t place; /* as a batch asks of it */
+    uint32_t shape_a, shape_b;
+    float x, y, cosine_a, sine_a, scale_a, cosine_b, sine_b, scale_b;
+    float margin;
+} narc_one_pair;
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
@@ -186,6 +196,7 @@ enum { NARC_ORDER_BODIES = 128 };
  * those of a mover follow each other, its row is the one with the number of A, and says whom it hits first; all such
  * rows are misses before. */
 typedef struct narc_cast_batch {
+    const struct narc_kernel_table *kernels; /* in use; few casts go to others, which ask its pair kernel */
     const narc_batch *batch;
     narc_motions motions[2];
     float target, tolerance;
@@ -212,15 +223,20 @@ typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t cou
 #define NARC_ISA(name, needs, processors, flags) extern const narc_kernel_table narc_kernels_##name;
 #include "isa.def"
 
-/* Within the kernels of an instruction set, what it calls its own: of avx2, NARC_NAMED(contact) is narc_contact_avx2. */
-#define NARC_NAMED(name)             NARC_ISA_SYMBOL(narc_##name##_, NARC_ISA_NAME)
+/* Within the kernels of an instruction set, what it calls its own: of avx2, NARC_NAMED(contact) is narc_contact_avx2. The
+ * pair kernel's vectors are others, so that its functions have names of their own, too. */
+#ifdef NARC_ONE_PAIR
+#define NARC_NAMED(name) NARC_ISA_SYMBOL(narc_##name##_of_one_, NARC_ISA_NAME)
+#else
+#define NARC_NAMED(name) NARC_ISA_SYMBOL(narc_##name##_, NARC_ISA_NAME)
+#endif
 #define NARC_ISA_SYMBOL(prefix, isa) NARC_ISA_JOIN(prefix, isa)
 #define NARC_ISA_JOIN(prefix, isa)   prefix##isa
 #define NARC_ISA_TEXT(isa)           NARC_ISA_QUOTE(isa)
 #define NARC_ISA_QUOTE(isa)          #isa
 
 #ifdef NARC_ISA_NAME
-#define NARC_KERNEL(type, name, parameters) type NARC_NAMED(name) parameters;
+#define NARC_KERNEL(type, name, parameters) type NARC_ISA_SYMBOL(narc_##name##_, NARC_ISA_NAME) parameters;
 #include "kernels.def"
 #endif
 

@@ -21,6 +21,13 @@
 
 #define NOINLINE static __attribute__((noinline))
 
+/* For larger steps of the same kind. With one pair at a time a call costs less than the text of another copy. */
+#ifdef NARC_ONE_PAIR
+#define SHARED NOINLINE
+#else
+#define SHARED INLINE
+#endif
+
 /* Before a loop over the fields of something, all of which is wanted in registers; and before one that does little else
  * but count. */
 #ifdef __OPTIMIZE_SIZE__
@@ -32,6 +39,15 @@
 #else
 #define UNROLL     _Pragma("GCC unroll 32")
 #define UNROLL_FEW _Pragma("GCC unroll 4")
+#endif
+
+/* The same, but not for one pair at a time, of which such a loop ends early. */
+#ifndef NARC_ONE_PAIR
+#define UNROLL_PAIRS UNROLL
+#elif defined(__clang__)
+#define UNROLL_PAIRS _Pragma("nounroll")
+#else
+#define UNROLL_PAIRS _Pragma("GCC unroll 1")
 #endif
 
 #define LIKELY(condition) __builtin_expect(condition, 1)

@@ -91,17 +91,18 @@ static size_t run_slots(slot_job *job, const uint32_t *list, size_t count) {
 
 /* Some slots have been answered, most of which are of the kind `usual`: what touches now? Lists those that touch and may be
  * kept, and in `again` those that are to have an entry: of smooth shapes, if they were asked before, as a pair that goes
- * soon is not worth one. Returns how many these are. */
+ * soon is not worth one. Returns how many these are. Those of others that were asked before and have no row are listed at
+ * the end of `keep`, which has room for all. */
 static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, unsigned usual, uint32_t *again,
-                           uint32_t *keep, size_t *out_keep_count) {
+                           uint32_t *keep, size_t *out_keep_count, size_t *out_bare_count) {
     const narc_contact_step *const s = job->step;
     const narc_contacts *const c = s->contacts;
     const size_t row_stride = c->row_stride;
     const bool contact_rows = c->contact_rows;
-    const unsigned recycles = s->step->recycling > 0;
+    const unsigned recycles = s->step->recycling > 0, bares = usual & NARC_SLOT_PLAIN ? 1 : 0;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
-    uint32_t *const kept = keep;
+    uint32_t *const kept = keep, *bare = keep + count;
     size_t crossed = 0, again_count = 0;
     for (size_t i = 0; i < count; i++) {
         const uint32_t slot = slots[i];
@@ -109,7 +110,7 @@ static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, u
         const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
         const unsigned before = flags[slot], kind = NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY;
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        if ((before & (kind | NARC_SLOT_KEPT)) == usual && !(crosses | recycles))
+        if ((before & (kind | NARC_SLOT_KEPT)) == usual && !(crosses | recycles | (bares & !touches)))
             continue;
         unsigned own = before & (0xffu - NARC_SLOT_KEPT);
         if ((own & kind) != usual) {
@@ -120,12 +121,15 @@ static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, u
             own |= NARC_SLOT_SEEN;
         }
         const unsigned keeps = touches & own / NARC_SLOT_PLAIN & recycles;
+        if (!touches && own & NARC_SLOT_PLAIN && before & NARC_SLOT_SEEN)
+            *--bare = slot;
         flags[slot] = (uint8_t)((own ^ crosses * NARC_SLOT_CROSSED) | keeps * NARC_SLOT_KEPT);
         crossed += crosses;
         *keep = slot; /* as chance has it: without a branch */
         keep += keeps;
     }
     *out_keep_count = (size_t)(keep - kept);
+    *out_bare_count = (size_t)(kept + count - bare);
     atomic_fetch_add_explicit(&job->crossed, crossed, memory_order_relaxed);
     return again_count;
 }
@@ -145,7 +149,7 @@ static size_t recycle_slots(slot_job *job, const uint32_t *list, size_t count, u
         return 0;
     const size_t left_count = kernels->recycle(&batch, 0, count, NULL, c->kept, s->step->recycling, &rows, left);
     for (size_t i = 0; i < count; i++)
-        state[list[i]] |= NARC_FOLLOWED;
+        state[list[i]] |= (uint8_t)(state[list[i]] & NARC_TOUCHING) * NARC_FOLLOWED;
     for (size_t i = 0; i < left_count; i++)
         state[left[i]] &= (uint8_t)~NARC_FOLLOWED;
     return left_count;
@@ -158,13 +162,14 @@ static size_t follow_slots(slot_job *job, const uint32_t *list, size_t count, ui
     const narc_query query = make_query(s, c->margins, list, count);
     const narc_rows rows = narc_view_rows(c, c->rows);
     narc_batch batch;
-    size_t kept;
+    size_t kept, bare;
     const narc_kernel_table *const kernels = narc_fill_slots(s, job->pairs, &query, &batch);
     if (!kernels)
         return 0;
     const size_t left_count =
         kernels->follow(&batch, 0, count, c->entries, c->contact_rows ? NULL : c->ends, &rows, left);
-    note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_ENTRY, left, c->candidates + (list - c->known), &kept);
+    note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_ENTRY, left, c->candidates + (list - c->known), &kept,
+                 &bare);
     return left_count;
 }
 
@@ -175,14 +180,16 @@ static size_t ask_slots(slot_job *job, const uint32_t *list, size_t count, uint3
     uint32_t *const keep = c->candidates + (list - c->asked); /* these have been seen to */
     narc_query query = make_query(s, c->margins, list, count);
     narc_batch batch;
-    size_t found, keep_count;
+    size_t found, keep_count, bare_count;
     query.dense = 1;
     query.row_stride = (ptrdiff_t)c->row_stride;
     if (!narc_fill_slots(s, job->pairs, &query, &batch) ||
         answer(s, &batch, c->rows, c->slot_capacity, &found) != NARC_OK)
         return 0;
-    const size_t left = note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN, again, keep, &keep_count);
+    const size_t left =
+        note_answers(job, list, count, NARC_SLOT_SEEN | NARC_SLOT_PLAIN, again, keep, &keep_count, &bare_count);
     narc_keep_rows(s, job->pairs, keep, NULL, keep_count, c->rows, c->kept);
+    narc_keep_bare(s, job->pairs, keep + count - bare_count, bare_count);
     return left;
 }
 

@@ -215,6 +215,9 @@ static inline void narc_zero_row(const narc_contacts *c, uint32_t slot) {
 void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
                     size_t count, void *to, narc_kept_row *kept);
 
+/* Keeps how far the bodies of slots without a row may move against each other until there may be one. */
+void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, size_t count);
+
 /* May the row of pair `pair` of the list that was kept in kept[item] follow its bodies? */
 bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept);
 

@@ -53,7 +53,8 @@ static void put_row(const narc_contact_step *s, uint32_t slot, const void *from,
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
     memset(&kept[item], 0, sizeof *kept); /* it is saved, of use or not */
-    narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
+    if (s->step->recycling > 0)
+        narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
 }
 
 /* The further rows of a pair that was not asked stay. */

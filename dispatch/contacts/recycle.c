@@ -6,22 +6,50 @@
 #include "contacts.h"
 #include "dispatch.h"
 
+#include <math.h>
+#include <stddef.h>
+
 void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, const uint32_t *item,
                     size_t count, void *to, narc_kept_row *kept) {
     const narc_query query = {.selection = {slots, sizeof *slots}, .selection_count = count};
     const narc_rows rows = narc_view_rows(s->contacts, to);
     narc_batch batch;
-    if (count == 0 || !(s->step->recycling > 0))
+    if (count == 0)
         return;
     const narc_kernel_table *const kernels = narc_fill_slots(s, pairs, &query, &batch);
     if (kernels)
         kernels->keep(&batch, 0, count, item, &rows, kept);
 }
 
+void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, size_t count) {
+    narc_contacts *const c = s->contacts;
+    const narc_query query = {
+        .margin = INFINITY, .dense = 1, .selection = {slots, sizeof *slots}, .selection_count = count};
+    const narc_rows out = {.base = (char *)c->kept + offsetof(narc_kept_row, apart), .stride = sizeof *c->kept};
+    narc_batch batch;
+    size_t skipped;
+    const narc_kernel_table *const kernels = count > 0 ? narc_fill_slots(s, pairs, &query, &batch) : NULL;
+    if (!kernels)
+        return;
+    narc_keep_rows(s, pairs, slots, NULL, count, c->rows, c->kept);
+    kernels->separation(&batch, 0, count, &skipped, &out);
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t slot = slots[i], a = c->a[slot], b = c->b[slot];
+        narc_kept_row *const kept = &c->kept[slot];
+        const float margin = narc_find_margin(s, a, b), apart = kept->apart;
+        /* as are_apart() has it, before and after */
+        kept->apart = apart - margin - 0x1p-16f * (apart + margin) - 2 * (c->room[a] + c->room[b]);
+        kept->lever = -(0x1p17f * c->room[a] + apart);
+        if (kept->apart > 0 && kept->apart < INFINITY)
+            c->flags[slot] |= NARC_SLOT_KEPT;
+    }
+}
+
 /* Does the row of a pair that was kept in kept[item] follow its bodies? `to`: rows; NULL: may it? */
 static bool follow_row(const narc_contact_step *s, const narc_pairs *pairs, uint32_t pair, uint32_t item, void *to,
                        const narc_kept_row *kept) {
-    const narc_query query = {.selection = {&pair, sizeof pair}, .selection_count = 1};
+    const float margin = narc_find_margin(s, narc_index_at(pairs->a, pair), narc_index_at(pairs->b, pair));
+    const narc_query query = {.margin = margin, .selection = {&pair, sizeof pair}, .selection_count = 1};
     const narc_rows rows = narc_view_rows(s->contacts, to);
     narc_batch batch;
     uint32_t left;

@@ -65,6 +65,18 @@ struct placement {
     vm in_range; /* all that is known without the shapes' sizes */
 };
 
+INLINE struct placement place_bodies(const struct body_pair *bodies, vf margin) {
+    vm valid_a, valid_b;
+    const vec2 rotation_a = normalise_rotation(bodies->rotation_a, &valid_a);
+    const vec2 rotation_b = normalise_rotation(bodies->rotation_b, &valid_b);
+    const vm near = vm_and(is_distance_in_range(bodies->difference), v_le(margin, margin));
+    return (struct placement){{v2_unrotate(rotation_a, bodies->difference), v2_unrotate(rotation_a, rotation_b),
+                               bodies->scale_a, bodies->scale_b},
+                              rotation_a,
+                              margin,
+                              vm_and(near, vm_and(valid_a, valid_b))};
+}
+
 /* That of the pairs k ... of a block. */
 INLINE struct placement place_pairs(const struct call *call, const struct sources *given, const struct pair_indices *in,
                                     int k, enum pose_layout layout) {
@@ -73,16 +85,7 @@ INLINE struct placement place_pairs(const struct call *call, const struct source
     const vec2 shift = {load_column_or(pairs->shift_x, in->number + k, 0),
                         load_column_or(pairs->shift_y, in->number + k, 0)};
     const struct body_pair bodies = load_bodies(given, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
-    const vf margin = load_column_or(call->margins, in->number + k, call->margin);
-    vm valid_a, valid_b;
-    const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);
-    const vec2 rotation_b = normalise_rotation(bodies.rotation_b, &valid_b);
-    const vm near = vm_and(is_distance_in_range(bodies.difference), v_le(margin, margin));
-    return (struct placement){{v2_unrotate(rotation_a, bodies.difference), v2_unrotate(rotation_a, rotation_b),
-                               bodies.scale_a, bodies.scale_b},
-                              rotation_a,
-                              margin,
-                              vm_and(near, vm_and(valid_a, valid_b))};
+    return place_bodies(&bodies, load_column_or(call->margins, in->number + k, call->margin));
 }
 
 /* Sets up the pairs k ... of a block in the lanes `which`, the first of which has the number `number`: fills `item`. */

@@ -7,31 +7,44 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "simd/simd.h"
 
 /* Pairs that are loaded at once. */
+#ifdef NARC_ONE_PAIR
+enum { BLOCK = 1 };
+#else
 enum { BLOCK = 32 };
+#endif
 
 /* A stage waits for FLUSH pairs, so that vectors are full and its code is fetched once for several, and takes STEP at a
  * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack.
  * Those of methods have one stage, overlaps none for polygons, and none that writes rows. */
-#ifdef NARC_QUEUE_PAIRS
+#if defined(NARC_QUEUE_PAIRS)
 enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS };
 enum { METHOD, STAGES, POLYGONS = 0 };
 #elif defined(NARC_OVERLAPS)
 enum { FLUSH = 32, STEP = 32 };
 enum { PROBE, PROBE_AGAIN, CLIMB, DECIDE, STAGES, POLYGONS = 0 };
 #else
+#ifdef NARC_ONE_PAIR
+enum { FLUSH = 1, STEP = 1 };
+#else
 enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH };
+#endif
 enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, ANSWER_EDGES, STAGES };
 #endif
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and
  * pad() write up to a vector behind the last one. */
+#ifdef NARC_ONE_PAIR
+enum { CAPACITY = 1 };
+#else
 enum { CAPACITY = FLUSH + STEP + V_WIDTH };
+#endif
 _Static_assert(STEP % V_WIDTH == 0 && STEP <= FLUSH, "stages take whole vectors");
 
 /* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */
@@ -147,7 +160,7 @@ INLINE void get_item(const struct queue *queue, int k, vf *item, int fields) {
 }
 
 /* Appends the lanes `keep` of `item`. */
-INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
+SHARED void push(struct queue *queue, vm keep, const vf *item, int fields) {
     const vp packing = vm_packing(keep);
     const int end = queue->count;
     UNROLL
@@ -161,12 +174,19 @@ INLINE void pass_on(const struct queue *queue, int k, vm left, int fields, struc
     vf item[FIELDS];
     if (!vm_any(left))
         return;
+    if (CAPACITY == 1) {
+        memmove(to->item, queue->item, sizeof to->item);
+        to->count = 1;
+        return;
+    }
     get_item(queue, k, item, fields);
     push(to, left, item, fields);
 }
 
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */
 static inline void pad(struct queue *queue) {
+    if (CAPACITY == 1)
+        return;
     UNROLL
     for (int f = 0; f < QUEUE_FIELDS; f++)
         v_store(queue->item[f] + queue->count, v_set(0));

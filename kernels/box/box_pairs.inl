@@ -53,7 +53,12 @@ enum {
 enum { BOX_TIE = 1 << 8 };
 
 /* They wait until there are so many; take_boxes() writes up to a vector behind the last one. */
-enum { BOX_FLUSH = 32, BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
+#ifdef NARC_ONE_PAIR
+enum { BOX_FLUSH = 1 };
+#else
+enum { BOX_FLUSH = 32 };
+#endif
+enum { BOX_CAPACITY = BLOCK == 1 ? 1 : BOX_FLUSH + V_WIDTH };
 
 struct box_queue {
     _Alignas(64) float item[BOX_FIELDS][BOX_CAPACITY];

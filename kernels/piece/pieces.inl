@@ -117,7 +117,7 @@ INLINE vm keep_reached(const struct call *call, const struct queue *queue, int k
  * run, or from behind a piece. */
 INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                       vi feature_a, vi feature_b) {
-    if (!NARC_PIECES || LIKELY(!call->pieces))
+    if (!NARC_PIECES || BLOCK == 1 || LIKELY(!call->pieces))
         return keep;
     const vm front =
         vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b));

@@ -57,7 +57,10 @@ INLINE vec2 place_corner(vec2 center, const struct pose *pose, bool is_b) {
 
 /* The record of corner j in each lane, for v_rows(). */
 INLINE void store_corner_record(const struct polygon *p, struct ring ring, int j, int32_t index[V_WIDTH]) {
-    if (!p->full)
+    if (BLOCK == 1) {
+        vi_store(index, ring.base);
+        index[0] += j < p->most ? j : 0;
+    } else if (!p->full)
         vi_store(index, vi_select(vi_lt(vi_set(j), ring.count), vi_add(ring.base, vi_set(j)), ring.base));
 }
 
@@ -70,7 +73,7 @@ INLINE void load_polygon(const narc_record *records, struct ring ring, const str
     while (!p->full && p->most > 3 && !vm_any(vi_lt(vi_set(p->most - 1), ring.count)))
         p->most--;
     vi_store(index, ring.base);
-    UNROLL
+    UNROLL_PAIRS
     for (int j = 0; j < MAX_CORNERS; j += 2) {
         vf first[4], second[4], normals[4];
         if (j >= p->most) {
@@ -189,7 +192,7 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
 INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k) {
     const vi most = vi_set(MAX_CORNERS);
     const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
-    const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
+    const bool full = BLOCK > 1 && !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
     return full ? find_best_of(records, queue, k, true) : find_best_of(records, queue, k, false);
 }
 

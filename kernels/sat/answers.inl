@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * answers.inl - the last stages of pairs with rows: those that the search has settled, and polygons.
+ * answers.inl - the last step of pairs with rows: of two circles, which is their only one, of those that the search has
+ * settled, and of polygons.
  */
 #ifndef NARC_SAT_ANSWERS_INL
 #define NARC_SAT_ANSWERS_INL
@@ -18,7 +19,36 @@
 #include "polygon/polygon_contact.inl"
 #include "polygon/polygon_rows.inl"
 #include "sat/manifold_edges.inl"
+#include "sat/search.inl"
 #include "simd/simd.h"
+
+/* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and
+ * those in the other lanes, done? */
+INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf item[FIELDS], bool in_order) {
+    const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
+    const vm left = vm_and_not(open, vm_or(p.far, p.only));
+    const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
+    const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
+    const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
+    const vi pairs = get_item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
+    const struct answer answer = {.separation = p.separation,
+                                  .normal = v2_rotate(to_world, n),
+                                  .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b))),
+                                  .feature = vi_set(0),
+                                  .radius_a = p.arcs.a.radius,
+                                  .radius_b = p.arcs.b.radius,
+                                  .reach_a = all_round,
+                                  .reach_b = all_round};
+    const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
+    if (in_order && !vm_any(left)) {
+        append_answers(call, pairs, found, &answer);
+    } else {
+        char *place[V_WIDTH];
+        find_places(call, pairs, found, place);
+        write_rows(call, place, find_numbers(call, pairs), &answer);
+    }
+    return left;
+}
 
 /* `edges`: do both bodies have edges, and are second points asked for? */
 INLINE void answer_settled(const struct call *call, struct queue *queues, int begin, bool edges) {
@@ -40,8 +70,7 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
         if (edges) {
             struct sides sides;
             find_sides(call, queue, k, on_a.record, on_b.record, n, find_contact_place(&on_a, &on_b), &sides);
-            const struct manifold_points points = find_manifold_points(call, &answer, &sides);
-            write_manifolds(place, find_numbers(call, pairs), &answer, &points);
+            write_sides(call, place, pairs, &answer, &sides);
         } else {
             write_rows(call, place, find_numbers(call, pairs), &answer);
         }

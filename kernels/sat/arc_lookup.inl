@@ -27,6 +27,14 @@ INLINE vi count_below(vi count, const int16_t *angles, const int32_t *record, vi
 INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 direction) {
     const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
     const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
+#ifdef V_COUNT_EIGHT /* angles follow each other from record to record */
+    int32_t first, all, below = 0;
+    vi_store(&first, record);
+    vi_store(&all, count);
+    for (int done = 0; done < all; done += 8)
+        below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
+    return vi_set(below);
+#else
     vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
     for (int done = 0;; done += NARC_RECORD_ANGLES) {
         int32_t index[V_WIDTH];
@@ -41,6 +49,7 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
         twice = vi_select(more, twice, vi_set((int32_t)0x80008000u)); /* nothing is below that */
     }
     return vi_add(vi_and(before, vi_set(0xffff)), vi_shift_right(before, 16));
+#endif
 }
 
 /* The record of the arc that holds a direction, in each lane. */
@@ -51,7 +60,7 @@ INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 di
 }
 
 /* The arcs of the pairs k ... of a queue that hold n and -n. */
-INLINE void find_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n, vi *out_a, vi *out_b) {
+SHARED void find_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n, vi *out_a, vi *out_b) {
     const vec2 n_b = v2_unrotate_opposite(get_vec2(queue, ROTATION, k), n);
     *out_a = find_arc(records, get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k), n);
     *out_b = find_arc(records, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k), n_b);

@@ -127,7 +127,7 @@ INLINE vi find_number_of(const struct queue *queue, int k, vi record, bool is_b)
 
 /* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is
  * none, because the arc and its neighbour have a common tangent, the other one. */
-INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
+SHARED struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
     const narc_record *records = call->batch->shapes->records;
     const struct ring ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
     const struct pose pose = get_pose(queue, k);
@@ -331,6 +331,13 @@ INLINE struct manifold_points find_manifold_points(const struct call *call, cons
     m.count = vi_select(p.two, vi_set(2), vi_set(1));
     write_facing_points(&p, s->to_world, s->n, m.first, m.second);
     return m;
+}
+
+/* Writes the rows of manifolds that may have second points. */
+SHARED void write_sides(const struct call *call, char *const *place, vi pairs, const struct answer *answer,
+                        const struct sides *sides) {
+    const struct manifold_points points = find_manifold_points(call, answer, sides);
+    write_manifolds(place, find_numbers(call, pairs), answer, &points);
 }
 
 /* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */

@@ -27,34 +27,6 @@
 #include "sat/search.inl"
 #include "simd/simd.h"
 
-/* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and
- * those in the other lanes, done? */
-INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf item[FIELDS], bool in_order) {
-    const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
-    const vm left = vm_and_not(open, vm_or(p.far, p.only));
-    const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
-    const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
-    const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
-    const vi pairs = get_item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
-    const struct answer answer = {.separation = p.separation,
-                                  .normal = v2_rotate(to_world, n),
-                                  .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b))),
-                                  .feature = vi_set(0),
-                                  .radius_a = p.arcs.a.radius,
-                                  .radius_b = p.arcs.b.radius,
-                                  .reach_a = all_round,
-                                  .reach_b = all_round};
-    const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
-    if (in_order && !vm_any(left)) {
-        append_answers(call, pairs, found, &answer);
-    } else {
-        char *place[V_WIDTH];
-        find_places(call, pairs, found, place);
-        write_rows(call, place, find_numbers(call, pairs), &answer);
-    }
-    return left;
-}
-
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
     const vm valid = take_valid(call, pair, circles, item);

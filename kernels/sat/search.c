@@ -24,41 +24,10 @@
 #include "sat/certificates.inl"
 #include "sat/faces.inl"
 #include "sat/normal_fan.inl"
+#include "sat/row_stages.inl"
 #include "sat/search.inl"
 #include "sat/stages.inl"
 #include "simd/simd.h"
-
-INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live) {
-    const vf margin = get_margins(call, queue, k);
-    const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
-    const vf limit = v_add(margin, find_lookup_slack(queue, k));
-    const vm apart = vm_or(p.far, is_above(p.u, p.radii, get_vec2(queue, DIRECTION, k), limit));
-    const vm certain = vm_and_not(p.only, apart);
-    return (struct verdict){p.u, p.length, p.separation, vm_or(apart, certain),
-                            vm_and(certain, is_below(p.separation, margin))};
-}
-
-INLINE void settle(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm which,
-                   vf separation, vec2 n, vi record_a, vi record_b) {
-    vf item[FIELDS];
-    get_item(queue, k, item, ROW_FIELDS);
-    set_vec2(item, NORMAL, n);
-    item[SEPARATION] = separation;
-    item[RECORD_A] = v_of_bits(record_a);
-    item[RECORD_B] = v_of_bits(record_b);
-    if (call->question->edges) { /* where both bodies have edges there may be a second point */
-        const vm smooth = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_SMOOTH),
-                                has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_SMOOTH));
-        const vm edged = vm_and_not(which, smooth);
-        which = vm_and(which, smooth);
-        if (vm_any(edged))
-            push(&queues[ANSWER_EDGES], edged, item, ROW_FIELDS);
-    }
-    push(&queues[ANSWER], which, item, ROW_FIELDS);
-}
-
-static const struct search rows = {
-    .fields = ROW_FIELDS, .rows = true, .judge_axis = judge, .judge = judge, .settle = settle};
 
 static void probe_rows(const struct call *call, struct queue *queues, int begin) {
     probe_axis(&rows, call, queues, begin);
@@ -70,33 +39,6 @@ static void probe_rows_again(const struct call *call, struct queue *queues, int 
 
 static void climb_rows(const struct call *call, struct queue *queues, int begin) {
     climb_from(&rows, call, queues, begin);
-}
-
-/* Polygons: the gap at all junctions. Those pairs for which one exceeds all others take the places of the queue's last
- * ones, from `begin` on: they are the question's. */
-static void compare_edges(const struct call *call, struct queue *queues, int begin) {
-    struct queue *const queue = &queues[POLYGONS];
-    const int end = queue->count;
-    queue->count = begin;
-    for (int k = begin; k < end; k += V_WIDTH) {
-        const vm live = vm_front(end - k);
-        const vf slack = get(queue, SLACK, k), limit = v_add(get_margins(call, queue, k), v_mul(v_set(2), slack));
-        const struct polygon_edge found = find_polygon_edge(call->batch->shapes->records, queue, k);
-        const struct best_edge *best = &found.best;
-        const vm near = vm_and_not(live, v_lt(limit, best->gap));
-        if (!vm_any(near))
-            continue;
-        const vm clear = v_lt(best->second, v_sub(best->gap, v_mul(v_set(CLEAR_EDGE), slack)));
-        vf item[FIELDS];
-        get_item(queue, k, item, ROW_FIELDS);
-        set_vec2(item, DIRECTION, best->normal);
-        item[EDGE_CODE] = v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4)));
-        if (vm_any(vm_and_not(near, clear)))
-            push(&queues[DECIDE], vm_and_not(near, clear), item, ROW_FIELDS);
-        if (vm_any(vm_and(near, clear)))
-            push(queue, vm_and(near, clear), item, FIELDS);
-    }
-    pad(queue); /* what was behind them has no edges */
 }
 
 /* The deciding formula, or a part of it that has its answer for certain. Its stack is not under that of what follows. */

@@ -29,6 +29,8 @@
  *   vi_truncate(vf)                                             to int32, towards 0; out of range or NaN: any value
  *   vi_count16(vi counts, vi below, vi values)                  adds 1 to each 16-bit half of counts where that half of
  *                                                               values is less than that of below, both signed
+ *   V_COUNT_EIGHT(int16_t *values, vi below)                    of one lane, if there is such an instruction: how many of
+ *                                                               eight numbers are less than the low half of below
  *   vi_lanes()                                                  0, 1, 2 ...
  *   vm_and vm_or vm_xor vm_not vm_and_not(a, b)                 the last: a and not b
  *   vm_front(int)                                               true in that many lanes, the front ones

@@ -419,6 +419,9 @@ void test_small_batches() {
     narc_contact contact[1];
     const auto one = narc::find_contacts(scene.shapes, narc::bodies_of(two), narc::pairs_of(1), {}, contact).value();
     CHECK(one.size() == 1 && std::fabs(one[0].separation + 0.25f) < 1e-6f && one[0].normal_x == 1);
+    CHECK(narc::find_contact(scene.shapes, two[0], two[1]).value().separation == one[0].separation);
+    CHECK(narc::find_manifold(scene.shapes, two[0], two[1], narc::query().margin(-0.5f)).value().count == 0);
+    CHECK(status_of(narc::find_contact(nullptr, two[0], two[1])) == NARC_ERROR_ARGUMENT);
 
     // Errors: a body that is not there, a store that is not there.
     const Pair wrong[] = {{0, 2, 0}};

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "corpus.h"
 #include "expect.h"
 
 enum { BODIES = 60, PAIRS = 600 };
@@ -63,6 +64,38 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
     }
 }
 
+/* Two bodies asked directly have the dense row of a batch, whatever is asked. */
+static void check_two(const narc_shapes *store, const narc_body two[2]) {
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const float reach = fmaxf(two[0].scale, two[1].scale);
+    const narc_query asked[] = {{.margin = INFINITY},
+                                {.margin = 0},
+                                {.margin = 0.1f * reach, .second_margin = 0.4f * reach, .flat_angle = 0.1f},
+                                {.margin = -0.1f * reach, .flat_angle = -1}};
+    for (size_t q = 0; q < sizeof asked / sizeof *asked; q++) {
+        narc_query query = asked[q], dense = asked[q];
+        narc_contact contact, right;
+        narc_manifold manifold, right_manifold;
+        size_t found, skipped = 9, skipped_manifold = 9, right_skipped = 9;
+        narc_error error;
+        dense.dense = 1;
+        dense.out_skipped = &right_skipped;
+        query.out_skipped = &skipped;
+        expect_ok(narc_find_contacts(store, &bodies, &(narc_pairs){.count = 1}, &dense, &right, 1, &found, &error),
+                  &error);
+        expect_ok(narc_find_contact(store, &two[0], &two[1], &query, &contact, &error), &error);
+        assert_memory_equal(&contact, &right, sizeof contact);
+        assert_true(skipped == right_skipped && contact.count == found);
+        query.out_skipped = &skipped_manifold;
+        expect_ok(
+            narc_find_manifolds(store, &bodies, &(narc_pairs){.count = 1}, &dense, &right_manifold, 1, &found, &error),
+            &error);
+        expect_ok(narc_find_manifold(store, &two[0], &two[1], &query, &manifold, &error), &error);
+        assert_memory_equal(&manifold, &right_manifold, sizeof manifold);
+        assert_true(skipped_manifold == right_skipped);
+    }
+}
+
 /* Every pair by itself, with bodies of its own, has the row of its pair in a batch. */
 static void check_each(const struct scene *scene, const narc_body *rows) {
     struct contacts batch = scene_contacts(scene, INFINITY);
@@ -85,6 +118,7 @@ static void check_each(const struct scene *scene, const narc_body *rows) {
         contact.pair = manifold.pair = (uint32_t)k;
         assert_memory_equal(&contact, &batch.rows[k], sizeof contact);
         assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
+        check_two(scene->store, &rows[2 * k]);
     }
     free(batch.rows);
     free(points.rows);
@@ -293,7 +327,183 @@ TEST(boxes) {
     assert_memory_equal(&c, &no_contact, sizeof c);
     assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, &query, &m, 1, &found, NULL), NARC_OK);
     assert_memory_equal(&m, &no_manifold, sizeof m);
+    check_two(shapes, two);
     narc_destroy_shapes(shapes);
+}
+
+/* What is broken has no answer; a wrong call has its error, and nothing is written. */
+TEST(two_bodies_that_are_wrong) {
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t arc_count, skipped = 9;
+    narc_error error;
+    expect_ok(narc_create_shapes(NULL, &shapes), &error);
+    expect_ok(narc_build_box(2, 2, 0, arcs, &arc_count, NULL), &error);
+    expect_ok(narc_add_shape(shapes, arcs, arc_count, NULL, NULL), &error);
+    const narc_body fine = {.cosine = 1, .scale = 1};
+    const narc_body broken[] = {{.x = NAN, .cosine = 1, .scale = 1},
+                                {.y = INFINITY, .cosine = 1, .scale = 1},
+                                {.cosine = 1.1f, .scale = 1},
+                                {.cosine = 1, .scale = NAN},
+                                {.cosine = 1, .sine = NAN, .scale = 1},
+                                {.cosine = 1, .scale = -1},
+                                {.cosine = 1, .scale = 1e30f, .shape = 0},
+                                {.cosine = 1, .scale = 0},
+                                {.x = 1e300, .cosine = 1, .scale = 1e-30f}};
+    for (size_t k = 0; k < sizeof broken / sizeof *broken; k++) {
+        const narc_body two[] = {fine, broken[k]}, turned[] = {broken[k], fine};
+        narc_contact contact = {.pair = 7, .count = 3};
+        check_two(shapes, two);
+        check_two(shapes, turned);
+        expect_ok(
+            narc_find_contact(shapes, &fine, &broken[k], &(narc_query){.out_skipped = &skipped}, &contact, &error),
+            &error);
+        assert_true(skipped == 1 && contact.pair == 0 && contact.count == 0);
+    }
+    const narc_body nowhere = {.cosine = 1, .scale = 1, .shape = 1};
+    static int something;
+    const struct {
+        const narc_shapes *shapes;
+        const narc_body *a, *b;
+        narc_query query;
+        bool to_nothing;
+        narc_status status;
+        const char *text;
+    } cases[] = {
+        {NULL, &fine, &fine, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "shapes is NULL"},
+        {shapes, NULL, &fine, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "a is NULL"},
+        {shapes, &fine, NULL, {.margin = 0}, false, NARC_ERROR_ARGUMENT, "b is NULL"},
+        {shapes, &fine, &fine, {.margin = 0}, true, NARC_ERROR_ARGUMENT, "out_row is NULL"},
+        {shapes, &fine, &nowhere, {.margin = 0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {shapes, &nowhere, &fine, {.margin = 0}, false, NARC_ERROR_INDEX, "shape 1"},
+        {shapes, &fine, &fine, {.margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.margin"},
+        {shapes, &fine, &fine, {.second_margin = NAN}, false, NARC_ERROR_NOT_FINITE, "query.second_margin"},
+        {shapes, &fine, &fine, {.flat_angle = NAN}, false, NARC_ERROR_NOT_FINITE, "query.flat_angle"},
+        {shapes, &fine, &fine, {.flat_angle = 2}, false, NARC_ERROR_ARGUMENT, "query.flat_angle"},
+        {shapes, &fine, &fine, {.reserved = {NULL, &something}}, false, NARC_ERROR_ARGUMENT, "query.reserved[1]"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        narc_query query = cases[k].query;
+        narc_contact contact;
+        narc_manifold manifold;
+        memset(&contact, 0x5a, sizeof contact);
+        memset(&manifold, 0x5a, sizeof manifold);
+        const narc_contact contact_before = contact;
+        const narc_manifold manifold_before = manifold;
+        skipped = 9;
+        query.out_skipped = &skipped;
+        expect_error(narc_find_contact(cases[k].shapes, cases[k].a, cases[k].b, &query,
+                                       cases[k].to_nothing ? NULL : &contact, &error),
+                     cases[k].status, &error, cases[k].text);
+        expect_error(narc_find_manifold(cases[k].shapes, cases[k].a, cases[k].b, &query,
+                                        cases[k].to_nothing ? NULL : &manifold, &error),
+                     cases[k].status, &error, cases[k].text);
+        assert_true(skipped == 9);
+        assert_memory_equal(&contact, &contact_before, sizeof contact);
+        assert_memory_equal(&manifold, &manifold_before, sizeof manifold);
+    }
+    narc_destroy_shapes(shapes);
+}
+
+static void check_direct(const struct scene *scene, const narc_query *query, const struct contacts *all,
+                         const struct manifolds *points) {
+    for (size_t k = 0; k < scene->pair_count; k++) {
+        const narc_body a = find_body(scene, scene->pairs[k].a), b = find_body(scene, scene->pairs[k].b);
+        narc_contact contact;
+        narc_manifold manifold;
+        narc_error error;
+        expect_ok(narc_find_contact(scene->store, &a, &b, query, &contact, &error), &error);
+        expect_ok(narc_find_manifold(scene->store, &a, &b, query, &manifold, &error), &error);
+        contact.pair = manifold.pair = (uint32_t)k;
+        assert_memory_equal(&contact, &all->rows[k], sizeof contact);
+        assert_memory_equal(&manifold, &points->rows[k], sizeof manifold);
+    }
+}
+
+/* Everything there is in the hardest places, asked directly, has the rows of the whole batch. */
+TEST(hard_places) {
+    static const float margins[] = {INFINITY, 0, 0.25f, -0.1f};
+    for (size_t q = 0; q < 8; q++) {
+        struct corpus corpus = make_corpus("two bodies", q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, 0.5, q % 4 > 1);
+        const struct scene *scene = &corpus.scene;
+        const narc_bodies bodies = scene_bodies(scene);
+        const narc_pairs pairs = scene_pairs(scene);
+        narc_query query = {.margin = margins[q / 2], .dense = 1, .flat_angle = q == 1 ? 0.2f : 0};
+        struct contacts all = find_contacts(scene->store, &bodies, &pairs, &query);
+        struct manifolds points = find_manifolds(scene->store, &bodies, &pairs, &query);
+        for (size_t isa = 0; narc_isa_name(isa); isa++) {
+            if (!narc_isa_supported(narc_isa_name(isa)))
+                continue;
+            test_use_isa(narc_isa_name(isa));
+            check_direct(scene, &query, &all, &points);
+        }
+        test_use_isa(test_isa());
+        free(all.rows);
+        free(points.rows);
+        destroy_corpus(&corpus);
+    }
+}
+
+/* One pair or two of a batch have the rows that they have among all, listed, dense and in larger structures, with margins
+ * and shifts of their own. */
+TEST(few_of_a_batch) {
+    struct test_random random = test_random_named("few of a batch");
+    struct slot {
+        float own;
+        narc_manifold row;
+    } slots[PAIRS];
+    for (int precision = 0; precision < 4; precision++) {
+        struct scene scene = make_random_scene(&random, precision % 2 ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
+        const narc_bodies bodies = scene_bodies(&scene);
+        narc_pairs pairs = scene_pairs(&scene);
+        static float margins[PAIRS], shifts[PAIRS], separations[PAIRS];
+        for (size_t k = 0; k < PAIRS; k++) {
+            margins[k] = k % 3 ? k % 5 ? 0.2f * (float)(k % 4) : INFINITY : k % 7 ? -0.01f : NAN;
+            shifts[k] = 0.25f * (float)(k % 3);
+        }
+        if (precision > 1)
+            pairs.shift_y = NARC_ARRAY(shifts);
+        narc_query query = {.margins = NARC_ARRAY(margins), .dense = 1};
+        struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
+        struct manifolds points = find_manifolds(scene.store, &bodies, &pairs, &query);
+        query.row_stride = sizeof *slots;
+        for (size_t k = 0; k + 1 < PAIRS; k++) {
+            const uint32_t selection[] = {(uint32_t)k, (uint32_t)(PAIRS - 1 - k)};
+            narc_query few = {.margins = query.margins};
+            size_t skipped, found, expected = 0;
+            narc_contact row[2];
+            narc_error error;
+            few.out_skipped = &skipped;
+            few.selection = NARC_ARRAY(selection);
+            few.selection_count = 1 + k % 2;
+            expect_ok(narc_find_contacts(scene.store, &bodies, &pairs, &few, row, 2, &found, &error), &error);
+            expect_ok(narc_find_separations(scene.store, &bodies, &pairs, &few, separations, &error), &error);
+            for (size_t i = 0; i < few.selection_count; i++) {
+                const narc_contact *const right = &all.rows[selection[i]];
+                const bool has_row = right->count > 0 || right->separation > 0;
+                assert_true(separations[selection[i]] == (has_row ? right->separation : INFINITY));
+                if (has_row)
+                    assert_memory_equal(&row[expected++], right, sizeof *right);
+            }
+            assert_int_equal(found, expected);
+            few = query;
+            few.out_skipped = &skipped;
+            few.first = k;
+            few.count = 2;
+            memset(slots, 0x5a, sizeof slots);
+            expect_ok(narc_find_manifolds(scene.store, &bodies, &pairs, &few, &slots[0].row, PAIRS, &found, &error),
+                      &error);
+            for (size_t i = k; i < k + 2; i++)
+                assert_memory_equal(&slots[i].row, &points.rows[i], sizeof slots->row);
+            assert_int_equal(found, (points.rows[k].count > 0) + (points.rows[k + 1].count > 0));
+            assert_true(skipped >= (isnan(margins[k]) ? 1u : 0u) + (isnan(margins[k + 1]) ? 1u : 0u));
+            const unsigned char *const behind = (const void *)&slots[k + 2 < PAIRS ? k + 2 : 0];
+            assert_true(behind[0] == 0x5a && behind[sizeof *slots - 1] == 0x5a);
+        }
+        free(all.rows);
+        free(points.rows);
+        destroy_scene(&scene);
+    }
 }
 
 TEST_MAIN("pair")

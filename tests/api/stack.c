@@ -23,6 +23,7 @@ static narc_shapes *store;
 static narc_bodies bodies, own, broken;
 static narc_pairs pairs;
 static const narc_pairs one = {.count = 1};
+static const narc_body two[] = {{.cosine = 1, .scale = 1}, {.x = 0.5, .sine = 1, .scale = 1, .shape = 1}};
 static narc_query query, dense, selected, range;
 static narc_box_options box_options;
 static narc_broad_phase *broad;
@@ -171,6 +172,8 @@ static narc_status ask_index(narc_error *error) {
     CALL(one_separation, narc_find_separations(store, &own, &one, NULL, separations, error))                           \
     CALL(one_contact, narc_find_contacts(store, &own, &one, NULL, contacts, 1, &count, error))                         \
     CALL(one_manifold, narc_find_manifolds(store, &own, &one, NULL, manifolds, 1, &count, error))                      \
+    CALL(two_contact, narc_find_contact(store, &two[0], &two[1], NULL, contacts, error))                               \
+    CALL(two_manifold, narc_find_manifold(store, &two[0], &two[1], NULL, manifolds, error))                            \
     CALL(cast_pairs, narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast_options, impacts, PAIRS, error))    \
     CALL(cast_shapes,                                                                                                  \
          narc_cast_shapes(scenery, store, &bodies, &bodies, &motions, &search, &cast_options, impacts, PAIRS, error))  \
@@ -232,7 +235,6 @@ static void set_workers(const narc_workers *workers) {
 }
 
 TEST(test_calls) {
-    static const narc_body two[] = {{.cosine = 1, .scale = 1}, {.x = 0.5, .sine = 1, .scale = 1, .shape = 1}};
     static const narc_body bad[] = {{.x = NAN, .cosine = 1, .scale = 1}};
     struct test_random random = test_random_named("stack");
     scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
