@@ -19,7 +19,8 @@
 /* Takes the pairs with a piece of those in the lanes `open`, the first of which is `pair`: sets their bits. Returns the
  * others. */
 INLINE vm take_pieces(const struct call *call, size_t pair, vm open, const vf item[FIELDS]) {
-    const vm pieces = vm_and(open, have_pieces(item));
+    const vm pieces = vm_and(open, vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS),
+                                         has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS)));
     call->bits[pair / 64] |= (uint64_t)vm_bits(pieces) << pair % 64;
     return vm_and_not(open, pieces);
 }

@@ -17,12 +17,6 @@
 /* Does a shape have one of these marks? */
 INLINE vm has_mark(vi info, unsigned marks) { return vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)(marks << 8)))); }
 
-/* Which pairs have a piece? */
-INLINE vm have_pieces(const vf item[FIELDS]) {
-    return vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS),
-                 has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS));
-}
-
 /* Asks the cache for the records of a piece. */
 INLINE void fetch_piece(const narc_shapes *shapes, const narc_shape_header *header) {
     const narc_record *const first = shapes->records + header->first_record;

@@ -76,7 +76,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    question->edges};
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
-                                  .drop = NARC_PIECES && NARC_SHORTCUTS ? drop_beside : NULL,
+                                  .drop = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 1 ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
