@@ -74,9 +74,10 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    search->stages[CLIMB],  polygons,
                                    search->stages[DECIDE], answer_rows,
                                    question->edges};
+    const bool drops = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 4; /* in few lanes a look costs what it saves */
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
-                                  .drop = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 1 ? drop_beside : NULL,
+                                  .drop = drops ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
