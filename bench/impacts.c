@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * impacts.c - times of impact: pairs of bodies that fly at each other, or anywhere, with and without turning, in batches
- * and one by one.
+ * impacts.c - casts: pairs of bodies that fly at each other, with and without turning, in batches and one by one.
  */
 #include <math.h>
 #include <string.h>
@@ -10,22 +9,18 @@
 #include "random.h"
 #include "rows.h"
 
-enum { PAIRS = 1000, POINTS = 8 };
+enum { PAIRS = 10000, POINTS = 8 };
 
 struct flights {
     narc_shapes *shapes;
     struct outline polygon; /* stands for the shape in Box2D */
     narc_body *bodies;
     struct motion *motions;
-    narc_contact *contacts;
     narc_impact *impacts;
     float *fractions;
     size_t count;
     bool turning;
 };
-
-/* Contacts of the bodies where they begin; casts. */
-enum flight { CONTACT, STRAIGHT, STRAIGHT_ANYWHERE, TURNING, TURNING_ANYWHERE, TURNING_6 };
 
 /* "squares", "slabs", "gons8", "n8". */
 static void add_shape(struct flights *f, const char *name) {
@@ -47,8 +42,8 @@ static void add_shape(struct flights *f, const char *name) {
     must(narc_add_shape(f->shapes, arcs, count, NULL, NULL), NULL);
 }
 
-/* B is 2 to 4 away from A; both fly up to 4 roughly at each other, or, if they are to miss, anywhere. */
-static void make_flights(struct flights *f, double turning, bool anywhere) {
+/* B is 2 to 4 away from A; both fly up to 4 roughly at each other. */
+static void make_flights(struct flights *f, double turning) {
     uint64_t random = 99;
     double direction = 0, distance = 0;
     f->turning = turning > 0;
@@ -59,7 +54,7 @@ static void make_flights(struct flights *f, double turning, bool anywhere) {
             distance = random_between(&random, 2, 4);
         }
         const double angle = random_between(&random, -pi, pi), way = random_between(&random, 0, 4);
-        const double to = direction + (is_b ? pi : 0) + random_between(&random, -1, 1) * (anywhere ? pi : 0.6);
+        const double to = direction + (is_b ? pi : 0) + random_between(&random, -0.6, 0.6);
         f->bodies[k] = (narc_body){is_b ? distance * cos(direction) : 0,
                                    is_b ? distance * sin(direction) : 0,
                                    (float)cos(angle),
@@ -85,17 +80,12 @@ static void cast(const struct flights *f, size_t first, size_t count, narc_impac
 static void run(struct row *row) {
     struct flights *f = row->state;
     if (row->peer) {
-        const struct asked asked = {
-            .count = f->count, .polygon = &f->polygon, .bodies = f->bodies, .motions = f->motions};
+        const struct asked asked = {.count = f->count,
+                                    .polygon = &f->polygon,
+                                    .bodies = f->bodies,
+                                    .motions = f->motions,
+                                    .straight = !f->turning};
         row->peer->ask(row->peer_state, &asked, f->fractions);
-    } else if (row->question->what == CONTACT) {
-        const narc_bodies bodies = narc_view_bodies(f->bodies, 2 * f->count);
-        const narc_query query = {.margin = INFINITY, .dense = 1};
-        size_t found;
-        narc_error error;
-        must(narc_find_contacts(f->shapes, &bodies, &(narc_pairs){.count = f->count}, &query, f->contacts, f->count,
-                                &found, &error),
-             &error);
     } else {
         for (size_t k = 0, batch; k < f->count; k += batch) {
             batch = batch_of(row, k);
@@ -106,17 +96,14 @@ static void run(struct row *row) {
 
 /* A peer has polygons in the place of n-arcs, a skin and an end to its search: where its hits are others, they count. */
 static void prepare(struct row *row) {
-    static const double turning[] = {0, 0, 0, 1, 1, 6};
     struct flights *f = row->state = allocate(1, sizeof *f);
-    const int flight = row->question->what;
     f->count = row->bench.count = scaled(PAIRS);
     f->bodies = allocate(2 * f->count, sizeof *f->bodies);
     f->motions = allocate(2 * f->count, sizeof *f->motions);
-    f->contacts = allocate(f->count, sizeof *f->contacts);
     f->impacts = allocate(f->count, sizeof *f->impacts);
     f->fractions = allocate(f->count, sizeof *f->fractions);
     add_shape(f, strchr(row->bench.name, '/') + 1);
-    make_flights(f, turning[flight], flight == STRAIGHT_ANYWHERE || flight == TURNING_ANYWHERE);
+    make_flights(f, row->question->what);
     narc_impact *expected = allocate(f->count, sizeof *expected);
     cast(f, 0, f->count, expected);
     run(row);
@@ -125,16 +112,14 @@ static void prepare(struct row *row) {
         row->bench.hits += hit / (double)f->count;
         if (row->peer)
             row->bench.wrong += hit != (f->fractions[k] <= 1);
-        else if (flight != CONTACT)
+        else
             row->bench.wrong +=
                 f->impacts[k].count != expected[k].count || (hit && f->impacts[k].fraction != expected[k].fraction);
     }
 }
 
-const struct question impact_questions[] = {{"impact-contact", prepare, run, CONTACT, false},
-                                            {"impact-straight", prepare, run, STRAIGHT, false},
-                                            {"impact-straight-anywhere", prepare, run, STRAIGHT_ANYWHERE, false},
-                                            {"impact-turning", prepare, run, TURNING, false},
-                                            {"impact-turning-anywhere", prepare, run, TURNING_ANYWHERE, false},
-                                            {"impact-turning-6", prepare, run, TURNING_6, false},
+/* Bodies turn by up to so many radians. */
+const struct question impact_questions[] = {{"impact-straight", prepare, run, 0, false},
+                                            {"impact-turning", prepare, run, 1, false},
+                                            {"impact-turning-6", prepare, run, 6, false},
                                             {.name = NULL}};

@@ -11,38 +11,31 @@
 
 enum { MAX_ROWS = 4096, WORD = 48 };
 
-/* BEST: the best instruction set; EACH: each of those that run here. */
+/* BEST: the best instruction set; EACH: each. */
 struct group {
     const char *queries, *families, *layouts, *who;
 };
 
 #define QUERIES "overlap contact manifold"
 #define KINDS   "n4 n8 n12 rounded boxes discs kinds capsules"
+#define ALONE   "boxes capsules n8 gons8 rounded5 balls-boxes discs"
 #define STEPS   "boxes pairs plain stay-moving"
 #define STAY    "stay-moving stay-moving-recycled stay-settled stay-settled-recycled"
-#define PARTLY  "BEST BEST/1of10 BEST/1of100 BEST/1of0 box2d/1of10 box2d/1of100 box2d/1of0"
-#define STACKS  "pyramid pyramid-templates lattice lattice-templates"
-#define PARTS                                                                                                          \
-    "BEST/64pairs BEST/256pairs BEST/1024pairs BEST/4096pairs BEST/16384pairs BEST/65536pairs BEST/262144pairs"
-#define PARTS_2                                                                                                        \
-    "BEST/2threads/64pairs BEST/2threads/256pairs BEST/2threads/1024pairs BEST/2threads/4096pairs "                    \
-    "BEST/2threads/16384pairs BEST/2threads/65536pairs BEST/2threads/262144pairs"
-#define SCENES  "pile-1000 sparse-1000 pile sparse pile-1000000 sparse-1000000"
-#define FLIGHTS "impact-straight impact-straight-anywhere impact-turning impact-turning-anywhere impact-turning-6"
+#define PARTLY  "BEST BEST/1of10 BEST/1of100 box2d/1of10 box2d/1of100"
+#define SCENES  "pile pile-1000000"
+#define FLIGHTS "impact-straight impact-turning impact-turning-6"
+#define BOTH    "BEST BEST/by1 avx2 avx2/by1"
 
 static const struct group groups[] = {
-    {QUERIES, KINDS, "pile pile-unlike", "BEST"},
-    {"contact", "n4 n8 boxes capsules", "pile pile-unlike", "box2d"},
-    {"contact", "n8 boxes capsules", "pile pile-unlike", "chipmunk"},
+    {QUERIES, KINDS, "pile", "BEST"},
+    {"contact manifold", KINDS, "pile", "avx2"},
+    {"contact", KINDS, "pile", "box2d"},
     {"contact", "discs", "pile", "loop"},
-    {"contact", "n4 n8", "pile", "avx2"},
-    {"contact manifold", "capsules", "pile", "avx2"},
-    {"contact", "n8", "pile", "BEST/by1 BEST/by4 BEST/by16 BEST/by64 BEST/by256 BEST/by65536"},
+    {"contact manifold", ALONE, "pile", "BEST/alone avx2/alone BEST/by1 avx2/by1"},
+    {"contact", ALONE, "pile", "box2d"},
+    {"contact", "n8", "pile", "BEST/by4 BEST/by16 BEST/by64 BEST/by256 BEST/by65536"},
     {STEPS, "n8", "pile-2000 pile pile-1000000", "BEST"},
-    {STEPS " overlap", "n8", "pile-1000000", "BEST BEST/2threads"},
     {"manifold", "n8", "pile-1000000", "BEST"},
-    {"overlap", "n8", "pile-1000000", PARTS},
-    {"overlap", "n8", "pile-1000000", PARTS_2},
     {STAY, "n4 n8 gons8 boxes capsules kinds", "pile", "BEST avx2 box2d"},
     {STAY, "n8", "pile-each", "BEST box2d"},
     {STAY, "squares", "pyramid-templates", "BEST box2d"},
@@ -51,36 +44,28 @@ static const struct group groups[] = {
     {"stay-moving stay-moving-recycled", "squares", "pyramid-templates", PARTLY},
     {"plain stay-rain", "n8 boxes kinds", "pile", "BEST"},
     {"stay-rain", "n8 boxes kinds", "pile", "box2d"},
-    {"overlap contact manifold", "squares", STACKS, "BEST"},
-    {"contact", "squares", STACKS, "box2d"},
-    {"overlap contact", "n4 n6 n8 n12 n16 kinds general capsules", "mixed", "EACH"},
-    {"overlap contact", "n8", "mixed-templates mixed-sorted mixed-templates-sorted", "EACH"},
-    {"overlap", "bounds8", "mixed mixed-templates", "EACH"},
-    {"overlap", "n4 n6 n8 n12 n16", "mixed", "box2d ccd-gjk ccd-mpr"},
-    {"contact", "n4 n6 n8 n12 n16", "mixed", "box2d chipmunk"},
-    {"ray-fan ray-long ray-short", "gons8", SCENES, "BEST BEST/by1 box2d chipmunk"},
+    {QUERIES, "squares", "pyramid pyramid-templates", "BEST"},
+    {"contact", "squares", "pyramid pyramid-templates", "box2d"},
+    {"overlap contact", "n4 n6 n8 n12 n16", "pile", "BEST avx2"},
+    {"overlap contact", "boxes n8", "pile", "EACH"},
+    {"overlap", "n4 n6 n8", "pile", "box2d"},
+    {"contact", "n6", "pile", "box2d"},
+    {"ray-fan ray-long ray-short", "gons8", SCENES, BOTH " box2d"},
     {"ray-fan ray-long ray-short", "n8", SCENES, "BEST"},
-    {"region-48 region-3", "gons8", SCENES, "BEST BEST/by1 BEST/2threads box2d chipmunk geos"},
-    {"nearest", "gons8", SCENES, "BEST BEST/by1 chipmunk geos"},
-    {"nearest", "n8", SCENES, "BEST BEST/by1 BEST/2threads"},
-    {"nearest-inside distance distance-of-one", "n8", SCENES, "BEST"},
-    {"impact-contact " FLIGHTS, "squares slabs gons8 n8", "flights", "BEST"},
-    {FLIGHTS, "squares slabs gons8 n8", "flights", "BEST/by1 box2d"},
-    {"index-good index-fast index-refit", "gons8", SCENES, "BEST BEST/2threads"},
-    {"ground-none ground-among", "boxes", "hills short-hills", "BEST"},
-};
-
-static const struct group all_groups[] = {
-    {QUERIES, KINDS, "pile pile-unlike", "EACH"},
-    {"boxes pairs", "n8", "pile", "EACH"},
-    {"overlap contact", "n4 n6 n8 n12 n16", "mixed-templates mixed-sorted mixed-templates-sorted", "EACH"},
-    {"overlap", "n4 n6 n8 n12 n16", "mixed-templates pile", "box2d ccd-gjk ccd-mpr"},
-    {"contact", "n4 n6 n8 n12 n16", "mixed-templates pile", "box2d chipmunk"},
+    {"region-48 region-3", "gons8", SCENES, "BEST BEST/by1 box2d"},
+    {"nearest", "gons8", SCENES, "BEST BEST/by1"},
+    {"nearest", "n8", SCENES, "BEST BEST/by1"},
+    {"distance", "n8", SCENES, "BEST"},
+    {FLIGHTS, "squares slabs gons8 n8", "flights", BOTH " box2d"},
+    {"index-good index-fast index-refit", "gons8", SCENES, "BEST"},
+    {"ground-none ground-among", "boxes", "hills short-hills", "BEST avx2"},
+    {"ground-among ground-pairs", "balls boxes", "few-hills", "BEST avx2 box2d"},
 };
 
 static struct row *rows[MAX_ROWS];
 static size_t row_count;
 static const char *best;
+static unsigned threads;
 
 const struct row *get_row(size_t index) { return index < row_count ? rows[index] : NULL; }
 
@@ -92,8 +77,8 @@ size_t batch_of(const struct row *row, size_t done) {
 /* ------------------------------------------------------------------------------------------------ rows */
 
 static const struct question *find_question(const char *query) {
-    static const struct question *const lists[] = {pair_questions,   step_questions,  scene_questions,
-                                                   impact_questions, index_questions, ground_questions};
+    static const struct question *const lists[] = {pair_questions, step_questions, scene_questions, impact_questions,
+                                                   ground_questions};
     for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
         for (const struct question *question = lists[k]; question->name; question++)
             if (strcmp(question->name, query) == 0)
@@ -120,7 +105,6 @@ static void run(struct bench_row *bench_row) {
 /* What stands behind who answers. */
 static void read_suffix(struct row *row, const char *suffix) {
     size_t number;
-    row->threads = 1;
     row->one_of = 1;
     for (; *suffix; suffix += strcspn(suffix, "/")) {
         suffix++;
@@ -128,30 +112,25 @@ static void read_suffix(struct row *row, const char *suffix) {
             row->batch = number;
         else if (sscanf(suffix, "1of%zu", &number) == 1)
             row->one_of = number;
-        else if (strcmp(suffix + strspn(suffix, "0123456789"), "pairs") == 0)
-            row->first = strtoul(suffix, NULL, 10);
         else
-            row->threads = 2;
+            row->alone = true;
     }
 }
 
 /* The shapes that a peer has in the place of these. */
 static const struct family *family_for(const struct peer *peer, const struct family *family) {
     char polygons[WORD];
-    if (family->form == FORM_N_ARC && !peer->arcs) {
-        snprintf(polygons, sizeof polygons, "gons%u", family->edges);
-        return find_family(polygons);
-    }
-    return family->form == FORM_CAPSULE && !peer->capsules ? find_family("capsule-boxes") : family;
+    if (family->form != FORM_N_ARC || peer->arcs)
+        return family;
+    snprintf(polygons, sizeof polygons, "gons%u", family->edges);
+    return find_family(polygons);
 }
 
 /* Whatever the row lacks to run here, or NULL. */
 static const char *find_missing(const struct row *row) {
     if (row->peer && row->peer->missing)
         return row->peer->missing;
-    if (!row->peer && !narc_isa_supported(row->isa))
-        return "not supported here";
-    return row->threads > narc_openmp_workers(0).count ? "fewer threads here" : NULL;
+    return !row->peer && !narc_isa_supported(row->isa) ? "not supported here" : NULL;
 }
 
 static bool is_listed(const char *name) {
@@ -179,9 +158,7 @@ static void add_row(const char *query, const char *family, const char *layout, c
     const char *missing = find_missing(&row);
     if (!row.peer && !row.isa)
         fail("nobody is called %s", answers);
-    if (is_listed(name) || (row.first && row.first >= scaled(row.layout->size)) ||
-        (row.peer && row.family && row.family->edges > row.peer->max_edges && !missing) ||
-        (row.peer && strstr(query, "recycled") && !row.peer->recycles))
+    if (is_listed(name) || (row.peer && row.family && row.family->edges > row.peer->max_edges && !missing))
         return;
     if (missing) {
         bench_skip(name, missing);
@@ -189,10 +166,10 @@ static void add_row(const char *query, const char *family, const char *layout, c
     }
     if (row.peer && row.family)
         row.family = family_for(row.peer, row.family);
-    row.workers = narc_openmp_workers(row.threads);
+    row.workers = narc_openmp_workers(threads);
     row.bench = (struct bench_row){.prepare = prepare,
                                    .run = run,
-                                   .threaded = row.threads > 1,
+                                   .threaded = threads > 1,
                                    .own_clock = row.question->own_clock || (row.peer && row.peer->own_clock),
                                    .must_be_right = !row.peer};
     memcpy(row.bench.name, name, sizeof name);
@@ -224,17 +201,13 @@ static void add_group(const struct group *group) {
                         add_row(query, family, layout, who);
                     else
                         for (size_t k = 0; narc_isa_name(k); k++)
-                            if (narc_isa_supported(narc_isa_name(k)))
-                                add_row(query, family, layout, narc_isa_name(k));
+                            add_row(query, family, layout, narc_isa_name(k));
                 }
 }
 
-void list_rows(const char *best_isa, bool all) {
+void list_rows(const char *best_isa, unsigned on_threads) {
+    threads = on_threads;
     best = best_isa;
     for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++)
         add_group(&groups[k]);
-    for (size_t k = 0; all && k < sizeof all_groups / sizeof all_groups[0]; k++)
-        add_group(&all_groups[k]);
-    for (size_t k = 0; narc_isa_name(k); k++) /* the others, as skipped */
-        add_row("overlap", "n8", "mixed", narc_isa_name(k));
 }

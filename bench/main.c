@@ -4,7 +4,6 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "common.h"
 #include "report.h"
@@ -15,16 +14,17 @@ enum { DEFAULT_PAIRS = 65536, LEAST_PAIRS = 1024, MOST_PAIRS = 1 << 24 };
 int main(int argc, char **argv) {
     const char *out_folder = NULL;
     size_t pairs = DEFAULT_PAIRS;
-    bool all = false;
+    unsigned threads = 1;
     int kept = 1; /* Google Benchmark's options */
     for (int k = 1; k < argc; k++) {
         const char *folder = option_value(argv[k], "--out="), *count = option_value(argv[k], "--pairs=");
-        if (strcmp(argv[k], "--all") == 0)
-            all = true;
-        else if (folder)
+        const char *workers = option_value(argv[k], "--threads=");
+        if (folder)
             out_folder = folder;
         else if (count)
             pairs = (size_t)strtoul(count, NULL, 10);
+        else if (workers)
+            threads = (unsigned)strtoul(workers, NULL, 10);
         else
             argv[kept++] = argv[k];
     }
@@ -40,7 +40,7 @@ int main(int argc, char **argv) {
     bench_describe("best_isa", best);
     bench_describe("box2d", box2d_name());
     set_pairs(pairs);
-    list_rows(best, all);
+    list_rows(best, threads);
     const int status = bench_run(kept, argv);
     if (status != 0)
         return status;

@@ -20,7 +20,8 @@ struct pairs {
     size_t runs, found;
     uint64_t *bits;
     narc_contact *contacts;
-    uint8_t *colliding; /* of a peer */
+    narc_body *bodies[2]; /* of the frames, for calls of two */
+    uint8_t *colliding;   /* of a peer */
 };
 
 narc_manifold *share_manifolds(size_t count) {
@@ -42,28 +43,54 @@ float deepest_separation(const narc_manifold *manifold) {
 /* ------------------------------------------------------------------------------------------------ this library */
 
 /* All pairs in one call, or so many in each. */
-static narc_status find_contacts(const struct row *row, const struct scene *scene, const narc_bodies *bodies,
-                                 const narc_pairs *pairs, narc_query query, narc_error *error) {
+static narc_status find_rows(const struct row *row, const struct scene *scene, const narc_bodies *bodies,
+                             const narc_pairs *pairs, narc_query query, narc_error *error) {
     struct pairs *p = row->state;
     narc_status status = NARC_OK;
-    p->found = 0;
-    while (query.first < pairs->count && status == NARC_OK) {
+    narc_manifold *manifolds = row->question->what == QUERY_MANIFOLD ? share_manifolds(pairs->count) : NULL;
+    for (p->found = 0; query.first < pairs->count && status == NARC_OK; query.first += query.count) {
+        const size_t room = pairs->count - p->found;
         size_t found = 0;
         query.count = batch_of(row, query.first);
-        status = narc_find_contacts(scene->shapes, bodies, pairs, &query, p->contacts + p->found,
-                                    pairs->count - p->found, &found, error);
-        query.first += query.count;
+        status =
+            manifolds
+                ? narc_find_manifolds(scene->shapes, bodies, pairs, &query, manifolds + p->found, room, &found, error)
+                : narc_find_contacts(scene->shapes, bodies, pairs, &query, p->contacts + p->found, room, &found, error);
         p->found += found;
+    }
+    return status;
+}
+
+/* Two bodies in each call. */
+static narc_status find_alone(const struct row *row, const struct scene *scene, const narc_body *bodies,
+                              narc_error *error) {
+    struct pairs *p = row->state;
+    narc_status status = NARC_OK;
+    narc_manifold *manifolds = row->question->what == QUERY_MANIFOLD ? share_manifolds(row->bench.count) : NULL;
+    p->found = 0;
+    for (size_t k = 0; k < row->bench.count && status == NARC_OK; k++) {
+        const narc_body *a = &bodies[scene->pairs[k].a], *b = &bodies[scene->pairs[k].b];
+        if (manifolds) {
+            narc_manifold *row_of = &manifolds[p->found];
+            status = narc_find_manifold(scene->shapes, a, b, NULL, row_of, error);
+            row_of->pair = (uint32_t)k;
+            p->found += row_of->count > 0;
+        } else {
+            narc_contact *row_of = &p->contacts[p->found];
+            status = narc_find_contact(scene->shapes, a, b, NULL, row_of, error);
+            row_of->pair = (uint32_t)k;
+            p->found += row_of->count > 0;
+        }
     }
     return status;
 }
 
 static void run(struct row *row) {
     struct pairs *p = row->state;
-    const struct scene *scene = p->frames[p->runs++ % 2];
+    const size_t frame = p->runs++ % 2;
+    const struct scene *scene = p->frames[frame];
     const narc_bodies bodies = bodies_of_scene(scene);
-    narc_pairs pairs = pairs_of_scene(scene);
-    pairs.count = row->bench.count;
+    const narc_pairs pairs = pairs_of_scene(scene);
     if (row->peer) {
         row->peer->ask(row->peer_state, &(struct asked){.count = pairs.count, .pairs = scene->pairs}, p->colliding);
         return;
@@ -73,11 +100,10 @@ static void run(struct row *row) {
     narc_status status;
     if (row->question->what == QUERY_OVERLAP)
         status = narc_find_overlaps(scene->shapes, &bodies, &pairs, &query, p->bits, &error);
-    else if (row->question->what == QUERY_MANIFOLD)
-        status = narc_find_manifolds(scene->shapes, &bodies, &pairs, &query, share_manifolds(pairs.count), pairs.count,
-                                     &p->found, &error);
+    else if (row->alone)
+        status = find_alone(row, scene, p->bodies[frame], &error);
     else
-        status = find_contacts(row, scene, &bodies, &pairs, query, &error);
+        status = find_rows(row, scene, &bodies, &pairs, query, &error);
     if (status != NARC_OK)
         fail("%s: %s", row->bench.name, error.message);
 }
@@ -120,7 +146,7 @@ static void prepare_peer(struct row *row) {
 static void prepare(struct row *row) {
     struct pairs *p = row->state = allocate(1, sizeof *p);
     const int what = row->question->what;
-    const size_t count = row->bench.count = row->first ? row->first : row->scene->pair_count;
+    const size_t count = row->bench.count = row->scene->pair_count;
     p->frames[0] = p->frames[1] = row->scene;
     if (row->peer) {
         prepare_peer(row);
@@ -131,6 +157,13 @@ static void prepare(struct row *row) {
     p->bits = allocate(NARC_BIT_WORDS(count), sizeof *p->bits);
     if (what == QUERY_CONTACT)
         p->contacts = allocate(count, sizeof *p->contacts);
+    for (int frame = 0; frame < 2 && row->alone; frame++) {
+        p->bodies[frame] = allocate(row->scene->body_count, sizeof *p->bodies[frame]);
+        for (size_t k = 0; k < row->scene->body_count; k++) {
+            const struct body *at = &p->frames[frame]->bodies[k];
+            p->bodies[frame][k] = (narc_body){(double)at->x, (double)at->y, at->cosine, at->sine, 1, at->shape};
+        }
+    }
     for (int frame = 0; frame < 2; frame++) {
         const double *gaps = gaps_of(p->frames[p->runs % 2]);
         run(row);

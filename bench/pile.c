@@ -59,10 +59,12 @@ static narc_pairs find_close(struct search *search, const struct scene *scene, d
 static void list_pairs(struct scene *scene) {
     struct search search = begin_search(scene->body_count);
     find_close(&search, scene, SKIN / 2);
-    scene->pair_count = search.found;
     scene->pairs = allocate(search.found, sizeof *scene->pairs);
-    for (size_t k = 0; k < search.found; k++)
-        scene->pairs[k] = (struct pair){search.a[k], search.b[k]};
+    for (size_t k = 0; k < search.found; k++) {
+        const bool unlike = (scene->bodies[search.a[k]].shape + scene->bodies[search.b[k]].shape) % 2;
+        scene->pairs[scene->pair_count] = (struct pair){search.a[k], search.b[k]};
+        scene->pair_count += scene->family->form != FORM_BALLS_BOXES || unlike;
+    }
     end_search(&search);
 }
 

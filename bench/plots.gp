@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The plots of the benchmark: gnuplot -e "folder='out'" bench/plots.gp, from arcs.dat and batches.dat in that folder.
+# The plot of the benchmark: gnuplot -e "folder='out'" bench/plots.gp, from arcs.dat in that folder.
 set terminal svg size 800,520 dynamic font "sans-serif,14" noenhanced background "white"
 set datafile separator "\t"
 set datafile missing "?"
@@ -8,13 +8,13 @@ set border 3
 set tics nomirror
 set key outside right top Left reverse samplen 4 width -4
 
-# Okabe and Ito's colours, for two times five lines; ours (columns 2 to 5) are solid and thick.
-array colors[10] = ["", "#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73", "#88ccaa", "#cc79a7", "#8a2be2", "#999999"]
+# Okabe and Ito's colours; ours (columns 2 to 5) are solid and thick.
+array colors[9] = ["", "#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73", "#88ccaa", "#cc79a7", "#8a2be2"]
 
 data = folder."/arcs.dat"
 if (system("test -s ".data." && echo yes") eq "yes") {
     set output folder."/bench-arcs.svg"
-    set title "One thread, half of the pairs colliding, 4,096 distinct shapes"
+    set title "One thread, a settled pile of 30,000 bodies"
     set xlabel "arcs of each shape (edges, for polygons)"
     set ylabel "nanoseconds per pair"
     set logscale y
@@ -22,21 +22,5 @@ if (system("test -s ".data." && echo yes") eq "yes") {
     set yrange [*:*]
     set xtics (4, 6, 8, 12, 16)
     plot for [c = 2:5] data using 1:c with linespoints title columnheader(c) lw 3 pt 7 ps 0.6 lc rgb colors[c], \
-        for [c = 6:10] data using 1:c with linespoints title columnheader(c) lw 1.5 pt 6 ps 0.6 dt 2 lc rgb colors[c]
-}
-
-data = folder."/batches.dat"
-if (system("test -s ".data." && echo yes") eq "yes") {
-    set output folder."/bench-batches.svg"
-    set title "Overlap, 8 arcs, a settled pile of a million bodies"
-    set key inside bottom right
-    set xlabel "pairs in a batch"
-    set ylabel "million pairs per second"
-    unset logscale y
-    set logscale x
-    set xrange [50:350000]
-    set yrange [0:*]
-    set xtics ("64" 64, "256" 256, "1,024" 1024, "4,096" 4096, "16,384" 16384, "65,536" 65536, "262,144" 262144) rotate by -30
-    plot for [c = 2:3] data using 1:(column(c) / 1e6) with linespoints title columnheader(c) lw 3 pt 7 ps 0.6 \
-        lc rgb colors[2 * c - 2]
+        for [c = 6:7] data using 1:c with linespoints title columnheader(c) lw 1.5 pt 6 ps 0.6 dt 2 lc rgb colors[c]
 }

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * queries.c - rays, regions and the nearest bodies: settled piles and sparse scenes, in batches and one by one.
- *
- * Chipmunk wants to know how far to look for the nearest body, and takes longer the farther that is; it is told a
- * distance within which every point finds something.
+ * queries.c - rays, regions and the nearest bodies, in batches and one by one; builds of an index.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +14,9 @@ enum { FAN = 1080, RAYS = 10 * FAN, REGIONS = 10000, POINTS = 20000, MOST_FOUND 
 
 struct questions {
     struct asked asked;
-    narc_points points;
+    struct place {
+        float x, y;
+    } * points;
     uint32_t *bodies; /* of points that are asked about one each */
 
     /* Answers, as far as the question has them. */
@@ -28,7 +27,7 @@ struct questions {
 };
 
 enum ray_kind { RAY_FAN, RAY_LONG, RAY_SHORT };
-enum nearest_kind { NEAREST, NEAREST_INSIDE, DISTANCE, DISTANCE_OF_ONE };
+enum nearest_kind { NEAREST, DISTANCE };
 
 /* Peers that are asked several questions about a scene have it once. */
 static void *share_peer(const struct row *row) {
@@ -94,8 +93,7 @@ static void run_rays(struct row *row) {
         cast_rays(row, row->batch ? row->batch : row->question->what == RAY_FAN ? FAN : RAYS, q->hits);
 }
 
-/* Peers may differ in what grazes, and Chipmunk tells 0 of a ray that starts in a body; this library has the same answers
- * in all batches. */
+/* Peers may differ in what grazes; this library has the same answers in all batches. */
 static void prepare_rays(struct row *row) {
     struct questions *q = begin(row, RAYS);
     const size_t count = q->asked.count;
@@ -111,7 +109,7 @@ static void prepare_rays(struct row *row) {
         row->bench.hits += expected[k].count / (double)count;
         const float other = q->floats[k];
         if (row->peer)
-            row->bench.wrong += other > 0 && fabs((double)(fraction - other)) > 1e-3;
+            row->bench.wrong += fabs((double)(fraction - other)) > 1e-3;
         else
             row->bench.wrong += hit->count != expected[k].count || (hit->count && hit->fraction != fraction);
     }
@@ -136,47 +134,31 @@ static const narc_box *make_regions(const struct scene *scene, double found, siz
     return regions;
 }
 
-/* Appends pairs as keys region << 32 | body; how many keys there are now. */
-static size_t add_keys(const narc_pairs *pairs, uint64_t first, uint64_t *keys, size_t count) {
-    const uint32_t *a = pairs->a.base, *b = pairs->b.base;
-    for (size_t k = 0; k < pairs->count; k++)
-        keys[count++] = (first + a[k]) << 32 | b[k];
-    return count;
+/* Pairs region << 32 | body, in any order. */
+struct tally {
+    uint64_t count, sum;
+};
+
+static void add_key(struct tally *tally, uint64_t key) {
+    tally->count++;
+    tally->sum += random_bits(&key);
 }
 
-static int compare_keys(const void *left, const void *right) {
-    const uint64_t l = *(const uint64_t *)left, r = *(const uint64_t *)right;
-    return (l > r) - (l < r);
-}
-
-/* How many keys only one of the two has. Sorts both. */
-static size_t count_differences(uint64_t *left, size_t left_count, uint64_t *right, size_t right_count) {
-    size_t differences = 0, l = 0, r = 0;
-    qsort(left, left_count, sizeof *left, compare_keys);
-    qsort(right, right_count, sizeof *right, compare_keys);
-    while (l < left_count && r < right_count) {
-        differences += left[l] != right[r];
-        const bool next_left = left[l] <= right[r], next_right = right[r] <= left[l];
-        l += next_left;
-        r += next_right;
-    }
-    return differences + (left_count - l) + (right_count - r);
-}
-
-/* So many regions in a call. Keys are kept if they are wanted; returns how many. */
-static size_t ask_index(const struct row *row, size_t batch, uint64_t *keys) {
+/* So many regions in a call. */
+static struct tally ask_index(const struct row *row, size_t batch, bool check) {
     const struct questions *q = row->state;
-    const narc_index_query query = {.workers = row->threads > 1 ? &row->workers : NULL};
-    size_t count = 0;
+    const narc_index_query query = {.workers = &row->workers};
+    struct tally tally = {0, 0};
     for (size_t k = 0; k < q->asked.count; k += batch) {
         const size_t part = batch < q->asked.count - k ? batch : q->asked.count - k;
         narc_pairs pairs;
         narc_error error;
         must(narc_query_index(row->scene->index, q->asked.regions + k, part, &query, &pairs, &error), &error);
-        if (keys)
-            count = add_keys(&pairs, k, keys, count);
+        const uint32_t *a = pairs.a.base, *b = pairs.b.base;
+        for (size_t n = 0; n < pairs.count && check; n++)
+            add_key(&tally, (uint64_t)(k + a[n]) << 32 | b[n]);
     }
-    return count;
+    return tally;
 }
 
 static void run_regions(struct row *row) {
@@ -184,36 +166,40 @@ static void run_regions(struct row *row) {
     if (row->peer)
         row->peer->ask(row->peer_state, &q->asked, q->keys);
     else
-        ask_index(row, row->batch ? row->batch : q->asked.count, NULL);
+        ask_index(row, row->batch ? row->batch : q->asked.count, false);
 }
 
 /* What a peer finds, and what this library does one by one, against a batch of it. */
 static void prepare_regions(struct row *row) {
     struct questions *q = begin(row, REGIONS);
     const size_t count = q->asked.count;
-    uint64_t *expected = allocate(MOST_FOUND * count, sizeof *expected);
     q->asked.regions = make_regions(row->scene, row->question->what, count);
-    q->keys = allocate(MOST_FOUND * count, sizeof *q->keys);
-    const size_t expected_count = ask_index(row, count, expected);
-    const size_t found = row->peer ? row->peer->ask(row->peer_state, &q->asked, q->keys)
-                                   : ask_index(row, row->batch ? row->batch : count, q->keys);
-    row->bench.hits = (double)expected_count / (double)count;
-    row->bench.wrong = (double)count_differences(expected, expected_count, q->keys, found);
-    free(expected);
-    if (!row->peer) /* lists pairs in its index */
-        free(q->keys);
+    const struct tally expected = ask_index(row, count, true);
+    struct tally found = {0, 0};
+    if (row->peer) {
+        q->keys = allocate(MOST_FOUND * count, sizeof *q->keys);
+        for (size_t k = row->peer->ask(row->peer_state, &q->asked, q->keys); k > 0; k--)
+            add_key(&found, q->keys[k - 1]);
+    } else {
+        found = ask_index(row, row->batch ? row->batch : count, true);
+    }
+    row->bench.hits = (double)expected.count / (double)count;
+    row->bench.wrong = found.count != expected.count || found.sum != expected.sum;
 }
 
 /* ------------------------------------------------------------------------------------------------ the nearest body */
 
-static void find_nearest(const struct row *row, size_t batch, bool inside, narc_distance *out) {
+static narc_points points_from(const struct questions *q, size_t first, size_t count) {
+    const struct place *at = q->points + first;
+    return (narc_points){.count = count, .x = NARC_POSITION_COLUMN(at, x), .y = NARC_POSITION_COLUMN(at, y)};
+}
+
+static void find_nearest(const struct row *row, size_t batch, narc_distance *out) {
     const struct questions *q = row->state;
     const narc_bodies bodies = bodies_of_scene(row->scene);
-    const narc_nearest_options options = {.inside = inside, .search.workers = row->threads > 1 ? &row->workers : NULL};
+    const narc_nearest_options options = {.search.workers = &row->workers};
     for (size_t k = 0; k < q->asked.count; k += batch) {
-        const narc_points points = {.count = batch < q->asked.count - k ? batch : q->asked.count - k,
-                                    .x = NARC_POSITION_ARRAY(q->asked.x + k),
-                                    .y = NARC_POSITION_ARRAY(q->asked.y + k)};
+        const narc_points points = points_from(q, k, batch < q->asked.count - k ? batch : q->asked.count - k);
         narc_error error;
         must(narc_find_nearest(row->scene->index, row->scene->shapes, &bodies, &points, &options, out + k, points.count,
                                &error),
@@ -223,55 +209,63 @@ static void find_nearest(const struct row *row, size_t batch, bool inside, narc_
 
 static void run_nearest(struct row *row) {
     struct questions *q = row->state;
-    const int kind = row->question->what;
-    if (row->peer) {
-        row->peer->ask(row->peer_state, &q->asked, q->floats);
-    } else if (kind <= NEAREST_INSIDE) {
-        find_nearest(row, row->batch ? row->batch : q->asked.count, kind == NEAREST_INSIDE, q->distances);
+    if (row->question->what == NEAREST) {
+        find_nearest(row, row->batch ? row->batch : q->asked.count, q->distances);
     } else {
         const narc_bodies bodies = bodies_of_scene(row->scene);
-        const narc_index_column one_each = NARC_ARRAY(q->bodies);
+        const narc_index_column named = NARC_ARRAY(q->bodies);
+        const narc_points points = points_from(q, 0, q->asked.count);
         narc_error error;
-        must(narc_find_distances(row->scene->shapes, &bodies, &q->points,
-                                 kind == DISTANCE ? one_each : (narc_index_column){q->bodies, 0}, NULL, q->distances,
-                                 &error),
-             &error);
+        must(narc_find_distances(row->scene->shapes, &bodies, &points, named, NULL, q->distances, &error), &error);
     }
 }
 
-/* Within bodies peers name another depth, or none. */
 static void prepare_nearest(struct row *row) {
     struct questions *q = begin(row, POINTS);
     const size_t count = q->asked.count;
     const double half = row->scene->half;
     narc_distance *expected = allocate(count, sizeof *expected);
-    float *x = allocate(count, sizeof *x), *y = allocate(count, sizeof *y);
     uint64_t random = 78;
+    q->points = allocate(count, sizeof *q->points);
     for (size_t k = 0; k < count; k++) {
-        x[k] = (float)random_between(&random, -half, half);
-        y[k] = (float)random_between(&random, -half, half);
+        q->points[k].x = (float)random_between(&random, -half, half);
+        q->points[k].y = (float)random_between(&random, -half, half);
     }
-    q->asked.x = x;
-    q->asked.y = y;
-    q->asked.within = row->layout->layout == LAYOUT_SPARSE ? 6 : 2;
-    q->points = (narc_points){.count = count, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
     q->bodies = allocate(count, sizeof *q->bodies);
     q->distances = allocate(count, sizeof *q->distances);
-    q->floats = allocate(count, sizeof *q->floats);
-    find_nearest(row, count, false, expected);
+    find_nearest(row, count, expected);
     for (size_t k = 0; k < count; k++)
         q->bodies[k] = expected[k].body;
     run_nearest(row);
     for (size_t k = 0; k < count; k++) {
-        const float separation = expected[k].separation, other = q->distances[k].separation;
-        const bool same_question = row->question->what == NEAREST || row->question->what == DISTANCE;
-        row->bench.hits += (separation < 0) / (double)count;
-        if (row->peer)
-            row->bench.wrong += fabs((double)(separation - q->floats[k])) > 1e-3 && separation > 0;
-        else if (same_question)
-            row->bench.wrong += other != separation;
+        row->bench.hits += (expected[k].separation < 0) / (double)count;
+        row->bench.wrong += q->distances[k].separation != expected[k].separation;
     }
     free(expected);
+}
+
+/* ------------------------------------------------------------------------------------------------ builds of an index */
+
+enum build { GOOD, FAST, REFIT };
+
+static void run_build(struct row *row) {
+    struct scene *scene = row->scene;
+    const narc_index_options options = {.fast = row->question->what == FAST, .workers = &row->workers};
+    narc_index *index = row->state;
+    narc_error error;
+    if (row->question->what == REFIT)
+        must(narc_refit_index(index, scene->boxes, scene->body_count, &options, NULL, &error), &error);
+    else
+        must(narc_build_index(index, scene->boxes, scene->body_count, &options, &error), &error);
+}
+
+static void prepare_build(struct row *row) {
+    narc_index *index;
+    index_scene(row->scene);
+    row->bench.count = row->scene->body_count;
+    must(narc_create_index(NULL, &index), NULL);
+    must(narc_build_index(index, row->scene->boxes, row->scene->body_count, NULL, NULL), NULL);
+    row->state = index;
 }
 
 const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, RAY_FAN, false},
@@ -280,7 +274,8 @@ const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, R
                                            {"region-48", prepare_regions, run_regions, 48, false},
                                            {"region-3", prepare_regions, run_regions, 3, false},
                                            {"nearest", prepare_nearest, run_nearest, NEAREST, false},
-                                           {"nearest-inside", prepare_nearest, run_nearest, NEAREST_INSIDE, false},
                                            {"distance", prepare_nearest, run_nearest, DISTANCE, false},
-                                           {"distance-of-one", prepare_nearest, run_nearest, DISTANCE_OF_ONE, false},
+                                           {"index-good", prepare_build, run_build, GOOD, false},
+                                           {"index-fast", prepare_build, run_build, FAST, false},
+                                           {"index-refit", prepare_build, run_build, REFIT, false},
                                            {.name = NULL}};

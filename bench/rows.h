@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * rows.h - rows: a question asked of a scene, by this library or a peer. Their names are query/shapes/scene/who, such as
- * overlap/n8/mixed/avx512; README.md says what each word means.
+ * overlap/n8/pile/avx512; README.md says what each word means.
  */
 #ifndef NARC_BENCH_ROWS_H
 #define NARC_BENCH_ROWS_H
@@ -27,8 +27,7 @@ struct row {
     const struct layout_kind *layout;
     const struct peer *peer; /* NULL: this library, */
     const char *isa;         /* on this instruction set */
-    unsigned threads;        /* "/2threads" */
-    size_t first;            /* "/64pairs": that many of the first pairs; 0: all */
+    bool alone;              /* "/alone": calls of two bodies */
     size_t batch;            /* "/by16": that many questions in a call; 0: all */
     size_t one_of;           /* "/1of20" */
     narc_workers workers;
@@ -40,13 +39,12 @@ struct row {
 /* Behind the last one comes one without a name. */
 extern const struct question pair_questions[];  /* overlaps, contacts, manifolds; bits of all peers */
 extern const struct question step_questions[];  /* from bodies to manifolds, and what an engine does besides */
-extern const struct question scene_questions[]; /* rays, regions, the nearest bodies */
+extern const struct question scene_questions[]; /* rays, regions, the nearest bodies, indices */
 extern const struct question impact_questions[];
-extern const struct question index_questions[];
 extern const struct question ground_questions[];
 
-/* Makes and registers all rows. With `all` each query of each scene on each instruction set. */
-void list_rows(const char *best_isa, bool all);
+/* Makes and registers all rows. */
+void list_rows(const char *best_isa, unsigned threads);
 const struct row *get_row(size_t index); /* NULL behind the last one */
 
 /* The number of a row's questions in a call. */

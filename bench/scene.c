@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene.c - the tables of shapes and of scenes, and scenes by their names.
+ * scene.c - the tables of shapes and of scenes, scenes by their names, pyramids.
  */
 #include "scene.h"
 
@@ -20,8 +20,9 @@ static const struct family families[] = {
     {"n12", FORM_N_ARC, 12, NULL},
     {"n16", FORM_N_ARC, 16, NULL},
     {"kinds", FORM_KINDS, 8, NULL},
-    {"general", FORM_GENERAL, 8, NULL},
     {"rounded", FORM_ROUNDED, 8, NULL},
+    {"rounded5", FORM_ROUNDED, 5, NULL},
+    {"balls-boxes", FORM_BALLS_BOXES, 4, NULL},
     {"boxes", FORM_BOX, 4, NULL},
     {"squares", FORM_SQUARE, 4, NULL},
     {"discs", FORM_DISC, 8, NULL},
@@ -29,23 +30,14 @@ static const struct family families[] = {
     {"gons4", FORM_POLYGON, 4, "n4"},
     {"gons6", FORM_POLYGON, 6, "n6"},
     {"gons8", FORM_POLYGON, 8, "n8"},
-    {"gons12", FORM_POLYGON, 12, "n12"},
-    {"gons16", FORM_POLYGON, 16, "n16"},
-    {"bounds8", FORM_BOUND, 8, "n8"},
-    {"capsule-boxes", FORM_CAPSULE_BOX, 4, "capsules"},
 };
 enum { FAMILIES = sizeof families / sizeof families[0] };
 
 static const struct layout_kind layouts[] = {
-    {"mixed", LAYOUT_MIXED, 4096, false, 65536},         {"mixed-sorted", LAYOUT_MIXED, 4096, true, 65536},
-    {"mixed-templates", LAYOUT_MIXED, 16, false, 65536}, {"mixed-templates-sorted", LAYOUT_MIXED, 16, true, 65536},
-    {"pyramid", LAYOUT_PYRAMID, 4096, true, 16384},      {"pyramid-templates", LAYOUT_PYRAMID, 16, true, 16384},
-    {"lattice", LAYOUT_LATTICE, 4096, true, 16384},      {"lattice-templates", LAYOUT_LATTICE, 16, true, 16384},
-    {"pile-1000", LAYOUT_PILE, 64, true, 1000},          {"pile-2000", LAYOUT_PILE, 64, true, 2000},
-    {"pile-10000", LAYOUT_PILE, 64, true, 10000},        {"pile", LAYOUT_PILE, 64, true, 30000},
-    {"pile-unlike", LAYOUT_PILE, 4096, true, 30000},     {"pile-each", LAYOUT_PILE, 30000, true, 30000},
-    {"pile-1000000", LAYOUT_PILE, 64, true, 1000008},    {"sparse-1000", LAYOUT_SPARSE, 64, true, 1000},
-    {"sparse", LAYOUT_SPARSE, 64, true, 30000},          {"sparse-1000000", LAYOUT_SPARSE, 64, true, 1000008},
+    {"pyramid", LAYOUT_PYRAMID, 4096, 16384},   {"pyramid-templates", LAYOUT_PYRAMID, 16, 16384},
+    {"pile-2000", LAYOUT_PILE, 64, 2000},       {"pile-10000", LAYOUT_PILE, 64, 10000},
+    {"pile", LAYOUT_PILE, 64, 30000},           {"pile-each", LAYOUT_PILE, 30000, 30000},
+    {"pile-1000000", LAYOUT_PILE, 64, 1000008},
 };
 enum { LAYOUTS = sizeof layouts / sizeof layouts[0] };
 
@@ -65,7 +57,7 @@ const struct layout_kind *find_layout(const char *name) {
     return NULL;
 }
 
-bool is_pile(const struct layout_kind *kind) { return kind->layout >= LAYOUT_PILE; }
+bool is_pile(const struct layout_kind *kind) { return kind->layout == LAYOUT_PILE; }
 
 void set_pairs(size_t pairs) { pairs_asked = pairs; }
 
@@ -94,22 +86,18 @@ static void make_shapes(struct scene *scene) {
     store_shapes(scene);
 }
 
-/* The same bodies and pairs, with something else in the place of each shape; in piles polygons as large as n-arcs. */
+/* The same bodies and pairs, with polygons in the place of n-arcs, and as large. */
 static void replace_shapes(struct scene *scene) {
     struct outline *outlines = allocate(scene->shape_count, sizeof *outlines);
-    const enum form form = scene->family->form;
     for (size_t k = 0; k < scene->shape_count; k++)
-        outlines[k] =
-            replace_outline(form == FORM_POLYGON && is_pile(scene->kind) ? FORM_LARGE : form, &scene->outlines[k]);
+        outlines[k] = polygon_of(&scene->outlines[k], true);
     scene->outlines = outlines;
     store_shapes(scene);
 }
 
 static void move_bodies(struct scene *scene) {
     uint64_t random = 2;
-    const enum layout layout = scene->kind->layout;
-    const bool stack = layout == LAYOUT_PYRAMID || layout == LAYOUT_LATTICE;
-    const double most = stack ? 0 : is_pile(scene->kind) ? 0.001 : 0.01;
+    const double most = is_pile(scene->kind) ? 0.001 : 0;
     struct body *bodies = allocate(scene->body_count, sizeof *bodies);
     for (size_t k = 0; k < scene->body_count; k++) {
         const struct body *body = &scene->bodies[k];
@@ -122,41 +110,35 @@ static void move_bodies(struct scene *scene) {
     scene->bodies = bodies;
 }
 
-static void spread_bodies(struct scene *scene) {
-    struct body *bodies = allocate(scene->body_count, sizeof *bodies);
-    for (size_t k = 0; k < scene->body_count; k++) {
-        bodies[k] = scene->bodies[k];
-        bodies[k].x *= 3;
-        bodies[k].y *= 3;
+/* Adds a pair of the bodies at two positions, if there are such: row y has `width` - y. */
+static void add_neighbours(struct scene *scene, size_t width, size_t a, size_t x, size_t y) {
+    if (y < width && x < width - y)
+        scene->pairs[scene->pair_count++] = (struct pair){(uint32_t)a, (uint32_t)(y * width - y * (y - 1) / 2 + x)};
+}
+
+/* Squares in rows, each pair of neighbours. */
+void make_pyramid(struct scene *scene) {
+    const size_t width = (size_t)sqrt((double)scaled(scene->kind->size) / 1.5);
+    scene->pairs = allocate(4 * width * width, sizeof *scene->pairs);
+    scene->bodies = allocate(width * width, sizeof *scene->bodies);
+    scene->body_count = scene->pair_count = 0;
+    for (size_t y = 0; y < width; y++) {
+        for (size_t x = 0; x < width - y; x++) {
+            const size_t body = scene->body_count++;
+            scene->bodies[body] = (struct body){.x = (float)(1.05 * ((double)x + 0.5 * (double)y)),
+                                                .y = (float)(0.9995 * (double)y),
+                                                .cosine = 1,
+                                                .shape = (uint32_t)(body % scene->shape_count)};
+            add_neighbours(scene, width, body, x + 1, y);
+            add_neighbours(scene, width, body, x - 1, y + 1);
+            add_neighbours(scene, width, body, x, y + 1);
+        }
     }
-    scene->bodies = bodies;
-    scene->pair_count = 0;
 }
 
 static int compare_pairs(const void *left, const void *right) {
     const struct pair *l = left, *r = right;
     return l->a != r->a ? (l->a > r->a) - (l->a < r->a) : (l->b > r->b) - (l->b < r->b);
-}
-
-static void order_pairs(struct scene *scene) {
-    uint64_t random = 1;
-    if (scene->kind->sorted) {
-        qsort(scene->pairs, scene->pair_count, sizeof *scene->pairs, compare_pairs);
-        return;
-    }
-    for (size_t k = scene->pair_count; k > 1; k--) {
-        const size_t other = random_below(&random, k);
-        const struct pair kept = scene->pairs[k - 1];
-        scene->pairs[k - 1] = scene->pairs[other];
-        scene->pairs[other] = kept;
-    }
-}
-
-static const struct layout_kind *find_pile(size_t size) {
-    for (size_t k = 0; k < LAYOUTS; k++)
-        if (layouts[k].layout == LAYOUT_PILE && layouts[k].size == size)
-            return &layouts[k];
-    return NULL;
 }
 
 /* From another scene by one step, or from nothing. */
@@ -171,14 +153,10 @@ static void make_scene(struct scene *scene) {
     } else if (scene->moved) {
         *scene = *get_scene(family, kind, false);
         move_bodies(scene);
-    } else if (kind->layout == LAYOUT_SPARSE) {
-        *scene = *get_scene(family, find_pile(kind->size), false);
-        spread_bodies(scene);
     } else {
-        static void (*const makers[])(struct scene *) = {make_pairs, make_stack, make_stack, make_pile};
         make_shapes(scene);
-        makers[kind->layout](scene);
-        order_pairs(scene);
+        (is_pile(kind) ? make_pile : make_pyramid)(scene);
+        qsort(scene->pairs, scene->pair_count, sizeof *scene->pairs, compare_pairs);
     }
     scene->family = family;
     scene->kind = kind;

@@ -10,10 +10,6 @@
 #include "narc_scene.h"
 #include "shapes.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A pair whose exact separation is closer to 0 than this may have either answer. */
 #define TOUCHING 1e-5
 
@@ -30,18 +26,14 @@ struct family {
 
 /* Where bodies are. */
 enum layout {
-    LAYOUT_MIXED, /* pairs: the second body anywhere where the axis-aligned boxes overlap, half of the pairs colliding */
     LAYOUT_PYRAMID, /* equal squares at rest, each with a gap to the next in its row */
-    LAYOUT_LATTICE, /* without gaps: normals tie at every corner */
     LAYOUT_PILE,    /* bodies that hold each other in place, as a simulation has them: see pile.c */
-    LAYOUT_SPARSE,  /* a pile's, three times as far apart */
 };
 
 struct layout_kind {
     const char *name;
     enum layout layout;
     size_t shapes; /* how many different ones */
-    bool sorted;   /* pairs by their first body, as from a broad phase, instead of in random order */
     size_t size;   /* pairs; of piles, bodies; by 65,536 pairs that a scene is asked to have */
 };
 
@@ -52,14 +44,15 @@ struct pair {
 struct scene {
     const struct family *family;
     const struct layout_kind *kind;
-    bool moved; /* the next frame: every body moved by up to 1 % of its size, and turned by up to 0.01; in piles a tenth
-                 * of that, in stacks nothing */
+    bool moved; /* the next frame: in piles every body moved by up to 0.1 % of its size, and turned by up to 0.001 */
     size_t shape_count, body_count, pair_count;
     struct outline *outlines;
     narc_shapes *shapes; /* the same */
     struct body *bodies;
     struct pair *pairs;
-    double *gaps; /* exact, one per pair, once they were asked for */
+    double *gaps;                /* exact, one per pair, once they were asked for */
+    const struct vector *ground; /* a chain from right to left, the air above; with a peer's step alone */
+    size_t ground_count;
 
     /* Of the bodies, once they were asked for; `half` is half the width of the square around the origin. */
     narc_box *boxes;
@@ -88,13 +81,8 @@ narc_pairs pairs_of_scene(const struct scene *scene);
 /* Boxes around bodies, with `room` on each side. */
 void find_boxes(const struct scene *scene, double room, const narc_workers *workers, narc_box *out_boxes);
 
-/* Bodies and pairs of a scene that has shapes (pairs: placing.c; piles: pile.c). */
-void make_pairs(struct scene *scene);
-void make_stack(struct scene *scene);
+/* Bodies and pairs of a scene that has shapes. */
+void make_pyramid(struct scene *scene);
 void make_pile(struct scene *scene);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -74,18 +74,6 @@ static void add_edge_normals(struct outline *outline) {
     outline->arcs[outline->count] = outline->arcs[0];
 }
 
-/* The vertices are the junctions, where arcs start. */
-static struct outline polygon_of(const struct outline *n_arc) {
-    struct outline outline = {.count = n_arc->count};
-    for (size_t k = 0; k < n_arc->count; k++) {
-        const struct arc *arc = &n_arc->arcs[k];
-        outline.arcs[k].x = arc->x + arc->radius * arc->start_x;
-        outline.arcs[k].y = arc->y + arc->radius * arc->start_y;
-    }
-    add_edge_normals(&outline);
-    return outline;
-}
-
 static void grow(struct outline *polygon, double factor, double radius) {
     for (size_t k = 0; k <= polygon->count; k++) {
         polygon->arcs[k].x *= factor;
@@ -94,14 +82,28 @@ static void grow(struct outline *polygon, double factor, double radius) {
     }
 }
 
-static struct outline box_with(double x, double y) {
+/* The vertices are the junctions, where arcs start. */
+struct outline polygon_of(const struct outline *n_arc, bool large) {
+    struct outline outline = {.count = n_arc->count};
+    for (size_t k = 0; k < n_arc->count; k++) {
+        const struct arc *arc = &n_arc->arcs[k];
+        outline.arcs[k].x = arc->x + arc->radius * arc->start_x;
+        outline.arcs[k].y = arc->y + arc->radius * arc->start_y;
+    }
+    add_edge_normals(&outline);
+    if (large)
+        grow(&outline, sqrt(area_of(n_arc) / area_of(&outline)), 0);
+    return outline;
+}
+
+struct outline box_with(double x, double y) {
     struct outline outline = {.count = 4, .arcs = {{.x = x, .y = -y}, {.x = x, .y = y}, {.x = -x, .y = y}}};
     outline.arcs[3] = (struct arc){.x = -x, .y = -y};
     add_edge_normals(&outline);
     return outline;
 }
 
-static struct outline circle_with(double radius) {
+struct outline circle_with(double radius) {
     return (struct outline){.count = 1, .arcs = {{.radius = radius, .start_x = 1}, {.radius = radius, .start_x = 1}}};
 }
 
@@ -110,10 +112,10 @@ struct outline make_outline(enum form form, size_t edges, size_t index, uint64_t
     struct outline outline = make_n_arc(random, edges);
     if (form == FORM_KINDS)
         form = kinds[index % 4];
-    else if (form == FORM_GENERAL)
-        form = index % 2 == 0 ? FORM_POLYGON : FORM_N_ARC;
+    else if (form == FORM_BALLS_BOXES)
+        form = kinds[index % 2];
     if (form == FORM_POLYGON || form == FORM_ROUNDED) {
-        outline = polygon_of(&outline);
+        outline = polygon_of(&outline, false);
         if (form == FORM_ROUNDED)
             grow(&outline, 1 - corner_radius, corner_radius);
     } else if (form == FORM_BOX) {
@@ -129,22 +131,6 @@ struct outline make_outline(enum form form, size_t edges, size_t index, uint64_t
         outline.arcs[2] = outline.arcs[0];
     }
     return outline;
-}
-
-struct outline replace_outline(enum form form, const struct outline *other) {
-    const struct arc *arc = &other->arcs[0];
-    narc_arc arcs[MAX_EDGES] = {{0}};
-    narc_circle circle = {0};
-    if (form == FORM_CAPSULE_BOX)
-        return box_with(arc->x + pi / 4 * arc->radius, arc->radius);
-    if (form == FORM_BOUND) {
-        narc_compute_bounding_circle(arcs, list_arcs(other, arcs), &circle);
-        return circle_with(circle.radius);
-    }
-    struct outline polygon = polygon_of(other);
-    if (form == FORM_LARGE)
-        grow(&polygon, sqrt(area_of(other) / area_of(&polygon)), 0);
-    return polygon;
 }
 
 double area_of(const struct outline *outline) {

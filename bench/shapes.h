@@ -10,10 +10,6 @@
 
 #include "bodies.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 enum { MAX_EDGES = 16 };
 
 /* An arc covers the outward normals from its start normal to that of the next arc, a turn by less than pi, or half a turn
@@ -40,25 +36,24 @@ double exact_gap(const struct outline *outlines, const struct body *a, const str
 /* What shapes are like. */
 enum form {
     FORM_N_ARC,
-    FORM_KINDS,   /* circles, boxes, polygons and n-arcs, equally many, in all combinations */
-    FORM_GENERAL, /* a polygon against an n-arc, in every pair */
+    FORM_KINDS,       /* circles, boxes, polygons and n-arcs, equally many, in all combinations */
+    FORM_BALLS_BOXES, /* both in turn, and of a pile the pairs of one of each */
     FORM_ROUNDED, /* the polygon of the junctions, 0.8 times as large, with an arc of radius 0.2 around each vertex */
     FORM_BOX,     /* sides 1 .. 2.4 long */
     FORM_SQUARE,  /* sides of 1 */
     FORM_DISC,
     FORM_CAPSULE, /* a segment 1 .. 2.4 long with a radius of 0.35 .. 0.6 */
-    /* In the place of another one: */
-    FORM_POLYGON,     /* the polygon of an n-arc's junctions */
-    FORM_LARGE,       /* the same, grown around the origin to the n-arc's area */
-    FORM_BOUND,       /* its bounding circle */
-    FORM_CAPSULE_BOX, /* the box that is as wide as a capsule, and has its area */
+    FORM_POLYGON, /* that of an n-arc's junctions */
 };
 
-/* Shape `index` of a set: in FORM_GENERAL those of even and of odd index are the first and second bodies'. */
+/* Shape `index` of a set. */
 struct outline make_outline(enum form form, size_t edges, size_t index, uint64_t *random);
 
-/* What stands for another shape. */
-struct outline replace_outline(enum form form, const struct outline *other);
+/* The polygon of an n-arc's junctions; `large`: grown around the origin to the n-arc's area. */
+struct outline polygon_of(const struct outline *n_arc, bool large);
+
+struct outline box_with(double x, double y); /* half of the sides */
+struct outline circle_with(double radius);
 
 double area_of(const struct outline *outline);
 
@@ -67,9 +62,5 @@ double extent_of(const struct outline *outline);
 
 /* Adds an outline to a store, as a shape of its own. */
 void add_outline(narc_shapes *shapes, const struct outline *outline);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -53,10 +53,10 @@ void bench_add(bench_row *row) {
     };
     rows[row->name] = row;
     auto *registered = benchmark::RegisterBenchmark(row->name, measure)->Unit(benchmark::kMicrosecond);
-    if (row->threaded)
-        registered->UseRealTime();
     if (row->own_clock)
         registered->UseManualTime();
+    else if (row->threaded)
+        registered->UseRealTime();
 }
 
 void bench_skip(const char *name, const char *reason) {

@@ -14,7 +14,7 @@ enum step {
     STEP_BOXES,
     STEP_PAIRS, /* of boxes that are there */
     STEP_PLAIN, /* both, and manifolds */
-    /* The whole step. Of so many bodies one moves (1: all, 0: none): */
+    /* The whole step. Of so many bodies one moves: */
     STEP_MOVING = 4, /* ten steps there and ten back */
     STEP_SETTLED,    /* by nearly nothing */
     STEP_RAIN,       /* to where another one was, so that all pairs are new */
@@ -153,7 +153,7 @@ static void prepare_steps(struct row *row) {
     s->ways = allocate(count, sizeof *s->ways);
     s->moved = allocate(count, sizeof *s->moved);
     memcpy(s->bodies, scene->bodies, count * sizeof *s->bodies);
-    for (size_t k = 0; row->one_of > 0 && k < count; k += row->one_of) {
+    for (size_t k = 0; k < count; k += row->one_of) {
         const struct direction to = random_direction(&random);
         const double turn = random_between(&random, -most, most);
         s->ways[k] = (struct way){(float)(most * to.x), (float)(most * to.y), (float)cos(turn), (float)sin(turn)};

@@ -19,7 +19,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   soak       pairs of all families beside the reference, and all queries beside scalar, seed after seed, until it is
              interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
-  bench      the kernels and what a scene is asked, beside Box2D, Chipmunk, libccd and GEOS; tables and plots go to out/.
+  bench      the kernels and what a scene is asked, beside Box2D 3.2 if it is installed; results go to out/.
              Options are Google Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
@@ -50,10 +50,9 @@ library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
 fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
-peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev libgeos-dev"
 test_packages="$run_packages g++ binutils python3 python3-numpy dpkg-dev file meson"
-gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
-bench_packages="$library_packages $peer_packages gnuplot-nox"
+gate_packages="$test_packages libbenchmark-dev clang libomp-dev clang-format clang-tidy valgrind"
+bench_packages="$library_packages g++ libbenchmark-dev gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
@@ -261,18 +260,18 @@ bench() {
     require_packages $bench_packages
     build bench bench_narc
     mkdir -p out
-    rm -f out/bench.md out/bench-*.json out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
+    rm -f out/bench.md out/bench-*.json out/arcs.dat out/bench-arcs.svg
     case "$*" in
     *--benchmark_filter=*) bench_rows asked "$@" ;;
     *)
+        bench_rows pairs --benchmark_filter='^(overlap|contact|manifold|boxes|pairs|plain|stay)' "$@"
         bench_rows rays --benchmark_filter='^ray' "$@"
         bench_rows regions --benchmark_filter='^region' "$@"
         bench_rows nearest --benchmark_filter='^(nearest|distance)' "$@"
-        bench_rows index --benchmark_filter='^(index|still|impact|ground)' "$@"
-        bench_rows pairs --benchmark_filter='-^(ray|region|nearest|distance|index|still|impact|ground)' "$@"
+        bench_rows index --benchmark_filter='^(index|impact|ground)' "$@"
         ;;
     esac
-    say "plots"
+    say "plot"
     gnuplot -e "folder='out'" bench/plots.gp
     say "written"
     ls -l out/bench*
@@ -448,7 +447,7 @@ check_style() {
     # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
     # here.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
-        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*box2d3.c' ':!*/wasm_*.c' |
+        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
     git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
 }

@@ -37,8 +37,8 @@ static inline bool narc_is_full_box(const narc_box *box) {
 }
 
 /* In a node's `order`: of the halving by bit b of the slots. */
-#define NARC_ORDER_ALONG_Y(b)  (1u << (2 * (b)))     /* the halves lie one above the other; else side by side */
-#define NARC_ORDER_DOWNWARD(b) (1u << (2 * (b) + 1)) /* the half with bit 0 is the upper one, or that on the right */
+#define NARC_ORDER_ALONG_Y(b)  (1u << (b)) /* the halves lie one above the other; else side by side */
+#define NARC_ORDER_DOWNWARD(b) (8u << (b)) /* the half with bit 0 is the upper one, or that on the right */
 
 /* What building takes for each box: two numbers of 32 bits twice, and once more one. */
 enum { NARC_INDEX_BUILD_BYTES = 20 };
@@ -97,12 +97,8 @@ static inline size_t narc_count_nodes(const narc_index *index) {
 
 /* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; does the ray go left, down? */
 static inline unsigned narc_find_flips(unsigned order, bool left, bool down) {
-    unsigned flips = 0;
-    for (unsigned b = 0; b < 3; b++) {
-        const bool backwards = order & NARC_ORDER_ALONG_Y(b) ? down : left, downward = order & NARC_ORDER_DOWNWARD(b);
-        flips |= (unsigned)(backwards != downward) << b;
-    }
-    return flips;
+    const unsigned backwards_x = left ? 7 : 0, differ = left != down ? 7 : 0;
+    return backwards_x ^ (order & differ) ^ order >> 3;
 }
 
 #endif

@@ -10,10 +10,6 @@
 
 #include "narc.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* A body's pose; its shape is an index into a store. */
 struct body {
     float x, y, cosine, sine;
@@ -52,9 +48,5 @@ narc_aabb box_of(const narc_shapes *shapes, const struct body *body);
 
 /* Puts B anywhere where the boxes of both overlap, all positions equally likely. */
 void put_in_boxes(const narc_shapes *shapes, const struct body *a, struct body *b, uint64_t *random);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -6,36 +6,17 @@
 
 #include <string.h>
 
-#define MISSING(id, query, who, library)                                                                               \
-    const struct peer id = {.question = query, .name = who, .missing = "built without " library}
 #ifndef BENCH_BOX2D
+#define MISSING(query)                                                                                                 \
+    { .question = query, .name = "box2d", .missing = "built without Box2D" }
+const struct peer box2d_collide = MISSING("contact"), box2d_overlap = MISSING("overlap"), box2d_world = MISSING("stay"),
+                  box2d_ground = MISSING("ground"), box2d_rays = MISSING("ray"), box2d_regions = MISSING("region"),
+                  box2d_impacts = MISSING("impact");
 const char *box2d_name(void) { return "no Box2D"; }
-MISSING(box2d_collide, "contact", "box2d", "Box2D");
-MISSING(box2d_overlap, "overlap", "box2d", "Box2D");
-MISSING(box2d_world, "stay", "box2d", "Box2D");
-MISSING(box2d_rays, "ray", "box2d", "Box2D");
-MISSING(box2d_regions, "region", "box2d", "Box2D");
-MISSING(box2d_impacts, "impact", "box2d", "Box2D");
-#endif
-#ifndef BENCH_CHIPMUNK
-MISSING(chipmunk_collide, "contact", "chipmunk", "Chipmunk");
-MISSING(chipmunk_rays, "ray", "chipmunk", "Chipmunk");
-MISSING(chipmunk_regions, "region", "chipmunk", "Chipmunk");
-MISSING(chipmunk_nearest, "nearest", "chipmunk", "Chipmunk");
-#endif
-#ifndef BENCH_CCD
-MISSING(ccd_gjk, "overlap", "ccd-gjk", "libccd");
-MISSING(ccd_mpr, "overlap", "ccd-mpr", "libccd");
-#endif
-#ifndef BENCH_GEOS
-MISSING(geos_regions, "region", "geos", "GEOS");
-MISSING(geos_nearest, "nearest", "geos", "GEOS");
 #endif
 
-static const struct peer *const peers[] = {&box2d_collide,    &box2d_overlap,    &box2d_world,      &box2d_rays,
-                                           &box2d_regions,    &box2d_impacts,    &chipmunk_collide, &chipmunk_rays,
-                                           &chipmunk_regions, &chipmunk_nearest, &ccd_gjk,          &ccd_mpr,
-                                           &geos_regions,     &geos_nearest,     &disc_loop};
+static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_ground,
+                                           &box2d_rays,    &box2d_regions, &box2d_impacts, &disc_loop};
 
 const struct peer *find_peer(const char *query, const char *name) {
     for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)

@@ -7,10 +7,6 @@
 
 #include "scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 struct ray {
     float x, y, motion_x, motion_y;
 };
@@ -28,25 +24,24 @@ struct asked {
     const struct ray *rays;   /* "ray": float, the fraction of the first hit, above 1 if there is none. Bodies that it
                                  * starts in do not count */
     const narc_box *regions;  /* "region": uint64_t, pairs region << 32 | body; returns how many */
-    const float *x, *y;       /* "nearest": float, the separation of the nearest body within a distance */
-    float within;
     const struct outline *polygon; /* "impact" of bodies 2 k and 2 k + 1: float, when they meet, above 1 if never */
     const narc_body *bodies;
     const struct motion *motions;
+    bool straight; /* none turns */
 };
 
 /* A library's answer to one question. */
 struct peer {
     const char *question, *name; /* of its rows; a query's name up to the first "-" */
     const char *missing;         /* NULL, or why it can't run */
-    bool arcs, capsules;         /* it has these; else polygons of the junctions and boxes as large stand for them */
+    bool arcs;                   /* it has them; else polygons of the junctions stand for n-arcs */
     unsigned max_edges;
     void *(*create)(struct scene *scene); /* shapes and poses in the form it wants them */
     size_t (*ask)(void *context, const struct asked *asked, void *out);
 
     /* "stay" in the place of `ask`: puts bodies that have moved where they are, and finds boxes, pairs and contacts. With a
      * clock of its own it does more, and returns the seconds of these alone. */
-    bool own_clock, recycles; /* contacts serve again while their bodies have moved less than `recycling` */
+    bool own_clock; /* contacts serve again while their bodies have moved less than `recycling` */
     double (*step)(void *context, const struct body *bodies, const uint32_t *moved, size_t count, float recycling);
     size_t (*count_touching)(void *context);
 };
@@ -56,14 +51,8 @@ const struct peer *find_peer(const char *query, const char *name);
 
 const char *box2d_name(void); /* with its version */
 
-extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_rays, box2d_regions, box2d_impacts;
-extern const struct peer chipmunk_collide, chipmunk_rays, chipmunk_regions, chipmunk_nearest;
-extern const struct peer ccd_gjk, ccd_mpr;
-extern const struct peer geos_regions, geos_nearest;
+extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_ground, box2d_rays, box2d_regions,
+    box2d_impacts;
 extern const struct peer disc_loop;
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -87,11 +87,10 @@ struct own_arcs {
 
 /* Arcs first .. first + V_WIDTH - 1; lanes behind the last arc repeat it. */
 INLINE struct own_arcs load_own_arcs(const struct body_frame *frame, int first) {
-    const int last = (int)frame->header->count - 1;
+    const vi number = vi_add(vi_set(first), vi_lanes()), last = vi_set((int32_t)frame->header->count - 1);
     int32_t index[V_WIDTH];
     vf field[8];
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        index[lane] = first + lane < last ? first + lane : last;
+    vi_store(index, vi_select(vi_lt(number, last), number, last));
     v_rows(frame->arcs, sizeof *frame->arcs, index, field);
     v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, index, field + 4);
     return (struct own_arcs){{field[0], field[1]}, field[2], {field[4], field[5]}, {field[6], field[7]}};

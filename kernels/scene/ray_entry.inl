@@ -223,7 +223,6 @@ INLINE bool find_first_entry(const struct body_frame *frame, const struct line *
 /* A ray in the world. */
 struct ray {
     place origin, direction; /* the latter a unit vector */
-    place inverse;           /* 1 / direction, perhaps infinite */
     double length;           /* of its motion */
     double inverse_length;
 };

@@ -19,7 +19,9 @@
 #include "kernels.h"
 #include "scene/part_walk.inl"
 #include "scene/ray_entry.inl"
+#include "scene/ray_lanes.inl"
 #include "scene/things.inl"
+#include "simd/doubles.h"
 #include "simd/simd.h"
 
 /* Relative to all that near and far are computed from, eight times their error. */
@@ -37,16 +39,15 @@ struct axis {
     float first_start, last_start, inverse;
 };
 
-/* What is left to visit: a node, counted within its level, and how far away it is. */
-struct visit {
-    float near;
-    uint32_t node;
-    uint32_t level;
-};
+#define PLANE(name) ((int)(offsetof(narc_index_node, name) / sizeof(float)))
 
-struct visits {
-    unsigned count;
-    struct visit left[(NARC_NODE_SLOTS - 1) * NARC_INDEX_LEVELS + 1];
+/* Where a walk is: of each level its node, counted within it, and how far away the slots are. All that is left to visit is
+ * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
+struct descent {
+    uint64_t left, above;
+    uint32_t node[NARC_INDEX_LEVELS];
+    unsigned flips[NARC_INDEX_LEVELS];
+    float near[NARC_INDEX_LEVELS][NARC_NODE_SLOTS > V_WIDTH ? NARC_NODE_SLOTS : V_WIDTH];
 };
 
 /* A ray, and what is known of its hits. */
@@ -62,10 +63,27 @@ struct walk {
     narc_ray_hit *rows;
 };
 
-enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32 };
+enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, MOST_ALONE = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
+
+/* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
+#if defined(__wasm__)
+#define IN_LANES 0
+#else
+#define IN_LANES (NARC_SHORTCUTS && V_WIDTH > 1)
+#endif
 
 /* The least cosine of the angle between a ray and the first that it goes with. */
-#define COHERENT 0.97
+#define COHERENT 0.9
+
+/* Of rays in lanes, each with room for one hit: its nearest, as far as it is not yet in its row. A body is its number less
+ * 2^31, and UINT32_MAX there is none. */
+struct nearest {
+    uint32_t waiting; /* a bit for each ray */
+    double direction_x[LANES], direction_y[LANES], length[LANES], inverse_length[LANES];
+    float fraction[LANES];
+    int32_t body[LANES], feature[LANES]; /* the arc, and ON_EDGE */
+    double met[8][LANES];                /* struct meeting: foot, direction, normal, ahead, distance */
+};
 
 /* Rays of one origin whose directions differ little go through the index together: a node is visited if it meets the
  * wedge between the outermost two, and only at a leaf each ray is asked, in a lane of its own. A ray's answer is the same
@@ -76,8 +94,12 @@ struct bundle {
     float left_x, left_y, right_x, right_y; /* the directions of the outermost rays */
     float limit;                            /* the largest */
     uint64_t mask;                          /* of all */
-    float limits[MOST_TOGETHER], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
-    struct walk walks[MOST_TOGETHER];
+    float limits[MOST_TOGETHER + V_WIDTH], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
+    struct walk *walks;
+    size_t alone; /* those that wait in front of them */
+    struct walk all[MOST_ALONE + LEAST_TOGETHER + MOST_TOGETHER];
+    bool in_lanes;
+    struct nearest nearest;
 };
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
@@ -97,22 +119,6 @@ static narc_box find_scene_box(const narc_index *index) {
 
 static float clip_to_float(double a) { return (float)find_most(-(double)FLT_MAX, find_least((double)FLT_MAX, a)); }
 
-static float clip_inverse(double inverse) {
-    const double limit = (double)LARGEST_INVERSE;
-    return (float)find_most(-limit, find_least(limit, inverse));
-}
-
-INLINE struct axis set_axis(int min, int max, double start, double room, double inverse) {
-    const bool backwards = inverse < 0;
-    const float low = clip_to_float(start - room), high = clip_to_float(start + room);
-    return (struct axis){backwards,
-                         backwards ? max : min,
-                         backwards ? min : max,
-                         backwards ? low : high,
-                         backwards ? high : low,
-                         clip_inverse(inverse)};
-}
-
 /* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
  * that underflow. */
 INLINE void set_limit(struct walk *w, float fraction) {
@@ -121,53 +127,116 @@ INLINE void set_limit(struct walk *w, float fraction) {
     w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
 }
 
-/* False for a ray without an answer. */
-static bool read_ray(const narc_rays *rays, size_t k, struct ray *out, float *out_fraction) {
-    const place motion = {(double)narc_float_at(rays->motion_x, k), (double)narc_float_at(rays->motion_y, k)};
-    const float fraction = rays->fraction.base ? narc_float_at(rays->fraction, k) : 1;
-    out->origin = (place){narc_position_at(rays->x, k), narc_position_at(rays->y, k)};
-    out->length = sqrt(find_dot(motion, motion));
-    out->inverse_length = 1 / out->length;
-    out->direction = (place){motion.x * out->inverse_length, motion.y * out->inverse_length};
-    out->inverse = (place){1 / out->direction.x, 1 / out->direction.y};
-    *out_fraction = fraction;
-    return fabs(out->origin.x) <= DBL_MAX && fabs(out->origin.y) <= DBL_MAX && 0 < out->length &&
-           out->length <= DBL_MAX && fraction >= 0;
-}
+/* Rays that are read together, in double lanes. */
+enum { READ = 32 };
+
+struct read_axis {
+    float first_start[READ], last_start[READ], inverse[READ];
+};
+
+struct read_rays {
+    double origin_x[READ], origin_y[READ], direction_x[READ], direction_y[READ];
+    double length[READ]; /* 0: it has no answer */
+    double inverse_length[READ];
+    double base[READ]; /* where it meets the scene; -1: it never does */
+    float fraction[READ], room[READ];
+    struct read_axis x, y;
+};
+
+INLINE vd d_most(vd a, vd b) { return d_select(d_lt(b, a), a, b); }
+/* A single ray, which was just written, is not read in a vector: that would wait. */
+INLINE vd get_lanes(const double *p, bool single) { return single ? d_set(*p) : d_load(p); }
+
+INLINE vd clip(vd a, double limit) { return d_most(d_set(-limit), d_min(d_set(limit), a)); }
 
 /* A ray meets a body that it passes by TOUCH, and what rounding adds, perhaps beside its box. For each unit of the
  * extent's ratio to the bounding radius, which is less than 1.42 times the scene's largest coordinate. */
 #define TOUCH_ROOM 0x1p-19
 
 /* Cuts from .. to down to where a line lies between two sides. NaN on a side that it lies in. */
-INLINE void cut_stretch(double low, double high, double origin, double inverse, double *from, double *to) {
-    const double a = (low - origin) * inverse, b = (high - origin) * inverse;
-    const double first = inverse < 0 ? b : a, last = inverse < 0 ? a : b;
-    *from = first > *from ? first : *from;
-    *to = last < *to ? last : *to;
+INLINE void cut_stretch(vd low, vd high, vd origin, vd inverse, vd *from, vd *to) {
+    const vl backwards = d_lt(inverse, d_set(0));
+    const vd a = (low - origin) * inverse, b = (high - origin) * inverse;
+    *from = d_most(d_select(backwards, b, a), *from);
+    *to = d_min(d_select(backwards, a, b), *to);
 }
 
-/* Sets a ray out from where it meets the scene, with room. False if it never does. */
-static bool begin_walk(const narc_box *scene, const narc_shapes *shapes, struct walk *w) {
-    const place origin = w->ray.origin, inverse = w->ray.inverse;
+INLINE void put_axis(vd start, vd room, vd inverse, size_t k, struct read_axis *out) {
+    const vl backwards = d_lt(inverse, d_set(0));
+    const vd low = start - room, high = start + room;
+    d_put_floats(out->first_start + k, clip(d_select(backwards, low, high), (double)FLT_MAX));
+    d_put_floats(out->last_start + k, clip(d_select(backwards, high, low), (double)FLT_MAX));
+    d_put_floats(out->inverse + k, clip(inverse, (double)LARGEST_INVERSE));
+}
+
+/* Rays first .. first + count - 1, at most READ, set out from where they meet the scene, with room. */
+static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
+                      struct read_rays *out) {
+    const narc_rays *const rays = batch->rays;
+    const vd min_x = d_set((double)scene->min_x), min_y = d_set((double)scene->min_y);
+    const vd max_x = d_set((double)scene->max_x), max_y = d_set((double)scene->max_y);
     const double size = find_most(find_most(-(double)scene->min_x, (double)scene->max_x),
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
-    const double touch = size * ((double)ROOM + (double)shapes->largest_ratio * TOUCH_ROOM) +
-                         (fabs(origin.x) + fabs(origin.y)) * 0x1p-48;
-    double from = 0, to = INFINITY;
-    cut_stretch((double)scene->min_x - touch, (double)scene->max_x + touch, origin.x, inverse.x, &from, &to);
-    cut_stretch((double)scene->min_y - touch, (double)scene->max_y + touch, origin.y, inverse.y, &from, &to);
-    if (!(to >= 0)) /* it is behind, or empty */
-        return false;
-    w->base = find_least(from, DBL_MAX);
-    const place start = {origin.x + w->base * w->ray.direction.x, origin.y + w->base * w->ray.direction.y};
-    const double room = (fabs(start.x) + fabs(start.y)) * (double)ROOM + touch;
-    w->room = clip_to_float(room);
-    w->x = set_axis(offsetof(narc_index_node, min_x) / sizeof(float), offsetof(narc_index_node, max_x) / sizeof(float),
-                    start.x, room, inverse.x);
-    w->y = set_axis(offsetof(narc_index_node, min_y) / sizeof(float), offsetof(narc_index_node, max_y) / sizeof(float),
-                    start.y, room, inverse.y);
-    return true;
+    const double least_touch = size * ((double)ROOM + (double)batch->shapes->largest_ratio * TOUCH_ROOM);
+    const bool single = count == 1;
+    const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH;
+    for (size_t k = 0; k < (single ? 1 : end); k++) {
+        const size_t i = first + (k < count ? k : 0);
+        out->origin_x[k] = narc_position_at(rays->x, i);
+        out->origin_y[k] = narc_position_at(rays->y, i);
+        out->direction_x[k] = (double)narc_float_at(rays->motion_x, i);
+        out->direction_y[k] = (double)narc_float_at(rays->motion_y, i);
+        out->fraction[k] = rays->fraction.base ? narc_float_at(rays->fraction, i) : 1;
+    }
+    for (size_t k = 0; k < end; k += D_WIDTH) {
+        const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
+        const vd x = get_lanes(out->origin_x + k, single), y = get_lanes(out->origin_y + k, single);
+        const vd motion_x = get_lanes(out->direction_x + k, single), motion_y = get_lanes(out->direction_y + k, single);
+        const vd length = d_sqrt(motion_x * motion_x + motion_y * motion_y), inverse_length = one / length;
+        const vl is_finite = d_le(d_abs(x), largest) & d_le(d_abs(y), largest) & d_le(length, largest);
+        const vl has_answer = is_finite & d_lt(zero, length) &
+                              d_le(zero, single ? d_set((double)*out->fraction) : d_of_floats(out->fraction + k));
+        const vd direction_x = motion_x * inverse_length, direction_y = motion_y * inverse_length;
+        const vd inverse_x = one / direction_x, inverse_y = one / direction_y;
+        const vd touch = d_set(least_touch) + (d_abs(x) + d_abs(y)) * d_set(0x1p-48);
+        vd from = zero, to = d_set((double)INFINITY);
+        cut_stretch(min_x - touch, max_x + touch, x, inverse_x, &from, &to);
+        cut_stretch(min_y - touch, max_y + touch, y, inverse_y, &from, &to);
+        const vd base = d_min(from, largest);
+        const vd start_x = x + base * direction_x, start_y = y + base * direction_y;
+        const vd room = (d_abs(start_x) + d_abs(start_y)) * d_set((double)ROOM) + touch;
+        d_store(out->direction_x + k, direction_x);
+        d_store(out->direction_y + k, direction_y);
+        d_store(out->length + k, d_select(has_answer, length, zero));
+        d_store(out->inverse_length + k, inverse_length);
+        d_store(out->base + k, d_select(d_le(zero, to), base, -one));
+        d_put_floats(out->room + k, clip(room, (double)FLT_MAX));
+        put_axis(start_x, room, inverse_x, k, &out->x);
+        put_axis(start_y, room, inverse_y, k, &out->y);
+    }
+}
+
+INLINE struct axis get_axis(const struct read_axis *axis, size_t k, int min, int max) {
+    const bool backwards = axis->inverse[k] < 0;
+    return (struct axis){backwards,           backwards ? max : min, backwards ? min : max, axis->first_start[k],
+                         axis->last_start[k], axis->inverse[k]};
+}
+
+/* The k-th of them; its hits go to the rows, which are empty. */
+INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays, size_t k, narc_ray_hit *rows,
+                       struct walk *w) {
+    w->ray = (struct ray){{rays->origin_x[k], rays->origin_y[k]},
+                          {rays->direction_x[k], rays->direction_y[k]},
+                          rays->length[k],
+                          rays->inverse_length[k]};
+    w->x = get_axis(&rays->x, k, PLANE(min_x), PLANE(max_x));
+    w->y = get_axis(&rays->y, k, PLANE(min_y), PLANE(max_y));
+    w->base = rays->base[k];
+    w->room = rays->room[k];
+    w->chosen = read_chosen(&batch->options->search, rows->ray);
+    w->found = 0;
+    w->rows = rows;
+    set_limit(w, rays->fraction[k]);
 }
 
 /* ------------------------------------------------------------------------------------------------ a node */
@@ -192,9 +261,10 @@ INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, fl
 
 /* Bit k becomes bit k ^ flips. */
 INLINE uint32_t flip_slots(uint32_t slots, unsigned flips) {
-    slots = flips & 1 ? (slots & 0x55) << 1 | (slots >> 1 & 0x55) : slots;
-    slots = flips & 2 ? (slots & 0x33) << 2 | (slots >> 2 & 0x33) : slots;
-    return flips & 4 ? (slots & 0x0f) << 4 | slots >> 4 : slots;
+    const unsigned one = flips & 1, two = flips & 2, four = flips & 4;
+    slots = (slots & 0x55) << one | (slots & 0xaa) >> one;
+    slots = (slots & 0x33) << two | (slots & 0xcc) >> two;
+    return (slots & 0x0f) << four | (slots & 0xf0) >> four;
 }
 
 INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
@@ -293,14 +363,13 @@ NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, const st
     return batch->options->any;
 }
 
-/* Casts a ray at the body in a leaf's slot; `parts`: which may be one of several. Is the ray done? */
-INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
-                         unsigned slot, bool parts) {
-    narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
+/* Casts a ray at a body. Is it done? */
+NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
     struct meeting met;
-    if (parts)
-        return cast_at_part(batch, w, frame, hit.body);
-    if (hit.body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
+    if (w->chosen.owners)
+        return cast_at_part(batch, w, frame, body);
+    if (body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
         !put_meeting(frame, &w->ray, &met, w->limit_fraction, &hit))
         return false;
     keep_hit(w, batch->most, &hit);
@@ -311,57 +380,82 @@ INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned s
     return load_body_frame(batch->shapes, batch->bodies, batch->index->body[NARC_NODE_SLOTS * leaf + slot], out);
 }
 
-/* Is the ray done? */
-INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf, uint32_t slots, unsigned flips,
-                       const float *near) {
-    for (; slots; slots &= slots - 1) {
-        const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
-        struct body_frame frame;
-        if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
-            cast_at_slot(batch, w, &frame, leaf, slot, w->chosen.owners != NULL))
-            return true;
+INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsigned flips) {
+    const uint64_t left = (uint64_t)flip_slots(slots, flips) << 8 * (level & 7);
+    d->flips[level] = flips;
+    if (level < 8)
+        d->left |= left;
+    else
+        d->above |= left;
+}
+
+/* The next slot that is left, and its level; whether it is no further than the limit. False if there is none. */
+INLINE bool take_slot(struct descent *d, float limit, unsigned *level, unsigned *slot, bool *is_near) {
+    unsigned bit;
+    if (d->left) {
+        bit = (unsigned)FIND_LOWEST_64(d->left);
+        d->left &= d->left - 1;
+    } else {
+        if (d->above == 0)
+            return false;
+        bit = 64 + (unsigned)FIND_LOWEST_64(d->above);
+        d->above &= d->above - 1;
     }
-    return false;
+    *level = bit >> 3;
+    *slot = (bit & 7) ^ d->flips[*level];
+    *is_near = d->near[*level][*slot] <= limit;
+    return true;
 }
 
-INLINE void begin_visits(const narc_index *index, struct visits *visits) {
-    visits->count = 1;
-    visits->left[0] = (struct visit){0, 0, index->level_count - 1};
+/* Casts a ray at the body in a leaf's slot. Is it done? */
+INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, size_t leaf, unsigned slot) {
+    struct body_frame frame;
+    return load_slot_frame(batch, leaf, slot, &frame) &&
+           cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]);
 }
 
-/* The last one first: it waits longest. */
-INLINE void add_visits(const struct visit *parent, uint32_t slots, unsigned flips, const float *near,
-                       struct visits *visits) {
-    for (; slots; slots &= ~(1u << FIND_HIGHEST(slots))) {
-        const unsigned slot = ((unsigned)FIND_HIGHEST(slots)) ^ flips;
-        visits->left[visits->count++] =
-            (struct visit){near[slot], NARC_NODE_SLOTS * parent->node + slot, parent->level - 1};
-    }
+/* Leaves the slots of a node that the ray meets to be visited. */
+INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned level, uint32_t at, struct descent *d) {
+    const size_t node = (size_t)index->first_node[level] + at;
+    const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
+    d->node[level] = at;
+    leave_slots(d, level, mask_slots(index, node, slots, w->chosen.mask),
+                narc_find_flips(index->order[node], w->x.backwards, w->y.backwards));
 }
 
-static void walk_alone(const narc_ray_batch *batch, struct walk *w) {
-    const narc_index *const index = batch->index;
-    struct visits visits;
-    begin_visits(index, &visits);
-    while (visits.count > 0) {
-        const struct visit visit = visits.left[--visits.count];
-        if (visit.near > w->limit)
-            continue;
-        const size_t node = (size_t)index->first_node[visit.level] + visit.node;
-        float near[NARC_NODE_SLOTS + V_WIDTH];
-        uint32_t slots = mask_slots(index, node, find_slots(w, &index->nodes[node], near), w->chosen.mask);
-        const unsigned flips = narc_find_flips(index->order[node], w->x.backwards, w->y.backwards);
-        slots = flip_slots(slots, flips);
-        if (visit.level > 0)
-            add_visits(&visit, slots, flips, near, &visits);
-        else if (visit_leaf(batch, w, node, slots, flips, near))
-            return;
+NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
+    struct descent d;
+    unsigned slot, level = batch->index->level_count - 1;
+    uint32_t below = 0;
+    d.left = d.above = 0;
+    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+        visit_node(batch->index, w, level, below, &d);
+        do {
+            if (!take_slot(&d, w->limit, &level, &slot, &is_near) ||
+                (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot)))
+                return;
+        } while (!is_near || level == 0);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ rays together */
 
-static void begin_bundle(struct bundle *b) {
+INLINE void begin_lanes(struct bundle *b) {
+    struct nearest *const nearest = &b->nearest;
+    nearest->waiting = 0;
+    for (size_t k = 0; k < b->count + V_WIDTH; k++) {
+        const struct walk *const w = &b->walks[k < b->count ? k : 0];
+        nearest->direction_x[k] = w->ray.direction.x;
+        nearest->direction_y[k] = w->ray.direction.y;
+        nearest->length[k] = w->ray.length;
+        nearest->inverse_length[k] = w->ray.inverse_length;
+        nearest->fraction[k] = k < b->count ? w->limit_fraction : -1;
+        nearest->body[k] = INT32_MAX;
+    }
+}
+
+static void begin_bundle(const narc_ray_batch *batch, struct bundle *b) {
+    const narc_index_query *const search = &batch->options->search;
     size_t left = 0, right = 0;
     b->limit = -INFINITY;
     b->mask = 0;
@@ -379,6 +473,10 @@ static void begin_bundle(struct bundle *b) {
         b->limit = w->limit > b->limit ? w->limit : b->limit;
         b->mask |= w->chosen.mask;
     }
+    b->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
+                  !search->mask.base;
+    if (b->in_lanes)
+        begin_lanes(b);
     b->left_x = (float)b->walks[left].ray.direction.x;
     b->left_y = (float)b->walks[left].ray.direction.y;
     b->right_x = (float)b->walks[right].ray.direction.x;
@@ -437,8 +535,96 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
     return nearest;
 }
 
+/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body. */
+NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t rays) {
+    struct nearest *const nearest = &b->nearest;
+    double(*const from)[LANES] = nearest->met;
+    struct body_frame frame = {.header = NULL};
+    int32_t loaded = INT32_MAX;
+    for (rays &= nearest->waiting; rays; rays &= rays - 1) {
+        const unsigned k = (unsigned)FIND_LOWEST(rays);
+        struct walk *const w = &b->walks[k];
+        const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
+        if (nearest->body[k] != loaded)
+            load_body_frame(batch->shapes, batch->bodies, body, &frame);
+        loaded = nearest->body[k];
+        const struct meeting met = {.foot = {from[0][k], from[1][k]},
+                                    .direction = {from[2][k], from[3][k]},
+                                    .entry = {.normal = {from[4][k], from[5][k]},
+                                              .arc = nearest->feature[k] & (ON_EDGE - 1),
+                                              .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
+                                    .ahead = from[6][k],
+                                    .distance = from[7][k]};
+        put_meeting(&frame, &w->ray, &met, INFINITY, w->rows);
+        w->rows->body = body;
+        w->rows->count = 1;
+        w->found = 1;
+        w->limit = b->limits[k];
+        w->limit_fraction = nearest->fraction[k];
+        nearest->waiting &= ~(1u << k);
+    }
+}
+
+INLINE void select_doubles(vl m, double *p, vd a) { d_store(p, d_select(m, a, d_load(p))); }
+INLINE void select_ints(vm m, int32_t *p, vi a) { vi_store(p, vi_select(m, a, vi_load(p))); }
+INLINE void select_floats(vm m, float *p, vf a) { v_store(p, v_select(m, a, v_load(p))); }
+
+/* Casts rays k, k + 1 ... at a body, which has a hit for each ray that it tells nothing of. */
+INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uint32_t body, bool ignores, unsigned k) {
+    struct nearest *const nearest = &b->nearest;
+    const struct lane_rays rays = {b->walks[0].ray.origin, nearest->direction_x + k, nearest->direction_y + k,
+                                   nearest->inverse_length + k};
+    struct entry_lanes entries;
+    struct half_met met[LANE_HALVES];
+    float lanes[V_WIDTH];
+    if (!meet_in_lanes(frame, &rays, ignores, &entries, met, lanes))
+        return 0;
+    const vf fraction = v_load(lanes), least = v_load(nearest->fraction + k);
+    const vi number = vi_set((int32_t)(body ^ 0x80000000u));
+    const vm is_before = vm_or(v_lt(fraction, least), vi_lt(number, vi_load(nearest->body + k)));
+    const vm hits = vm_and(vm_and(v_le(v_set(0), fraction), v_le(fraction, least)), is_before);
+    if (vm_any(hits)) {
+        nearest->waiting |= vm_bits(hits) << k;
+        select_floats(hits, nearest->fraction + k, fraction);
+        select_ints(hits, nearest->body + k, number);
+        const vi edge = vi_select(entries.on_edge, vi_set(ON_EDGE), vi_set(0));
+        select_ints(hits, nearest->feature + k, vi_add(vi_load(entries.arc), edge));
+        float limits[V_WIDTH];
+        UNROLL
+        for (int h = 0; h < LANE_HALVES; h++) {
+            const int l = h * D_WIDTH;
+            const vl m = d_of_lanes(hits, l);
+            const vd values[8] = {met[h].foot.x,   met[h].foot.y,   met[h].direction.x, met[h].direction.y,
+                                  met[h].normal.x, met[h].normal.y, met[h].ahead,       met[h].distance};
+            UNROLL
+            for (int i = 0; i < 8; i++)
+                select_doubles(m, nearest->met[i] + k + l, values[i]);
+            const vd distance =
+                (d_of_floats(lanes + l) * d_set(1 + 0x1p-22) + d_set(0x1p-149)) * d_load(nearest->length + k + l);
+            const vd limit = distance + d_abs(distance) * d_set((double)ROOM) + d_set((double)b->walks[0].room);
+            d_put_floats(limits + l, clip(limit, (double)FLT_MAX));
+        }
+        select_floats(hits, b->limits + k, v_load(limits));
+    }
+    return vm_bits(v_lt(fraction, v_set(0)));
+}
+
+/* Casts rays at a body; which are to be asked alone? */
+INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct bundle *b, const struct body_frame *frame,
+                              uint32_t body, uint32_t rays) {
+    const bool ignores = batch->options->inside == NARC_INSIDE_IGNORES;
+    uint32_t alone = 0;
+    while (rays) {
+        const unsigned k = (unsigned)FIND_LOWEST(rays);
+        const uint32_t lanes = (uint32_t)(((uint64_t)1 << V_WIDTH) - 1) << k;
+        alone |= cast_lanes(b, frame, body, ignores, k) << k & rays;
+        rays &= ~lanes;
+    }
+    return alone;
+}
+
 INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, size_t leaf, uint32_t slots,
-                                const float *near, bool parts) {
+                                const float *near) {
     const narc_index *const index = batch->index;
     unsigned slot;
     for (; slots; slots &= ~(1u << slot)) {
@@ -447,11 +633,20 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
         struct body_frame frame;
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
             continue;
+        if (b->in_lanes && !narc_is_piece(frame.header))
+            rays = cast_in_lanes(batch, b, &frame, index->body[NARC_NODE_SLOTS * leaf + slot], rays);
         for (; rays; rays &= rays - 1) {
-            struct walk *const w = &b->walks[FIND_LOWEST(rays)];
+            const unsigned k = (unsigned)FIND_LOWEST(rays);
+            struct walk *const w = &b->walks[k];
+            if (b->in_lanes)
+                put_hits(batch, b, 1u << k);
             if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
-                cast_at_slot(batch, w, &frame, leaf, slot, parts);
-            b->limits[FIND_LOWEST(rays)] = w->limit;
+                cast_at_body(batch, w, &frame, index->body[NARC_NODE_SLOTS * leaf + slot]);
+            b->limits[k] = w->limit;
+            if (b->in_lanes && w->found > 0) {
+                b->nearest.fraction[k] = w->rows->fraction;
+                b->nearest.body[k] = (int32_t)(w->rows->body ^ 0x80000000u);
+            }
         }
     }
     b->limit = -INFINITY;
@@ -462,84 +657,152 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
 static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
     const narc_index *const index = batch->index;
     const struct walk *const first = &b->walks[0];
-    struct visits visits;
-    begin_visits(index, &visits);
-    begin_bundle(b);
-    while (visits.count > 0) {
-        const struct visit visit = visits.left[--visits.count];
-        if (visit.near > b->limit)
-            continue;
-        const size_t node = (size_t)index->first_node[visit.level] + visit.node;
-        float near[NARC_NODE_SLOTS + V_WIDTH];
-        uint32_t slots = mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], near), b->mask);
-        const unsigned flips = narc_find_flips(index->order[node], first->x.backwards, first->y.backwards);
-        if (visit.level > 0)
-            add_visits(&visit, flip_slots(slots, flips), flips, near, &visits);
-        else if (batch->options->search.owners)
-            visit_leaf_together(batch, b, node, slots, near, true);
+    struct descent d;
+    unsigned slot, level = index->level_count - 1;
+    uint32_t below = 0;
+    d.left = d.above = 0;
+    begin_bundle(batch, b);
+    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+        const size_t node = (size_t)index->first_node[level] + below;
+        const uint32_t slots =
+            mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], d.near[level]), b->mask);
+        d.node[level] = below;
+        if (level > 0)
+            leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->x.backwards, first->y.backwards));
         else
-            visit_leaf_together(batch, b, node, slots, near, false);
+            visit_leaf_together(batch, b, node, slots, d.near[0]);
+        do {
+            if (!take_slot(&d, b->limit, &level, &slot, &is_near)) {
+                if (b->in_lanes)
+                    put_hits(batch, b, UINT32_MAX);
+                return;
+            }
+        } while (!is_near);
     }
 }
 
-/* Walks with all that are gathered. */
-static void walk(const narc_ray_batch *batch, struct bundle *b) {
-    if (NARC_SHORTCUTS && b->count >= LEAST_TOGETHER)
-        walk_together(batch, b);
-    else
-        for (size_t k = 0; k < b->count; k++)
-            walk_alone(batch, &b->walks[k]);
-    b->count = 0;
-}
+/* ------------------------------------------------------------------------------------------------ rays side by side */
 
-/* Does a ray go the way of the first one? Then it begins as that does, if others may join it at all. */
-INLINE bool join_first(const struct bundle *b, const struct ray *ray, struct walk *out) {
-    const struct walk *const first = &b->walks[0];
-    if (b->count == 0 || !b->open || ray->origin.x != first->ray.origin.x || ray->origin.y != first->ray.origin.y ||
-        (ray->inverse.x < 0) != first->x.backwards || (ray->inverse.y < 0) != first->y.backwards ||
-        !(find_dot(ray->direction, first->ray.direction) > COHERENT))
-        return false;
-    out->base = 0;
-    out->room = first->room;
-    out->x = first->x;
-    out->y = first->y;
-    out->x.inverse = clip_inverse(ray->inverse.x);
-    out->y.inverse = clip_inverse(ray->inverse.y);
+/* Rays that each go their own way take a step in turn, so that the processor need not wait for one. */
+enum { UNDER_WAY = 16 };
+
+struct stepper {
+    struct walk *walk;
+    struct descent d;
+    unsigned level, slot;
+    uint32_t below;
+};
+
+/* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
+INLINE bool find_step(struct stepper *s) {
+    bool is_near;
+    do {
+        if (!take_slot(&s->d, s->walk->limit, &s->level, &s->slot, &is_near))
+            return false;
+    } while (!is_near);
+    s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
     return true;
 }
 
-/* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow. */
-static bool is_open(const narc_box *scene, const struct walk *w) {
+INLINE void begin_steps(const narc_index *index, struct walk *w, struct stepper *out) {
+    out->walk = w;
+    out->d.left = out->d.above = 0;
+    out->below = 0;
+    out->level = index->level_count;
+}
+
+NOINLINE void walk_apart(const narc_ray_batch *batch, struct walk *walks, size_t count) {
+    const narc_index *const index = batch->index;
+    struct walk *const end = walks + count;
+    struct stepper steppers[UNDER_WAY], *at_node[UNDER_WAY], *at_body[UNDER_WAY];
+    size_t node_count = 0, body_count;
+    for (; node_count < UNDER_WAY && walks < end; node_count++) {
+        begin_steps(index, walks++, &steppers[node_count]);
+        at_node[node_count] = &steppers[node_count];
+    }
+    while (node_count > 0) {
+        body_count = 0;
+        const size_t nodes = node_count;
+        node_count = 0;
+        for (size_t k = 0; k < nodes; k++) {
+            struct stepper *const s = at_node[k];
+            visit_node(index, s->walk, s->level - 1, s->below, &s->d);
+            if (!find_step(s)) {
+                if (walks == end)
+                    continue;
+                begin_steps(index, walks++, s);
+            }
+            at_node[node_count] = at_body[body_count] = s;
+            node_count += s->level > 0;
+            body_count += s->level == 0;
+        }
+        for (size_t k = 0; k < body_count; k++) {
+            struct stepper *const s = at_body[k];
+            bool goes_on;
+            do {
+                goes_on = !visit_slot(batch, s->walk, s->d.node[0], s->slot) && find_step(s);
+            } while (goes_on && s->level == 0);
+            if (!goes_on) {
+                if (walks == end)
+                    continue;
+                begin_steps(index, walks++, s);
+            }
+            at_node[node_count++] = s;
+        }
+    }
+}
+
+/* Those that are gathered walk together; or, if there are few, they wait for more that go alone. `last`: no more come. */
+static void walk(const narc_ray_batch *batch, struct bundle *b, bool last) {
+    if (NARC_SHORTCUTS && b->count >= LEAST_TOGETHER)
+        walk_together(batch, b);
+    else
+        b->alone += b->count;
+    b->count = 0;
+    if (b->alone >= MOST_ALONE || last) {
+        if (IN_LANES && b->alone >= LEAST_TOGETHER)
+            walk_apart(batch, b->all, b->alone);
+        else
+            for (size_t k = 0; k < b->alone; k++)
+                walk_alone(batch, &b->all[k]);
+        b->alone = 0;
+    }
+    b->walks = b->all + b->alone;
+}
+
+/* Does a ray go the way of the first one? */
+INLINE bool joins_first(const struct bundle *b, const struct read_rays *rays, size_t k) {
+    const struct walk *const first = &b->walks[0];
+    return NARC_SHORTCUTS && b->count > 0 && b->open && rays->origin_x[k] == first->ray.origin.x &&
+           rays->origin_y[k] == first->ray.origin.y && (rays->x.inverse[k] < 0) == first->x.backwards &&
+           (rays->y.inverse[k] < 0) == first->y.backwards &&
+           find_dot((place){rays->direction_x[k], rays->direction_y[k]}, first->ray.direction) > COHERENT;
+}
+
+/* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
+ * any hit will do: which is found depends on the way. */
+INLINE bool is_open(const narc_ray_batch *batch, const narc_box *scene, const struct walk *w) {
     const place o = w->ray.origin;
     return (double)scene->min_x <= o.x && o.x <= (double)scene->max_x && (double)scene->min_y <= o.y &&
-           o.y <= (double)scene->max_y && w->room <= 0x1p80f;
+           o.y <= (double)scene->max_y && w->room <= 0x1p80f && !batch->options->any;
 }
 
 /* Empties a ray's rows and gathers it. False if it has no answer. */
-static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k, struct bundle *b) {
-    narc_ray_hit *const rows = batch->out + k * batch->most;
-    struct ray ray;
-    float fraction;
+INLINE bool gather(const narc_ray_batch *batch, const narc_box *scene, const struct read_rays *rays, size_t k,
+                   size_t number, struct bundle *b) {
+    narc_ray_hit *const rows = batch->out + number * batch->most;
     for (size_t i = 0; i < batch->most; i++)
-        rows[i] = (narc_ray_hit){.ray = (uint32_t)k};
-    if (!read_ray(batch->rays, k, &ray, &fraction))
-        return false;
-    const bool joins = NARC_SHORTCUTS && join_first(b, &ray, &b->walks[b->count]);
+        rows[i] = (narc_ray_hit){.ray = (uint32_t)number};
+    if (!(rays->length[k] > 0) || rays->base[k] < 0)
+        return rays->length[k] > 0;
+    const bool joins = joins_first(b, rays, k);
     if (!joins)
-        walk(batch, b);
-    struct walk *const w = &b->walks[b->count];
-    w->ray = ray;
-    if (!joins) {
-        if (!begin_walk(scene, batch->shapes, w))
-            return true;
-        b->open = is_open(scene, w) && !batch->options->any; /* which hit is found of any depends on the way */
-    }
-    w->rows = rows;
-    w->found = 0;
-    w->chosen = read_chosen(&batch->options->search, k);
-    set_limit(w, fraction);
+        walk(batch, b, false);
+    begin_walk(batch, rays, k, rows, &b->walks[b->count]);
+    if (!joins)
+        b->open = is_open(batch, scene, &b->walks[0]);
     if (++b->count == MOST_TOGETHER)
-        walk(batch, b);
+        walk(batch, b, false);
     return true;
 }
 
@@ -548,10 +811,16 @@ size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count)
     const narc_box scene =
         is_empty ? (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY} : find_scene_box(batch->index);
     size_t skipped = 0;
+    struct read_rays rays;
     struct bundle bundle;
-    bundle.count = 0;
-    for (size_t k = first; k < first + count; k++)
-        skipped += !gather(batch, &scene, k, &bundle);
-    walk(batch, &bundle);
+    bundle.count = bundle.alone = 0;
+    bundle.walks = bundle.all;
+    for (size_t k = first; k < first + count; k++) {
+        const size_t at = (k - first) % READ, left = first + count - k;
+        if (at == 0)
+            read_rays(batch, &scene, k, left < READ ? left : READ, &rays);
+        skipped += !gather(batch, &scene, &rays, at, k, &bundle);
+    }
+    walk(batch, &bundle, true);
     return skipped;
 }

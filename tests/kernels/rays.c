@@ -214,6 +214,49 @@ TEST(nothing_slips_between_bodies_that_touch) {
     }
 }
 
+static int compare_directions(const void *a, const void *b) {
+    const struct test_ray *const p = a, *const q = b;
+    const double left = atan2((double)p->motion_y, (double)p->motion_x),
+                 right = atan2((double)q->motion_y, (double)q->motion_x);
+    return (left > right) - (left < right);
+}
+
+/* Rays of one origin past a corner, by next to nothing: as each of them alone. */
+TEST(a_touch_counts_in_a_fan_as_alone) {
+    struct test_random random = test_random_named("touches in fans");
+    size_t hits = 0, misses = 0;
+    for (size_t trial = 0; trial < test_trials(400); trial++) {
+        struct scene scene = make_neighbours(&random);
+        struct test_ray rays[RAYS];
+        narc_ray_hit together[RAYS], alone;
+        const double x = random_between(&random, -5, 5), y = random_between(&random, -5, 5);
+        const struct body *const body = &scene.bodies[0];
+        const double length = hypot((double)body->cosine, (double)body->sine),
+                     reach = 0.5 * (double)body->scale / length;
+        for (size_t k = 0; k < RAYS; k++) {
+            const double along = k % 2 ? reach : -reach, up = k % 4 < 2 ? reach : -reach, off = 2e-7 / length;
+            const double left = body->x + (double)body->cosine * along - (double)body->sine * up - x;
+            const double high = body->y + (double)body->sine * along + (double)body->cosine * up - y;
+            rays[k] = (struct test_ray){x, y, (float)(left + off * random_between(&random, -4, 4) * fabs(high)),
+                                        (float)(high + off * random_between(&random, -4, 4) * fabs(left)), INFINITY};
+        }
+        qsort(rays, RAYS, sizeof *rays, compare_directions);
+        const narc_ray_options options = {.inside = (narc_inside)random_below(&random, 3)};
+        const narc_rays all = view_rays(rays, RAYS);
+        meet(&scene, &all, &options, together);
+        for (size_t k = 0; k < RAYS; k++) {
+            const narc_rays one = view_rays(rays + k, 1);
+            meet(&scene, &one, &options, &alone);
+            alone.ray = (uint32_t)k;
+            assert_memory_equal(&alone, &together[k], sizeof alone);
+            hits += alone.count;
+            misses += !alone.count;
+        }
+        destroy_scene(&scene);
+    }
+    assert_true(hits > 0 && misses > 0);
+}
+
 /* Along a segment, in it or beside it by far less than the bound, a ray meets the end that comes first, against its
  * normal; from within it leaves by the other. */
 TEST(meets_the_ends_of_segments) {

@@ -433,20 +433,24 @@ TEST(rays_go_in_any_company) {
     for (size_t k = 0; k < RAYS_OF_ALL; k++)
         mixed[k] = rays[order[k]];
     const narc_owners owners = {.owner = NARC_ARRAY(owner)};
-    for (int with_owners = 0; with_owners < 2; with_owners++) {
+    const narc_ray_options ways[] = {{.most = MOST},
+                                     {.most = MOST, .inside = NARC_INSIDE_LEAVES, .search.owners = &owners},
+                                     {.most = 1, .inside = NARC_INSIDE_STOPS},
+                                     {.most = 1, .inside = NARC_INSIDE_LEAVES},
+                                     {.most = 1, .inside = NARC_INSIDE_IGNORES}};
+    for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
+        const size_t most = ways[way].most;
         const narc_rays view = view_rays(rays, RAYS_OF_ALL);
-        narc_ray_options through = {.most = MOST, .inside = (narc_inside)with_owners};
-        through.search.owners = with_owners ? &owners : NULL;
-        narc_ray_hit *const right = cast_in_room(&room, &view, &through);
+        narc_ray_hit *const right = cast_in_room(&room, &view, &ways[way]);
         for (size_t size = 1; size < RAYS_OF_ALL; size = size < 10 ? size + 1 : 3 * size)
             for (size_t first = 0; first < RAYS_OF_ALL; first += size) {
                 const size_t left = RAYS_OF_ALL - first, count = left < size ? left : size;
                 const narc_rays part = view_rays(mixed + first, count);
-                narc_ray_hit *const found = cast_in_room(&room, &part, &through);
-                for (size_t k = 0; k < count * MOST; k++) {
-                    const size_t ray = order[first + k / MOST];
+                narc_ray_hit *const found = cast_in_room(&room, &part, &ways[way]);
+                for (size_t k = 0; k < count * most; k++) {
+                    const size_t ray = order[first + k / most];
                     found[k].ray = (uint32_t)ray;
-                    assert_memory_equal(&found[k], &right[ray * MOST + k % MOST], sizeof *found);
+                    assert_memory_equal(&found[k], &right[ray * most + k % most], sizeof *found);
                 }
                 guard_release(found);
             }

@@ -1,57 +1,55 @@
 /* SPDX-License-Identifier: MIT
  *
- * box2d3.c - Box2D 3: manifolds of two polygons or capsules, distance of two polygons, the collision part of a step, rays
- * by b2World_CastRayClosest(), regions by b2DynamicTree_Query(), times of impact by b2TimeOfImpact().
+ * box2d.c - Box2D 3: manifolds of two shapes, distance of two polygons, the collision part of a step, rays by
+ * b2World_CastRayClosest(), regions by b2DynamicTree_Query(), casts by b2ShapeCast() and b2TimeOfImpact().
  */
 #include <box2d/box2d.h>
-#if __has_include(<box2d/constants.h>)
 #include <box2d/constants.h>
-#endif
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "common.h"
 #include "peers.h"
 
-/* Box2D 3.2 lets contacts serve again; 3.1 does not, and takes two transforms where 3.2 takes that of B in A. */
-#ifdef B2_CONTACT_RECYCLE_DISTANCE
-#define RECYCLES            true
-#define MANIFOLD            b2LocalManifold
-#define COLLIDE(what, a, b) what(a, b, b2InvMulTransforms(at_a, at_b))
-#define TREE_ROOM(count)    (int)(count)
-#else
-#define RECYCLES            false
-#define MANIFOLD            b2Manifold
-#define COLLIDE(what, a, b) what(a, at_a, b, at_b)
-#define TREE_ROOM(count)
-#endif
-
-static b2Polygon polygon_of(const struct outline *given) {
-    const bool round = given->count > 2 && given->arcs[0].radius > 0;
-    const struct outline large = round ? replace_outline(FORM_LARGE, given) : *given, *const outline = &large;
-    b2Vec2 points[B2_MAX_POLYGON_VERTICES];
+/* A polygon whose corners all have one radius is Box2D's own; n-arcs have the polygon that is as large. */
+static b2Polygon polygon_from(const struct outline *given) {
+    const double radius = given->arcs[0].radius;
+    const bool n_arc = radius > 0 && given->arcs[1].radius != radius;
+    const struct outline large = n_arc ? polygon_of(given, true) : *given, *const outline = &large;
+    b2Vec2 points[B2_MAX_POLYGON_VERTICES] = {{0, 0}};
     for (size_t i = 0; i < outline->count; i++)
         points[i] = (b2Vec2){(float)outline->arcs[i].x, (float)outline->arcs[i].y};
     const b2Hull hull = b2ComputeHull(points, (int)outline->count);
-    return b2MakePolygon(&hull, 0);
+    return b2MakePolygon(&hull, n_arc ? 0 : (float)radius);
 }
 
-static b2Capsule capsule_of(const struct outline *outline) {
-    const struct arc *arcs = outline->arcs;
-    return (b2Capsule){
-        {(float)arcs[0].x, (float)arcs[0].y}, {(float)arcs[1].x, (float)arcs[1].y}, (float)arcs[0].radius};
-}
+enum type { CIRCLE, CAPSULE, POLYGON };
 
-union shape {
-    b2Polygon polygon;
-    b2Capsule capsule;
+struct shape {
+    enum type type;
+    union {
+        b2Circle circle;
+        b2Capsule capsule;
+        b2Polygon polygon;
+    } as;
 };
 
+static struct shape shape_of(const struct outline *outline) {
+    const struct arc *arcs = outline->arcs;
+    const b2Vec2 first = {(float)arcs[0].x, (float)arcs[0].y}, second = {(float)arcs[1].x, (float)arcs[1].y};
+    const float radius = (float)arcs[0].radius;
+    if (outline->count == 1)
+        return (struct shape){CIRCLE, {.circle = {first, radius}}};
+    if (outline->count == 2)
+        return (struct shape){CAPSULE, {.capsule = {first, second, radius}}};
+    return (struct shape){POLYGON, {.polygon = polygon_from(outline)}};
+}
+
 struct posed {
-    union shape *shapes;
+    struct shape *shapes;
     b2Transform *transforms;
     uint32_t *shape; /* of a body */
-    bool capsules;
 };
 
 static void *create(struct scene *scene) {
@@ -59,12 +57,8 @@ static void *create(struct scene *scene) {
     posed->shapes = allocate(scene->shape_count, sizeof *posed->shapes);
     posed->transforms = allocate(scene->body_count, sizeof *posed->transforms);
     posed->shape = allocate(scene->body_count, sizeof *posed->shape);
-    posed->capsules = scene->family->form == FORM_CAPSULE;
     for (size_t k = 0; k < scene->shape_count; k++)
-        if (posed->capsules)
-            posed->shapes[k].capsule = capsule_of(&scene->outlines[k]);
-        else
-            posed->shapes[k].polygon = polygon_of(&scene->outlines[k]);
+        posed->shapes[k] = shape_of(&scene->outlines[k]);
     for (size_t k = 0; k < scene->body_count; k++) {
         const struct body *body = &scene->bodies[k];
         posed->transforms[k] = (b2Transform){{body->x, body->y}, {body->cosine, body->sine}};
@@ -74,9 +68,31 @@ static void *create(struct scene *scene) {
 }
 
 /* Points that are within b2_speculativeDistance of touching are told as well. */
-static bool touches(const MANIFOLD *manifold) {
+static bool touches(const b2LocalManifold *manifold) {
     return (manifold->pointCount > 0 && manifold->points[0].separation < 0) ||
            (manifold->pointCount > 1 && manifold->points[1].separation < 0);
+}
+
+/* The first one's type is not below the second's, as in its worlds. */
+static b2LocalManifold collide_shapes(const struct shape *a, const struct shape *b, b2Transform at_a,
+                                      b2Transform at_b) {
+    if (a->type < b->type)
+        return collide_shapes(b, a, at_b, at_a);
+    const b2Transform at = b2InvMulTransforms(at_a, at_b);
+    switch (3 * (int)a->type + (int)b->type) {
+    case 3 * CIRCLE + CIRCLE:
+        return b2CollideCircles(&a->as.circle, &b->as.circle, at);
+    case 3 * CAPSULE + CIRCLE:
+        return b2CollideCapsuleAndCircle(&a->as.capsule, &b->as.circle, at);
+    case 3 * CAPSULE + CAPSULE:
+        return b2CollideCapsules(&a->as.capsule, &b->as.capsule, at);
+    case 3 * POLYGON + CIRCLE:
+        return b2CollidePolygonAndCircle(&a->as.polygon, &b->as.circle, at);
+    case 3 * POLYGON + CAPSULE:
+        return b2CollidePolygonAndCapsule(&a->as.polygon, &b->as.capsule, at);
+    default:
+        return b2CollidePolygons(&a->as.polygon, &b->as.polygon, at);
+    }
 }
 
 static size_t collide(void *context, const struct asked *asked, void *out) {
@@ -84,33 +100,24 @@ static size_t collide(void *context, const struct asked *asked, void *out) {
     uint8_t *colliding = out;
     for (size_t k = 0; k < asked->count; k++) {
         const uint32_t a = asked->pairs[k].a, b = asked->pairs[k].b;
-        const union shape *shape_a = &posed->shapes[posed->shape[a]], *shape_b = &posed->shapes[posed->shape[b]];
-        const b2Transform at_a = posed->transforms[a], at_b = posed->transforms[b];
-        const MANIFOLD manifold = posed->capsules ? COLLIDE(b2CollideCapsules, &shape_a->capsule, &shape_b->capsule)
-                                                  : COLLIDE(b2CollidePolygons, &shape_a->polygon, &shape_b->polygon);
+        const b2LocalManifold manifold =
+            collide_shapes(&posed->shapes[posed->shape[a]], &posed->shapes[posed->shape[b]], posed->transforms[a],
+                           posed->transforms[b]);
         colliding[k] = touches(&manifold);
     }
     return 0;
 }
 
-static b2ShapeProxy proxy_of(const union shape *shape) {
-    return b2MakeProxy(shape->polygon.vertices, shape->polygon.count, 0);
-}
+static b2ShapeProxy proxy_of(const b2Polygon *polygon) { return b2MakeProxy(polygon->vertices, polygon->count, 0); }
 
 static size_t overlap(void *context, const struct asked *asked, void *out) {
     const struct posed *posed = context;
     uint8_t *colliding = out;
     for (size_t k = 0; k < asked->count; k++) {
         const uint32_t a = asked->pairs[k].a, b = asked->pairs[k].b;
-        const b2Transform at_a = posed->transforms[a], at_b = posed->transforms[b];
-        b2DistanceInput input = {.proxyA = proxy_of(&posed->shapes[posed->shape[a]]),
-                                 .proxyB = proxy_of(&posed->shapes[posed->shape[b]])};
-#if RECYCLES
-        input.transform = b2InvMulTransforms(at_a, at_b);
-#else
-        input.transformA = at_a;
-        input.transformB = at_b;
-#endif
+        const b2DistanceInput input = {.proxyA = proxy_of(&posed->shapes[posed->shape[a]].as.polygon),
+                                       .proxyB = proxy_of(&posed->shapes[posed->shape[b]].as.polygon),
+                                       .transform = b2InvMulTransforms(posed->transforms[a], posed->transforms[b])};
         b2SimplexCache cache = {0};
         colliding[k] = b2ShapeDistance(&input, &cache, NULL, 0).distance == 0;
     }
@@ -122,6 +129,9 @@ static size_t overlap(void *context, const struct asked *asked, void *out) {
 struct world {
     b2WorldId id;
     b2BodyId *bodies;
+    b2ChainSegment *segments; /* of the ground */
+    struct shape shape;       /* of all on it */
+    const struct body *at;
 };
 
 static struct world *create_bodies(const struct scene *scene, b2BodyType type) {
@@ -134,22 +144,35 @@ static struct world *create_bodies(const struct scene *scene, b2BodyType type) {
     const b2ShapeDef matter = b2DefaultShapeDef();
     for (size_t k = 0; k < scene->body_count; k++) {
         const struct body *at = &scene->bodies[k];
-        const struct outline *outline = &scene->outlines[at->shape];
+        const struct shape shape = shape_of(&scene->outlines[at->shape]);
         b2BodyDef body = b2DefaultBodyDef();
         body.type = type;
         body.position = (b2Vec2){at->x, at->y};
         body.rotation = (b2Rot){at->cosine, at->sine};
         world->bodies[k] = b2CreateBody(world->id, &body);
-        if (outline->count == 1) {
-            const b2Circle circle = {b2Vec2_zero, (float)outline->arcs[0].radius};
-            b2CreateCircleShape(world->bodies[k], &matter, &circle);
-        } else if (outline->count == 2) {
-            const b2Capsule capsule = capsule_of(outline);
-            b2CreateCapsuleShape(world->bodies[k], &matter, &capsule);
-        } else {
-            const b2Polygon polygon = polygon_of(outline);
-            b2CreatePolygonShape(world->bodies[k], &matter, &polygon);
-        }
+        if (shape.type == CIRCLE)
+            b2CreateCircleShape(world->bodies[k], &matter, &shape.as.circle);
+        else if (shape.type == CAPSULE)
+            b2CreateCapsuleShape(world->bodies[k], &matter, &shape.as.capsule);
+        else
+            b2CreatePolygonShape(world->bodies[k], &matter, &shape.as.polygon);
+    }
+    if (scene->ground_count > 0) {
+        b2Vec2 *points = allocate(scene->ground_count, sizeof *points);
+        for (size_t k = 0; k < scene->ground_count; k++)
+            points[k] = (b2Vec2){(float)scene->ground[k].x, (float)scene->ground[k].y};
+        world->segments = allocate(scene->ground_count, sizeof *world->segments);
+        for (size_t k = 1; k + 2 < scene->ground_count; k++)
+            world->segments[k] = (b2ChainSegment){
+                .ghost1 = points[k - 1], .segment = {points[k], points[k + 1]}, .ghost2 = points[k + 2]};
+        world->shape = shape_of(scene->outlines);
+        world->at = scene->bodies;
+        const b2BodyDef still = b2DefaultBodyDef();
+        b2ChainDef chain = b2DefaultChainDef();
+        chain.points = points;
+        chain.count = (int)scene->ground_count;
+        b2CreateChain(b2CreateBody(world->id, &still), &chain);
+        free(points);
     }
     return world;
 }
@@ -166,11 +189,7 @@ static double step(void *context, const struct body *bodies, const uint32_t *mov
         b2Body_SetTransform(world->bodies[moved[k]], (b2Vec2){at->x, at->y}, (b2Rot){at->cosine, at->sine});
     }
     const double placed = now();
-#if RECYCLES
     b2World_SetContactRecycleDistance(world->id, recycling);
-#else
-    (void)recycling;
-#endif
     b2World_Step(world->id, 1e-9f, 1);
     const double spent = now() - placed;
     const b2Profile profile = b2World_GetProfile(world->id);
@@ -184,6 +203,23 @@ static size_t count_touching(void *world) {
     for (size_t k = 0; k < sizeof counters.colorCounts / sizeof counters.colorCounts[0]; k++)
         count += (size_t)counters.colorCounts[k];
     return count;
+}
+
+static size_t collide_ground(void *context, const struct asked *asked, void *out) {
+    const struct world *world = context;
+    uint8_t *colliding = out;
+    for (size_t k = 0; k < asked->count; k++) {
+        const b2ChainSegment *segment = &world->segments[asked->pairs[k].a];
+        const struct body *body = &world->at[asked->pairs[k].b];
+        const b2Transform at = {{body->x, body->y}, {body->cosine, body->sine}};
+        b2SimplexCache cache = {0};
+        const b2LocalManifold manifold =
+            world->shape.type == CIRCLE
+                ? b2CollideChainSegmentAndCircle(segment, &world->shape.as.circle, at)
+                : b2CollideChainSegmentAndPolygon(segment, &world->shape.as.polygon, at, &cache);
+        colliding[k] = manifold.pointCount > 0;
+    }
+    return 0;
 }
 
 static void *create_still(struct scene *scene) {
@@ -210,7 +246,7 @@ static b2AABB box_from(const narc_box *box) { return (b2AABB){{box->min_x, box->
 
 static void *create_tree(struct scene *scene) {
     b2DynamicTree *tree = allocate(1, sizeof *tree);
-    *tree = b2DynamicTree_Create(TREE_ROOM(scene->body_count));
+    *tree = b2DynamicTree_Create((int)scene->body_count);
     index_scene(scene);
     for (size_t k = 0; k < scene->body_count; k++)
         b2DynamicTree_CreateProxy(tree, box_from(&scene->boxes[k]), 1, k);
@@ -245,11 +281,26 @@ static void *create_nothing(struct scene *scene) {
 }
 
 static size_t find_impacts(void *context, const struct asked *asked, void *out) {
-    const b2Polygon polygon = polygon_of(asked->polygon);
-    const b2ShapeProxy proxy = b2MakeProxy(polygon.vertices, polygon.count, 0);
+    const b2Polygon polygon = polygon_from(asked->polygon);
+    const b2ShapeProxy proxy = proxy_of(&polygon);
     float *fractions = out;
     (void)context;
     for (size_t k = 0; k < asked->count; k++) {
+        if (asked->straight) {
+            const narc_body *a = &asked->bodies[2 * k], *b = a + 1;
+            const struct motion *of_a = &asked->motions[2 * k], *of_b = of_a + 1;
+            const b2Transform at_a = {{(float)a->x, (float)a->y}, {a->cosine, a->sine}};
+            const b2Transform at_b = {{(float)b->x, (float)b->y}, {b->cosine, b->sine}};
+            const b2ShapeCastPairInput input = {
+                .proxyA = proxy,
+                .proxyB = proxy,
+                .transform = b2InvMulTransforms(at_a, at_b),
+                .translationB = b2InvRotateVector(at_a.q, (b2Vec2){of_b->x - of_a->x, of_b->y - of_a->y}),
+                .maxFraction = 1};
+            const b2CastOutput output = b2ShapeCast(&input);
+            fractions[k] = output.hit ? output.fraction : 2;
+            continue;
+        }
         b2TOIInput input = {.proxyA = proxy, .proxyB = proxy, .maxFraction = 1};
         for (size_t side = 0; side < 2; side++) {
             const narc_body *body = &asked->bodies[2 * k + side];
@@ -276,10 +327,12 @@ const char *box2d_name(void) {
 
 #define BOX2D(query, ...)                                                                                              \
     { .question = query, .name = "box2d", .max_edges = B2_MAX_POLYGON_VERTICES, __VA_ARGS__ }
-const struct peer box2d_collide = BOX2D("contact", .capsules = true, .create = create, .ask = collide);
+const struct peer box2d_collide = BOX2D("contact", .create = create, .ask = collide);
 const struct peer box2d_overlap = BOX2D("overlap", .create = create, .ask = overlap);
-const struct peer box2d_world = BOX2D("stay", .capsules = true, .own_clock = true, .recycles = RECYCLES,
-                                      .create = create_moving, .step = step, .count_touching = count_touching);
+const struct peer box2d_world =
+    BOX2D("stay", .own_clock = true, .create = create_moving, .step = step, .count_touching = count_touching);
+const struct peer box2d_ground = BOX2D("ground", .own_clock = true, .create = create_moving, .ask = collide_ground,
+                                       .step = step, .count_touching = count_touching);
 const struct peer box2d_rays = BOX2D("ray", .create = create_still, .ask = cast);
 const struct peer box2d_regions = BOX2D("region", .create = create_tree, .ask = find_regions);
 const struct peer box2d_impacts = BOX2D("impact", .create = create_nothing, .ask = find_impacts);

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ray_lanes.inl - rays of one origin at one body, each in a lane: where they enter it.
+ *
+ * The formulas of ray_entry.inl in the same order, so that a ray's answer has the same bits. Most rays enter by an arc or
+ * an edge, in front of them. All others are told to be asked alone: those that start in the body, and those that pass
+ * some place by next to nothing.
+ */
+#ifndef NARC_SCENE_RAY_LANES_INL
+#define NARC_SCENE_RAY_LANES_INL
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec2.inl"
+#include "scene/body_frame.inl"
+#include "scene/ray_entry.inl"
+#include "simd/doubles.h"
+
+enum { LANE_HALVES = V_WIDTH / D_WIDTH };
+
+typedef struct {
+    vd x, y;
+} vec2d;
+
+INLINE vd d_dot(vec2d a, vec2d b) { return a.x * b.x + a.y * b.y; }
+INLINE vd d_cross(vec2d a, vec2d b) { return a.x * b.y - a.y * b.x; }
+INLINE vec2d d_set2(place a) { return (vec2d){d_set(a.x), d_set(a.y)}; }
+INLINE vec2d d_select2(vl m, vec2d a, vec2d b) { return (vec2d){d_select(m, a.x, b.x), d_select(m, a.y, b.y)}; }
+INLINE vec2d d_of_floats2(const float *x, const float *y) { return (vec2d){d_of_floats(x), d_of_floats(y)}; }
+
+/* What is known of half as many rays as there are lanes. */
+struct half_met {
+    vec2d direction, foot, normal;
+    vd ahead, distance;
+};
+
+/* The features by which lines enter: the first one of each (struct entries). */
+struct entry_lanes {
+    vm found, on_edge, near;
+    int32_t arc[V_WIDTH];
+};
+
+/* A junction: does its normal n face the ray, and v x n. */
+struct junction_lanes {
+    vm faces;
+    vf turn;
+};
+
+INLINE struct junction_lanes find_junction(vec2 v, const float *normal) {
+    const vec2 n = {v_set(normal[0]), v_set(normal[1])};
+    return (struct junction_lanes){v_lt(v2_dot(v, n), v_set(0)), v2_cross(v, n)};
+}
+
+INLINE void find_entry_lanes(const struct body_frame *frame, vec2 o, vec2 v, float near, struct entry_lanes *out) {
+    const int count = frame->header->count;
+    const narc_stored_arc *arc = &frame->arcs[count - 1].arc;
+    const vf zero = v_set(0);
+    struct junction_lanes start, end = find_junction(v, &arc->end_x);
+    const vf last = v2_cross(v, v2_sub((vec2){v_set(arc->center_x), v_set(arc->center_y)}, o));
+    vm left = v_le(zero, v_add(last, v_mul(v_set(arc->radius), end.turn)));
+    vf nearest = v_set(INFINITY);
+    vi first = vi_set(0);
+    out->found = out->on_edge = v_lt(zero, zero);
+    for (int k = 0; k < count; k++) {
+        arc = &frame->arcs[k].arc;
+        start = end;
+        end = find_junction(v, &arc->end_x);
+        const vf h = v2_cross(v, v2_sub((vec2){v_set(arc->center_x), v_set(arc->center_y)}, o));
+        const vf radius = v_set(arc->radius);
+        const vf s_start = v_add(h, v_mul(radius, start.turn)), s_end = v_add(h, v_mul(radius, end.turn));
+        vm enters = vm_and_not(vm_and(start.faces, left), v_le(zero, s_start));
+        out->on_edge = vm_or(out->on_edge, vm_and_not(enters, out->found));
+        if (arc->radius > 0) {
+            const bool is_wide = arc->start_x * arc->end_x + arc->start_y * arc->end_y < 0;
+            const vm faces =
+                is_wide ? vm_or(vm_xor(start.faces, end.faces), v_lt(zero, start.turn)) : vm_or(start.faces, end.faces);
+            const vf from = v_select(start.faces, s_start, v_add(h, radius));
+            const vf to = v_select(end.faces, s_end, v_sub(h, radius));
+            nearest = v_min(nearest, v_min(v_abs(from), v_abs(to)));
+            enters = vm_or(enters, vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero))));
+        } else {
+            nearest = v_min(nearest, v_abs(h));
+        }
+        first = vi_select(vm_and_not(enters, out->found), vi_set(k), first);
+        out->found = vm_or(out->found, enters);
+        left = v_le(zero, s_end);
+    }
+    out->near = v_le(nearest, v_set(near));
+    vi_store(out->arc, first);
+}
+
+/* The arcs by which they enter, and those before them. */
+struct arc_lanes {
+    float center_x[V_WIDTH], center_y[V_WIDTH], radius[V_WIDTH], start_x[V_WIDTH], start_y[V_WIDTH], end_x[V_WIDTH],
+        end_y[V_WIDTH], before_x[V_WIDTH], before_y[V_WIDTH], before_radius[V_WIDTH];
+};
+
+INLINE void load_arc_lanes(const struct body_frame *frame, const int32_t *arc, struct arc_lanes *out) {
+    int32_t before[V_WIDTH];
+    vf field[4];
+    const vi number = vi_load(arc), last = vi_set((int32_t)frame->header->count - 1);
+    vi_store(before, vi_select(vi_lt(vi_set(0), number), vi_sub(number, vi_set(1)), last));
+    v_rows(frame->arcs, sizeof *frame->arcs, arc, field);
+    v_store(out->center_x, field[0]);
+    v_store(out->center_y, field[1]);
+    v_store(out->radius, field[2]);
+    v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, arc, field);
+    v_store(out->start_x, field[0]);
+    v_store(out->start_y, field[1]);
+    v_store(out->end_x, field[2]);
+    v_store(out->end_y, field[3]);
+    v_rows(frame->arcs, sizeof *frame->arcs, before, field);
+    v_store(out->before_x, field[0]);
+    v_store(out->before_y, field[1]);
+    v_store(out->before_radius, field[2]);
+}
+
+/* enter_edge() and enter_arc(), from lane l on. */
+INLINE vd enter_edge_lanes(const struct arc_lanes *arcs, int l, struct half_met *met) {
+    const vec2d v = met->direction, foot = met->foot, n = d_of_floats2(arcs->start_x + l, arcs->start_y + l);
+    const vec2d before = d_of_floats2(arcs->before_x + l, arcs->before_y + l);
+    const vec2d after = d_of_floats2(arcs->center_x + l, arcs->center_y + l);
+    const vd r = d_of_floats(arcs->before_radius + l), q = d_of_floats(arcs->radius + l), zero = d_set(0);
+    const vec2d from = {before.x + r * n.x - foot.x, before.y + r * n.y - foot.y};
+    const vec2d to = {after.x + q * n.x - foot.x, after.y + q * n.y - foot.y};
+    const vd left = d_cross(v, from), right = d_cross(v, to), start = d_dot(v, from);
+    const vd within = d_select(d_le(zero, right), d_set(1), left / (left - right));
+    const vd part = d_select(d_le(left, zero), zero, within);
+    met->normal = n;
+    return start + part * (d_dot(v, to) - start);
+}
+
+INLINE vd enter_arc_lanes(const struct arc_lanes *arcs, int l, struct half_met *met) {
+    const vec2d v = met->direction, foot = met->foot, start = d_of_floats2(arcs->start_x + l, arcs->start_y + l);
+    const vec2d end = d_of_floats2(arcs->end_x + l, arcs->end_y + l);
+    const vec2d at = d_of_floats2(arcs->center_x + l, arcs->center_y + l), center = {at.x - foot.x, at.y - foot.y};
+    const vd radius = d_of_floats(arcs->radius + l), beside = d_cross(v, center) / radius;
+    const vd zero = d_set(0), one = d_set(1), least = d_set(-1);
+    const vd capped = d_select(d_lt(beside, least), least, d_select(d_lt(one, beside), one, beside));
+    const vd half = d_sqrt((one - capped) * (one + capped));
+    const vec2d n = {capped * v.y - half * v.x, -capped * v.x - half * v.y};
+    const vl behind = d_le(zero, d_cross(start, n)), before = d_le(zero, d_cross(n, end)), is_within = behind & before;
+    const vl is_start = ~behind & (before | d_lt(d_dot(end, n), d_dot(start, n)));
+    met->normal = d_select2(is_within, n, d_select2(is_start, start, end));
+    return d_dot(v, center) + radius * d_select(is_within, -half, d_dot(v, met->normal));
+}
+
+/* Rays of one origin, each column from the first of them on. */
+struct lane_rays {
+    place origin;
+    const double *direction_x, *direction_y, *inverse_length;
+};
+
+/* Where they meet a body that is no piece, all in front of them: out_fraction is at least 0, -1 of those that are to be
+ * asked alone, and NaN of others. `ignores`: these are not
+ * asked that start in the body. False if it is that of all. */
+INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays *rays, bool ignores,
+                          struct entry_lanes *entries, struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
+    const narc_shape_header *const header = frame->header;
+    const place way = {frame->position.x - rays->origin.x, frame->position.y - rays->origin.y};
+    const place turned = turn_to_shape(frame, way), middle = {(double)header->bound_x, (double)header->bound_y};
+    const vec2d center =
+        d_set2((place){turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y});
+    const vec2d rotation = d_set2(frame->rotation);
+    const vd radius = d_set((double)header->bound_radius), nan = d_set((double)NAN);
+    float foot_x[V_WIDTH], foot_y[V_WIDTH], direction_x[V_WIDTH], direction_y[V_WIDTH];
+    UNROLL
+    for (int h = 0; h < LANE_HALVES; h++) {
+        const int l = h * D_WIDTH;
+        const vec2d world = {d_load(rays->direction_x + l), d_load(rays->direction_y + l)};
+        const vec2d v = {d_dot(rotation, world), d_cross(rotation, world)};
+        const vd beside = d_cross(v, center), ahead = d_dot(v, center);
+        const vl meets = d_le(d_abs(beside), radius) & ~d_lt(ahead, -radius);
+        met[h].direction = v;
+        met[h].foot = (vec2d){d_set(middle.x) + beside * v.y, d_set(middle.y) - beside * v.x};
+        met[h].normal = v; /* of those that find none */
+        met[h].ahead = met[h].distance = ahead;
+        d_put_floats(foot_x + l, d_select(meets, met[h].foot.x, nan));
+        d_put_floats(foot_y + l, met[h].foot.y);
+        d_put_floats(direction_x + l, v.x);
+        d_put_floats(direction_y + l, v.y);
+    }
+    find_entry_lanes(frame, (vec2){v_load(foot_x), v_load(foot_y)}, (vec2){v_load(direction_x), v_load(direction_y)},
+                     (float)(2 * find_touch(header)), entries);
+    v_store(out_fraction, v_select(entries->near, v_set(-1), v_set(NAN)));
+    if (!vm_any(entries->found))
+        return vm_any(entries->near);
+    struct arc_lanes arcs;
+    load_arc_lanes(frame, entries->arc, &arcs);
+    const bool on_edges = vm_any(vm_and(entries->found, entries->on_edge));
+    const bool on_arcs = vm_any(vm_and_not(entries->found, entries->on_edge));
+    UNROLL
+    for (int h = 0; h < LANE_HALVES; h++) {
+        const int l = h * D_WIDTH;
+        vd along = d_set(0);
+        if (on_edges)
+            along = enter_edge_lanes(&arcs, l, &met[h]);
+        if (on_arcs) {
+            const vec2d normal = met[h].normal;
+            const vl on_edge = d_of_lanes(entries->on_edge, l);
+            const vd along_arc = enter_arc_lanes(&arcs, l, &met[h]);
+            along = on_edges ? d_select(on_edge, along, along_arc) : along_arc;
+            met[h].normal = on_edges ? d_select2(on_edge, normal, met[h].normal) : met[h].normal;
+        }
+        const vd distance = (met[h].ahead + along) * d_set(frame->scale);
+        const vd fraction = distance * d_load(rays->inverse_length + l);
+        const vd told = d_select(d_le(fraction, d_set((double)FLT_MAX)), fraction, nan);
+        met[h].distance = distance;
+        d_put_floats(out_fraction + l, d_select(d_lt(d_set(0), distance), told, ignores ? nan : d_set(-1)));
+    }
+    const vf fraction = v_select(entries->found, v_load(out_fraction), v_set(NAN));
+    v_store(out_fraction, v_select(entries->near, v_set(-1), fraction));
+    return true;
+}
+
+#endif
