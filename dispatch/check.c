@@ -68,7 +68,7 @@ static void take_every_other(const narc_bodies *set, size_t offset, narc_bodies 
 #define TAKE(column)                                                                                                   \
     bodies->column = set->column;                                                                                      \
     if (set->column.base) {                                                                                            \
-        bodies->column.base = (const char *)set->column.base + (ptrdiff_t)offset * set->column.stride;                 \
+        bodies->column.base = narc_at(set->column.base, set->column.stride, offset);                                   \
         bodies->column.stride = 2 * set->column.stride;                                                                \
     }
     TAKE(x) TAKE(y) TAKE(cosine) TAKE(sine) TAKE(scale) TAKE(shape)
