@@ -28,12 +28,7 @@ struct sources {
 };
 
 INLINE struct sources copy_sources(const narc_batch *batch) {
-    struct sources copy; /* compilers clear what has an initialiser, and that takes longer */
-    copy.a = *batch->a;
-    copy.b = *batch->b;
-    copy.pairs = *batch->pairs;
-    copy.selection = batch->query->selection;
-    return copy;
+    return (struct sources){*batch->a, *batch->b, *batch->pairs, batch->query->selection};
 }
 
 /* Item k of a block: a pair, its bodies and their shapes. */

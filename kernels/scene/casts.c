@@ -545,7 +545,10 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
     struct cast_call call;
     call.given = given;
     call.shapes = batch->shapes;
-    call.sources = copy_sources(batch);
+    call.sources.a = *batch->a; /* one by one: a copy of all would be made in another place first */
+    call.sources.b = *batch->b;
+    call.sources.pairs = *batch->pairs;
+    call.sources.selection = batch->query->selection;
     call.layout[0] = few ? POSE_COLUMNS : find_pose_layout(batch->a);
     call.layout[1] = few ? POSE_COLUMNS : find_pose_layout(batch->b);
     call.own = narc_have_own_bodies(batch->pairs);
