@@ -63,13 +63,13 @@ static narc_status find_set(const narc_bodies *bodies, narc_bodies *filled, cons
 
 /* Every other body of a set, beginning with the first or the second one. */
 static void take_every_other(const narc_bodies *set, size_t offset, narc_bodies *bodies) {
-    *bodies = *set;
     bodies->count = (set->count + 1 - offset) / 2;
 /* clang-format off */
 #define TAKE(column)                                                                                                   \
-    if (bodies->column.base) {                                                                                         \
-        bodies->column.base = (const void *)((const char *)bodies->column.base + (ptrdiff_t)offset * bodies->column.stride); \
-        bodies->column.stride *= 2;                                                                                    \
+    bodies->column = set->column;                                                                                      \
+    if (set->column.base) {                                                                                            \
+        bodies->column.base = (const char *)set->column.base + (ptrdiff_t)offset * set->column.stride;                 \
+        bodies->column.stride = 2 * set->column.stride;                                                                \
     }
     TAKE(x) TAKE(y) TAKE(cosine) TAKE(sine) TAKE(scale) TAKE(shape)
 #undef TAKE

@@ -30,7 +30,7 @@ static narc_one_pair gather_pair(const narc_batch *batch, size_t place) {
     const size_t a = pairs->a.base ? narc_index_at(pairs->a, number) : number;
     const size_t b = pairs->b.base ? narc_index_at(pairs->b, number) : number;
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
-    return (narc_one_pair){.place = place,
+    return (narc_one_pair){.number = (uint32_t)number,
                            .shape_a = narc_index_at(of_a->shape, a),
                            .shape_b = narc_index_at(of_b->shape, b),
                            .x = shifted ? find_shifted(&of_a->x, &of_b->x, a, b, pairs->shift_x, number)
@@ -158,7 +158,6 @@ static int ask_kernel(const narc_shapes *shapes, const narc_body *a, const narc_
     narc_query own; /* an initialiser would clear all of both, of which kernels read little */
     narc_batch batch;
     own.second_margin = query->second_margin;
-    own.selection.base = NULL;
     batch.shapes = shapes;
     batch.query = &own;
     batch.flat_sine = manifold ? narc_find_flat_sine(query->flat_angle) : -1;

@@ -106,7 +106,7 @@ typedef struct narc_kept_row {
 
 /* One pair by itself: the position of B less that of A, as a batch has it, and the rest of both bodies. */
 typedef struct narc_one_pair {
-    size_t place; /* as a batch asks of it */
+    uint32_t number; /* in its batch */
     uint32_t shape_a, shape_b;
     float x, y, cosine_a, sine_a, scale_a, cosine_b, sine_b, scale_b;
     float margin;

@@ -41,18 +41,16 @@
 #define UNROLL_FEW _Pragma("GCC unroll 4")
 #endif
 
-/* The same, but not for one pair at a time, of which such a loop ends early. */
-#ifndef NARC_ONE_PAIR
-#define UNROLL_PAIRS UNROLL
-#elif defined(__clang__)
-#define UNROLL_PAIRS _Pragma("nounroll")
-#else
-#define UNROLL_PAIRS _Pragma("GCC unroll 1")
-#endif
-
 #define LIKELY(condition) __builtin_expect(condition, 1)
 #define FETCH(address)    __builtin_prefetch(address)
 #define TYPE_OF(value)    __typeof__(value)
+
+/* Within a function that only fetches: GCC takes it for one without effect, and leaves out its calls. */
+#ifdef __clang__
+#define HAS_EFFECT (void)0
+#else
+#define HAS_EFFECT __asm__ volatile("")
+#endif
 
 /* After a type's name in its definition: a vector of so many bytes, with operators by lane. */
 #define VECTOR_OF(bytes) __attribute__((vector_size(bytes)))

@@ -78,7 +78,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 36 };
+enum { NARC_ARRAYS = 37 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -128,7 +128,8 @@ struct narc_contacts {
     unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
     size_t body_capacity;
-    float *room; /* of each body: what its separations may be off by */
+    float *room;      /* of each body: what its separations may be off by, */
+    uint8_t *grounds; /* and whether it is ground: NARC_IS_PIECE, NARC_IS_OF_RUN */
 
     narc_row_array more, next_more, ground; /* `ground`: as they were answered */
 
@@ -240,11 +241,11 @@ float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* Both n-arcs: to ask anew costs no more than to follow. */
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 
+/* A body is a piece of a chain; it is said to be of a run. A pair is of ground if one of both is the one, or B is the other. */
+enum { NARC_IS_PIECE = 1, NARC_IS_OF_RUN = 2 };
+
 /* Marks of slots beside those of pairs: neither body moves; there is no pair. */
 enum { NARC_RESTS = 32, NARC_GONE = 64 };
-
-/* Is one of two bodies a piece of a chain, or B said to be of a run? */
-bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b);
 
 /* ------------------------------------------------------------------------------------------------ ground.c */
 

@@ -26,13 +26,6 @@ static const narc_shape_header *header_of(const narc_contact_step *s, uint32_t b
     return shape < s->shapes->count ? &s->shapes->headers[shape] : &none;
 }
 
-bool narc_is_ground_pair(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    if (!s->has_ground)
-        return false;
-    return (s->step->run.base && narc_index_at(s->step->run, b) != NARC_NO_RUN) || narc_is_piece(header_of(s, a)) ||
-           narc_is_piece(header_of(s, b));
-}
-
 bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b) {
     return header_of(s, a)->flags & header_of(s, b)->flags & NARC_SHAPE_SMOOTH;
 }
@@ -50,10 +43,15 @@ static float find_room(const narc_contact_step *s, uint32_t body) {
                                              : 0x1p-17f * (float)header->extent_ratio * header->bound_radius * scale;
 }
 
+static uint8_t find_ground(const narc_contact_step *s, uint32_t body) {
+    const bool of_run = s->step->run.base && narc_index_at(s->step->run, body) != NARC_NO_RUN;
+    return (uint8_t)((narc_is_piece(header_of(s, body)) ? NARC_IS_PIECE : 0) | (of_run ? NARC_IS_OF_RUN : 0));
+}
+
 /* What is looked at of each pair, in one place: the loop over all pairs is as long as much of what follows. */
 typedef struct pair_view {
-    const uint32_t *a, *b, *previous, *order; /* previous NULL: the list is the last one */
-    const uint8_t *marks, *flags, *state, *changed;
+    const uint32_t *a, *b, *previous, *order;                 /* previous NULL: the list is the last one */
+    const uint8_t *marks, *flags, *state, *changed, *grounds; /* `grounds` NULL: none is of ground */
     const narc_box *boxes;
     const float *room;
     float margin_room; /* INFINITY: no pair is known to have no row by its boxes */
@@ -69,6 +67,7 @@ static pair_view view_pairs(const narc_contact_step *s) {
                        .flags = c->flags,
                        .state = c->state,
                        .changed = c->broad->known.changed,
+                       .grounds = s->has_ground ? c->grounds : NULL,
                        .boxes = c->broad->boxes_now,
                        .room = c->room,
                        .margin_room = s->step->ahead.base || s->step->pairs ? INFINITY : 0x1p-18f * s->step->margin};
@@ -104,8 +103,8 @@ static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
     return slot == UINT32_MAX || find_stale(v->flags[slot], v->marks[k]);
 }
 
-static bool is_ground(const narc_contact_step *s, const pair_view *v, size_t k) {
-    return !(v->marks[k] & NARC_SENSOR) && narc_is_ground_pair(s, v->a[k], v->b[k]);
+static inline bool is_ground(const pair_view *v, size_t k) {
+    return !(v->marks[k] & NARC_SENSOR) && (v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE));
 }
 
 /* May all rows of pair k, of ground, follow? A pair without one may, too. */
@@ -129,7 +128,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
-        if (!is_ground(s, v, k)) { /* it may have been */
+        if (!is_ground(v, k)) { /* it may have been */
             const bool other =
                 slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
             stale |= other;
@@ -149,7 +148,7 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
     follows = follows && touches && !stale && !(ground_moves && some_bare);
     const unsigned what = apart ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK_GROUND;
     for (size_t k = first; k < end && changed; k++)
-        if (is_ground(s, v, k))
+        if (is_ground(v, k))
             c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, are_at_rest(s, a, v->b[k]) ? NARC_REST : what};
 }
 
@@ -204,8 +203,11 @@ void narc_plan_ground(const narc_contact_step *s) {
     const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
     c->work_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
-    for (size_t k = 0; c->changed && (k = find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies; k++)
+    for (size_t k = 0; c->changed && (k = c->again ? k : find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies;
+         k++) {
         c->room[k] = find_room(s, (uint32_t)k);
+        c->grounds[k] = find_ground(s, (uint32_t)k);
+    }
     for (size_t slot = 0; slot < c->slot_count && c->again; slot++)
         c->flags[slot] |= NARC_SLOT_STALE;
     if (s->has_ground && !s->list->kept)
@@ -213,7 +215,7 @@ void narc_plan_ground(const narc_contact_step *s) {
     for (size_t k = 0, end; k < count && s->has_ground && c->changed; k = end) {
         bool ground = false;
         for (end = k; end < count && v.a[end] == v.a[k]; end++)
-            ground = ground || is_ground(s, &v, end);
+            ground = ground || is_ground(&v, end);
         if (ground)
             plan_ground(s, &v, k, end);
     }
@@ -270,7 +272,7 @@ static void mark_slots(const narc_contact_step *s) {
  * plain bodies? Ground has been planned. */
 NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, uint32_t slot, bool changed) {
     const unsigned marks = v->marks[slot];
-    if (marks & NARC_GONE || (s->has_ground && is_ground(s, v, slot)) || !changed)
+    if (marks & NARC_GONE || (v->grounds && is_ground(v, slot)) || !changed)
         return NARC_NOTHING;
     s->contacts->marks[slot] = (uint8_t)(marks & ~(unsigned)NARC_FLIPPED); /* but once */
     if (marks & NARC_RESTS && !(marks & NARC_FLIPPED))

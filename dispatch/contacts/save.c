@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* VERSION is another one whenever what is saved is. */
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 15, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 16, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
 
 static const char magic[8] = "NARCCNTS";
 
@@ -72,7 +72,8 @@ static void list_saved(narc_contacts *c, int list, narc_array out[SAVED_ARRAYS])
         ARRAY(known->slack, slack * sizeof *known->slack, &known->count),
         ARRAY(known->moved, 1, &known->count),
         ARRAY(known->changed, 1, &known->count),
-        ARRAY(c->room, sizeof *c->room, &known->count)};
+        ARRAY(c->room, sizeof *c->room, &known->count),
+        ARRAY(c->grounds, 1, &known->count)};
 #undef ARRAY
     memcpy(out + count, arrays, sizeof arrays);
 }

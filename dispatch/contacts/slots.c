@@ -76,6 +76,7 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_FILTERED_PAIRS, c->sensors, sizeof *c->sensors, &r->sensor_count),
                                  ARRAY(NARC_OF_EVENTS, c->events, sizeof *c->events, &c->event_count),
                                  ARRAY(NARC_OF_BODIES, c->room, sizeof *c->room, none),
+                                 ARRAY(NARC_OF_BODIES, c->grounds, 1, none),
                                  ARRAY(NARC_OF_MORE, c->more.rows, c->row_size, &c->more.count),
                                  ARRAY(NARC_OF_MORE, c->more.kept, sizeof *c->more.kept, &c->more.count),
                                  ARRAY(NARC_OF_NEXT_MORE, c->next_more.rows, c->row_size, none),

@@ -48,11 +48,14 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
         status = narc_check_reserved(both[0]->reserved, 2, "motions", error);
     if (status == NARC_OK)
         status = narc_check_reserved(both[1]->reserved, 2, "other_motions", error);
-    *out_job = (narc_cast_job){.batch = {.motions = {*both[0], *both[1]},
-                                         .target = options->target,
-                                         .tolerance = options->tolerance,
-                                         .targets = options->targets,
-                                         .front_only = options->front_only != 0}};
+    out_job->batch.motions[0] = *both[0];
+    out_job->batch.motions[1] = *both[1];
+    out_job->batch.target = options->target;
+    out_job->batch.tolerance = options->tolerance;
+    out_job->batch.targets = options->targets;
+    out_job->batch.nearest = false;
+    out_job->batch.front_only = options->front_only != 0;
+    atomic_init(&out_job->skipped, 0);
     return status;
 }
 
@@ -67,12 +70,14 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
                             narc_error *error) {
     static const narc_cast_options defaults = {0};
     const narc_cast_options *const o = options ? options : &defaults;
-    const narc_query query = {.workers = o->workers};
+    narc_query query;
     narc_batch batch;
     narc_cast_job job;
     narc_status status = narc_check_casts(motions, other_motions, o, &job, error);
+    if (o->workers)
+        query = (narc_query){.workers = o->workers};
     if (status == NARC_OK)
-        status = narc_begin_batch(shapes, bodies, pairs, &query, &batch, error);
+        status = narc_begin_batch(shapes, bodies, pairs, o->workers ? &query : NULL, &batch, error);
     if (status != NARC_OK)
         return status;
     if (!pairs->other_bodies && other_motions)

@@ -28,7 +28,12 @@ struct sources {
 };
 
 INLINE struct sources copy_sources(const narc_batch *batch) {
-    return (struct sources){*batch->a, *batch->b, *batch->pairs, batch->query->selection};
+    struct sources copy; /* compilers clear what has an initialiser, and that takes longer */
+    copy.a = *batch->a;
+    copy.b = *batch->b;
+    copy.pairs = *batch->pairs;
+    copy.selection = batch->query->selection;
+    return copy;
 }
 
 /* Item k of a block: a pair, its bodies and their shapes. */

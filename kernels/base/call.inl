@@ -41,11 +41,15 @@ INLINE char *choose(bool first, char *a, char *b) {
 
 /* The batch's number of a pair. */
 INLINE size_t find_number(const struct call *call, int32_t pair) {
+    if (BLOCK == 1) /* one pair by itself, whose number is known */
+        return call->first;
     return narc_pair_at(call->batch, call->first + (uint32_t)pair);
 }
 
 INLINE vi find_numbers(const struct call *call, vi pairs) {
     int32_t number[V_WIDTH];
+    if (BLOCK == 1)
+        return vi_set((int32_t)(uint32_t)call->first);
     if (!call->batch->query->selection.base)
         return vi_add(pairs, vi_set((int32_t)(uint32_t)call->first));
     const uint32_t count = (uint32_t)call->count; /* lanes that are not of a pair may have any */
@@ -64,7 +68,7 @@ INLINE float find_margin(const struct call *call, int32_t pair) {
 INLINE vf find_margins(const struct call *call, vi pairs) {
     int32_t pair[V_WIDTH];
     float lane[V_WIDTH];
-    if (!call->margins.base)
+    if (BLOCK == 1 || !call->margins.base)
         return v_set(call->margin);
     vi_store(pair, pairs);
     for (int l = 0; l < V_WIDTH; l++)

@@ -154,9 +154,9 @@ INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
                        vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));
 }
 
-/* The answer to the pairs k ... of a queue that touch along n, in A's frame. */
+/* The answer to the pairs k ... of a queue that touch along n, in A's frame. `reaches`: are they asked for? */
 INLINE struct answer find_answer(const struct queue *queue, int k, vf separation, vec2 n, const struct feature *on_a,
-                                 const struct feature *on_b) {
+                                 const struct feature *on_b, bool reaches) {
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
     const vec2 to_world = get_vec2(queue, ROTATION_A, k);
     const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
@@ -171,8 +171,8 @@ INLINE struct answer find_answer(const struct queue *queue, int k, vf separation
                            .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
                            .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius),
-                           .reach_a = find_reach(on_a, n, info_a, edge_a),
-                           .reach_b = find_reach(on_b, n, info_b, edge_b)};
+                           .reach_a = reaches ? find_reach(on_a, n, info_a, edge_a) : zero,
+                           .reach_b = reaches ? find_reach(on_b, n, info_b, edge_b) : zero};
 }
 
 #endif

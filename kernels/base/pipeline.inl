@@ -33,10 +33,14 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
 
+/* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
+typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
+
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
     detour *take;   /* if call->boxes: what comes before all else */
     triage *settle; /* what is answered as it is set up; all others go to stage `first` */
+    dropping *drop; /* if call->concave: what of them goes no further; or NULL */
     int fields;     /* what travels from there on */
     stage *const *stages;
     int first;
@@ -112,24 +116,83 @@ INLINE void run_stages(const struct call *call, const struct course *course, str
     }
 }
 
-/* Asks the cache for what pairs from `first` to before `end` read: for one block the shapes, for the next one the bodies.
- * Of the many pieces of ground each is another shape, and it would take longer to wait for them than to answer. */
-NOINLINE void fetch_ahead(const struct sources *given, const narc_shapes *shapes, size_t first, size_t end) {
-    const narc_index_column a = given->pairs.a, b = given->pairs.b;
-    if (!a.base || !b.base || given->selection.base)
-        return;
-    for (size_t k = first; k < end && k < first + BLOCK; k++) {
-        const uint32_t shape_a = narc_index_at(given->a.shape, narc_index_at(a, k));
-        const uint32_t shape_b = narc_index_at(given->b.shape, narc_index_at(b, k));
-        FETCH(&shapes->headers[shape_a]);
-        FETCH(&shapes->headers[shape_b]);
-        FETCH(&shapes->boxes[shape_a]);
-        FETCH(&shapes->boxes[shape_b]);
+/* Of which shapes records lie all over the memory: what a pair reads of such is asked of the cache ahead. Fewer are mostly in
+ * one of its levels, where waiting costs no more than asking. */
+enum { MANY_RECORDS = 1 << 17 };
+
+/* A side of the pairs of a call, from number `first` to before `end`: first what tells the shapes, then the headers, then the
+ * records of pieces. */
+enum fetching { FETCH_BODIES, FETCH_HEADERS, FETCH_PIECES };
+
+INLINE void fetch_range(const struct call *call, const struct sources *given, bool of_b, size_t first, size_t end,
+                        enum fetching what) {
+    const narc_shapes *const shapes = call->batch->shapes;
+    const narc_index_column selection = given->selection, body = of_b ? given->pairs.b : given->pairs.a;
+    const narc_index_column shape = of_b ? given->b.shape : given->a.shape;
+    for (size_t k = first; k < end && k < call->count; k++) {
+        const size_t number = selection.base ? narc_index_at(selection, call->first + k) : call->first + k;
+        const size_t own = body.base ? narc_index_at(body, number) : number;
+        if (what == FETCH_BODIES)
+            FETCH(narc_at(shape.base, shape.stride, own));
+        else if (what == FETCH_HEADERS)
+            FETCH(&shapes->headers[narc_index_at(shape, own)]);
+        else
+            fetch_piece(shapes, &shapes->headers[narc_index_at(shape, own)]);
     }
-    for (size_t k = first + BLOCK; k < end && k < first + 2 * BLOCK; k++) {
-        FETCH(narc_at(given->a.shape.base, given->a.shape.stride, narc_index_at(a, k)));
-        FETCH(narc_at(given->b.shape.base, given->b.shape.stride, narc_index_at(b, k)));
+}
+
+/* What pairs read that come after the block that begins with number `block`: of one block the records of pieces, of the
+ * next one the headers, of a third one the bodies; before the first block for that, too. */
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t block) {
+    const size_t pieces = block > 0 ? block + BLOCK : 0, headers = block > 0 ? block + 2 * BLOCK : 0;
+    HAS_EFFECT;
+    fetch_range(call, given, of_b, block > 0 ? block + 3 * BLOCK : 0, block + 4 * BLOCK, FETCH_BODIES);
+    fetch_range(call, given, of_b, headers, block + 3 * BLOCK, FETCH_HEADERS);
+    fetch_range(call, given, of_b, pieces, block + 2 * BLOCK, FETCH_PIECES);
+}
+
+/* Where the pairs of a call have pieces, and what became of them. */
+struct pieces_met {
+    bool many;          /* are there MANY_RECORDS? */
+    bool of_a, of_b;    /* has a pair of the last block one? Of the first block: the first pair */
+    int tried, dropped; /* so many may have been dropped, and were */
+};
+
+INLINE bool begins_with_piece(const struct call *call, narc_index_column body, narc_index_column shape) {
+    const size_t number = narc_pair_at(call->batch, call->first);
+    return narc_is_piece(
+        &call->batch->shapes->headers[narc_index_at(shape, body.base ? narc_index_at(body, number) : number)]);
+}
+
+INLINE struct pieces_met meet_pieces(const struct call *call, const struct sources *given) {
+    struct pieces_met met = {.many = call->batch->shapes->record_count >= MANY_RECORDS};
+    if (met.many && call->count > BLOCK) {
+        met.of_a = begins_with_piece(call, given->pairs.a, given->a.shape);
+        met.of_b = begins_with_piece(call, given->pairs.b, given->b.shape);
     }
+    return met;
+}
+
+/* Before a block of a call with pieces. */
+INLINE void begin_block_of_pieces(const struct call *call, const struct sources *given, struct pieces_met *met,
+                                  size_t block) {
+    if (met->many && (met->of_a || met->of_b))
+        fetch_ahead(call, given, met->of_b, block);
+    met->of_a = met->of_b = false;
+}
+
+/* To look which pairs can be dropped is worth it if one in four can. */
+INLINE vm drop_some(const struct call *call, dropping *drop, const struct pair_indices *indices, int k, vm open,
+                    const vf item[FIELDS], struct pieces_met *met) {
+    met->of_a = met->of_a || vm_any(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS));
+    met->of_b = met->of_b || vm_any(has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS));
+    if (!drop || !call->concave || !(met->of_a || met->of_b) ||
+        (met->tried >= 2 * BLOCK && 4 * met->dropped < met->tried))
+        return open;
+    const vm kept = drop(call, indices, k, open, item);
+    met->tried += COUNT_BITS(vm_bits(open));
+    met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
+    return kept;
 }
 
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
@@ -144,13 +207,16 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                                                                : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
+    struct pieces_met met = {false, false, false, 0, 0};
+    if (NARC_PIECES && !LIKELY(!call->pieces) && call->count > 0)
+        met = meet_pieces(call, &given);
     for (int s = 0; s < course->end; s++)
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(&given, call->first + block, n, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
-            fetch_ahead(&given, call->batch->shapes, call->first + block + BLOCK, call->first + call->count);
+            begin_block_of_pieces(call, &given, &met, block);
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
@@ -167,9 +233,9 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             const struct filter circles =
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
-            const vm open = course->settle(call, block + (size_t)k, &circles, item);
+            vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces))
-                fetch_pieces(call, circles.valid, item);
+                open = drop_some(call, course->drop, &indices, k, open, item, &met);
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||

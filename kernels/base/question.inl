@@ -8,6 +8,7 @@
 #ifndef NARC_BASE_QUESTION_INL
 #define NARC_BASE_QUESTION_INL
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -44,6 +45,9 @@ struct row_search {
 };
 
 extern const struct row_search NARC_NAMED(search);
+
+/* Do rows tell how far normals may turn? */
+INLINE bool has_reaches(const struct call *call) { return call->question->kind == MANIFOLD_ROWS; }
 
 /* Answers all pairs of a call that begin_rows() has made (sat/rows.c). */
 void NARC_NAMED(find_rows)(const struct call *call);

@@ -68,6 +68,11 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
     char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
     const ptrdiff_t stride = rows->out.stride;
     int32_t row[V_WIDTH];
+    if (BLOCK == 1) {
+        rows->known[0] = vm_any(keep) != 0;
+        place[0] = choose(rows->known[0], rows->out.base, rows->spare);
+        return;
+    }
     vi_store(row, vi_select(keep, pairs, vi_set(NARC_ROW_GROUP)));
     for (int lane = 0; lane < V_WIDTH; lane++) {
         place[lane] = choose(row[lane] < NARC_ROW_GROUP, base + row[lane] * stride, rows->spare);

@@ -138,7 +138,7 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
     struct rows *rows = call->rows;
     int32_t pair;
     memcpy(&pair, &queue->item[BOX_PAIR][last], sizeof pair);
-    if (pair < rows->done) {
+    if (BLOCK > 1 && pair < rows->done) {
         find_next_places(rows, keep, place);
     } else {
         rows->done = -1;

@@ -144,7 +144,7 @@ NOINLINE void write_gaps(const struct call *call, const struct queue *queue, int
     const vec2 n = v2_divide(gap->normal, gap->length);
     const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, gap->record_a, false);
     const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, gap->record_b, true);
-    const struct answer answer = find_answer(queue, k, gap->separation, n, &on_a, &on_b);
+    const struct answer answer = find_answer(queue, k, gap->separation, n, &on_a, &on_b, has_reaches(call));
     write_rows(call, place, find_numbers(call, get_bits(queue, PAIR, k)), &answer);
 }
 

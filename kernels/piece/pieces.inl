@@ -17,24 +17,12 @@
 /* Does a shape have one of these marks? */
 INLINE vm has_mark(vi info, unsigned marks) { return vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)(marks << 8)))); }
 
-/* Asks the cache for the arcs of pieces in the lanes `which`: they are read when pairs have waited in a queue. */
-INLINE void fetch_pieces(const struct call *call, vm which, const vf item[FIELDS]) {
-    for (int side = 0; side < 2; side++) {
-        const vi infos = get_item_bits(item, side ? INFO_B : INFO_A);
-        int32_t record[V_WIDTH], info[V_WIDTH];
-        uint32_t lanes = vm_bits(vm_and(which, has_mark(infos, NARC_PIECE_MARKS)));
-        if (!lanes)
-            continue;
-        vi_store(record, get_item_bits(item, side ? FIRST_RECORD_B : FIRST_RECORD_A));
-        vi_store(info, infos);
-        for (; lanes; lanes &= lanes - 1) {
-            const int lane = FIND_LOWEST(lanes);
-            const narc_record *const first = call->batch->shapes->records + (uint32_t)record[lane];
-            const narc_shape_header header = {.count = (uint8_t)info[lane], .first_arc = NARC_PIECE_RUN};
-            for (size_t k = 0; k < narc_count_records(&header); k += 2)
-                FETCH(first + k);
-        }
-    }
+/* Asks the cache for the records of a piece. */
+INLINE void fetch_piece(const narc_shapes *shapes, const narc_shape_header *header) {
+    const narc_record *const first = shapes->records + header->first_record;
+    if (narc_is_piece(header))
+        for (size_t k = 0; k < narc_count_records(header); k += 2)
+            FETCH(first + k);
 }
 
 /* narc_touches() (store.h) in lanes: may a shape touch with this feature, as a contact has it? Of a run only front ones

@@ -73,7 +73,7 @@ INLINE void load_polygon(const narc_record *records, struct ring ring, const str
     while (!p->full && p->most > 3 && !vm_any(vi_lt(vi_set(p->most - 1), ring.count)))
         p->most--;
     vi_store(index, ring.base);
-    UNROLL_PAIRS
+    UNROLL
     for (int j = 0; j < MAX_CORNERS; j += 2) {
         vf first[4], second[4], normals[4];
         if (j >= p->most) {

@@ -73,14 +73,15 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
     const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
     const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
     const vf flat = v_set(INFINITY);
+    const bool reaches = has_reaches(call);
     const struct answer answer = {.separation = c->separation,
                                   .normal = v2_rotate(to_world, n),
                                   .point = v2_rotate(to_world, v2_rotate(n, place)),
                                   .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
                                   .radius_a = v_select(edge_a, flat, on_a.radius),
                                   .radius_b = v_select(edge_b, flat, on_b.radius),
-                                  .reach_a = find_reach(&on_a, n, get_bits(queue, INFO_A, k), edge_a),
-                                  .reach_b = find_reach(&on_b, n, get_bits(queue, INFO_B, k), edge_b)};
+                                  .reach_a = reaches ? find_reach(&on_a, n, get_bits(queue, INFO_A, k), edge_a) : zero,
+                                  .reach_b = reaches ? find_reach(&on_b, n, get_bits(queue, INFO_B, k), edge_b) : zero};
     char *to[V_WIDTH];
     find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
     if (edges) {

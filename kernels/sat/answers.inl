@@ -62,7 +62,7 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
         const vec2 n = get_vec2(queue, NORMAL, k);
         const struct feature on_a = find_feature_at(records, get_ring_a(queue, k), record_a, &pose, n, false);
         const struct feature on_b = find_feature_at(records, get_ring_b(queue, k), record_b, &pose, n, true);
-        const struct answer answer = find_answer(queue, k, separation, n, &on_a, &on_b);
+        const struct answer answer = find_answer(queue, k, separation, n, &on_a, &on_b, has_reaches(call));
         const vm kept = keep_fronts(call, queue, k, vm_front(queue->count - k), separation, n,
                                     vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
         char *place[V_WIDTH];

@@ -59,16 +59,13 @@ INLINE void start_one(struct one *one, const narc_batch *batch, const narc_one_p
                                      v_set(at->scale_a),
                                      v_set(at->scale_b)};
     one->call.batch = batch;
-    one->call.first = at->place;
-    one->call.count = 1;
+    one->call.first = at->number;
     one->call.margin = at->margin;
-    one->call.margins.base = NULL;
     one->call.question = manifold ? &manifolds : &contacts;
     one->call.rows = &one->rows;
     one->call.bits = NULL;
-    one->rows.out = (narc_rows){.base = out};
+    one->rows.out.base = out;
     one->rows.dense = false;
-    one->rows.done = one->rows.listed = 0;
     one->rows.known[0] = 0;
     one->placement = place_bodies(&bodies, v_set(at->margin));
 }

@@ -20,6 +20,7 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "piece/beside.inl"
 #include "piece/concave_detour.inl"
 #include "piece/pieces.inl"
 #include "sat/answers.inl"
@@ -73,8 +74,10 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    search->stages[CLIMB],  polygons,
                                    search->stages[DECIDE], answer_rows,
                                    question->edges};
+    const bool drops = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 4; /* in few lanes a look costs what it saves */
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
+                                  .drop = drops ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,

@@ -521,7 +521,7 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
     batch.shapes = given->batch->shapes;
     batch.query = &all_rows;
     for (size_t k = 0; k < casts->count; k++) {
-        const narc_one_pair at = {.place = k,
+        const narc_one_pair at = {.number = (uint32_t)k,
                                   .shape_a = a->shape[k],
                                   .shape_b = b->shape[k],
                                   .x = casts->x_now[k],
@@ -541,12 +541,16 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
 
 size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end) {
     const narc_batch *const batch = given->batch;
-    struct cast_call call = {.given = given,
-                             .shapes = batch->shapes,
-                             .sources = copy_sources(batch),
-                             .layout = {find_pose_layout(batch->a), find_pose_layout(batch->b)},
-                             .own = narc_have_own_bodies(batch->pairs),
-                             .pieces = NARC_PIECES && batch->shapes->piece_count > 0};
+    const bool few = end - first <= NARC_FEW; /* then looking at the layout takes longer than it saves */
+    struct cast_call call;
+    call.given = given;
+    call.shapes = batch->shapes;
+    call.sources = copy_sources(batch);
+    call.layout[0] = few ? POSE_COLUMNS : find_pose_layout(batch->a);
+    call.layout[1] = few ? POSE_COLUMNS : find_pose_layout(batch->b);
+    call.own = narc_have_own_bodies(batch->pairs);
+    call.pieces = NARC_PIECES && batch->shapes->piece_count > 0;
+    call.skipped = 0;
     narc_casts casts;
     casts.count = 0;
     casts.front_only = given->front_only;

@@ -280,10 +280,16 @@ INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, 
     return true;
 }
 
-/* Fills a row, but for the ray and the body. False if the meeting is beyond `limit` of the ray's motion. */
-INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
-                        narc_ray_hit *out) {
-    const struct entry *const entry = &met->entry;
+/* What a row says of the feature. */
+INLINE void put_feature(const struct body_frame *frame, const struct entry *entry, narc_ray_hit *out) {
+    const bool is_edge = entry->on_edge && is_edge_before(frame, entry->arc);
+    out->feature = (uint16_t)find_feature_number(frame->header, entry->arc, is_edge);
+    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry->arc].arc.radius * frame->scale);
+}
+
+/* Fills a row, but for the ray, the body and a feature. False if the meeting is beyond `limit` of the ray's motion. */
+INLINE bool put_place(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
+                      narc_ray_hit *out) {
     const place foot = met->foot, v = met->direction;
     if (met->is_start) {
         out->fraction = 0;
@@ -300,15 +306,22 @@ INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, c
     out->fraction = (float)fraction;
     if (out->fraction > limit)
         return false;
-    const bool is_edge = entry->on_edge && is_edge_before(frame, entry->arc);
     const place point = turn_to_world(frame, (place){foot.x + along * v.x, foot.y + along * v.y});
-    const place normal = turn_to_world(frame, entry->normal);
-    out->feature = (uint16_t)find_feature_number(frame->header, entry->arc, is_edge);
+    const place normal = turn_to_world(frame, met->entry.normal);
     out->normal_x = (float)normal.x;
     out->normal_y = (float)normal.y;
     out->point_x = (float)(point.x * frame->scale);
     out->point_y = (float)(point.y * frame->scale);
-    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry->arc].arc.radius * frame->scale);
+    return true;
+}
+
+/* All but the ray and the body. */
+INLINE bool put_meeting(const struct body_frame *frame, const struct ray *ray, const struct meeting *met, float limit,
+                        narc_ray_hit *out) {
+    if (!put_place(frame, ray, met, limit, out))
+        return false;
+    if (!met->is_start)
+        put_feature(frame, &met->entry, out);
     return true;
 }
 

@@ -43,50 +43,51 @@ struct entry_lanes {
     int32_t arc[V_WIDTH];
 };
 
-/* A junction: does its normal n face the ray, and v x n. */
-struct junction_lanes {
-    vm faces;
-    vf turn;
-};
-
-INLINE struct junction_lanes find_junction(vec2 v, const float *normal) {
-    const vec2 n = {v_set(normal[0]), v_set(normal[1])};
-    return (struct junction_lanes){v_lt(v2_dot(v, n), v_set(0)), v2_cross(v, n)};
+/* s of an arc's centre. */
+INLINE vf find_height(const narc_stored_arc *arc, vec2 o, vec2 v) {
+    return v2_cross(v, v2_sub((vec2){v_set(arc->center_x), v_set(arc->center_y)}, o));
 }
+
+/* v x n of the normal at a junction. */
+INLINE vf find_turn(vec2 v, const float *normal) { return v2_cross(v, (vec2){v_set(normal[0]), v_set(normal[1])}); }
 
 INLINE void find_entry_lanes(const struct body_frame *frame, vec2 o, vec2 v, float near, struct entry_lanes *out) {
     const int count = frame->header->count;
     const narc_stored_arc *arc = &frame->arcs[count - 1].arc;
-    const vf zero = v_set(0);
-    struct junction_lanes start, end = find_junction(v, &arc->end_x);
-    const vf last = v2_cross(v, v2_sub((vec2){v_set(arc->center_x), v_set(arc->center_y)}, o));
-    vm left = v_le(zero, v_add(last, v_mul(v_set(arc->radius), end.turn)));
+    const vf zero = v_set(0),
+             last = v_add(find_height(arc, o, v), v_mul(v_set(arc->radius), find_turn(v, &arc->end_x)));
+    vm start_faces, end_faces = v_lt(v2_dot(v, (vec2){v_set(arc->end_x), v_set(arc->end_y)}), zero);
+    vm left = v_le(zero, last);
     vf nearest = v_set(INFINITY);
     vi first = vi_set(0);
     out->found = out->on_edge = v_lt(zero, zero);
     for (int k = 0; k < count; k++) {
         arc = &frame->arcs[k].arc;
-        start = end;
-        end = find_junction(v, &arc->end_x);
-        const vf h = v2_cross(v, v2_sub((vec2){v_set(arc->center_x), v_set(arc->center_y)}, o));
-        const vf radius = v_set(arc->radius);
-        const vf s_start = v_add(h, v_mul(radius, start.turn)), s_end = v_add(h, v_mul(radius, end.turn));
-        vm enters = vm_and_not(vm_and(start.faces, left), v_le(zero, s_start));
-        out->on_edge = vm_or(out->on_edge, vm_and_not(enters, out->found));
+        start_faces = end_faces;
+        end_faces = v_lt(v2_dot(v, (vec2){v_set(arc->end_x), v_set(arc->end_y)}), zero);
+        const vf h = find_height(arc, o, v), radius = v_set(arc->radius);
+        vf start = h, end = h; /* of a corner */
+        vm enters = v_lt(zero, zero);
         if (arc->radius > 0) {
+            const vf turn = find_turn(v, &arc->start_x);
             const bool is_wide = arc->start_x * arc->end_x + arc->start_y * arc->end_y < 0;
             const vm faces =
-                is_wide ? vm_or(vm_xor(start.faces, end.faces), v_lt(zero, start.turn)) : vm_or(start.faces, end.faces);
-            const vf from = v_select(start.faces, s_start, v_add(h, radius));
-            const vf to = v_select(end.faces, s_end, v_sub(h, radius));
+                is_wide ? vm_or(vm_xor(start_faces, end_faces), v_lt(zero, turn)) : vm_or(start_faces, end_faces);
+            start = v_add(h, v_mul(radius, turn));
+            end = v_add(h, v_mul(radius, find_turn(v, &arc->end_x)));
+            const vf from = v_select(start_faces, start, v_add(h, radius));
+            const vf to = v_select(end_faces, end, v_sub(h, radius));
             nearest = v_min(nearest, v_min(v_abs(from), v_abs(to)));
-            enters = vm_or(enters, vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero))));
+            enters = vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)));
         } else {
             nearest = v_min(nearest, v_abs(h));
         }
+        const vm edge = vm_and_not(vm_and(start_faces, left), v_le(zero, start));
+        out->on_edge = vm_or(out->on_edge, vm_and_not(edge, out->found));
+        enters = vm_or(enters, edge);
         first = vi_select(vm_and_not(enters, out->found), vi_set(k), first);
         out->found = vm_or(out->found, enters);
-        left = v_le(zero, s_end);
+        left = v_le(zero, end);
     }
     out->near = v_le(nearest, v_set(near));
     vi_store(out->arc, first);

@@ -139,7 +139,7 @@ struct read_rays {
     double length[READ]; /* 0: it has no answer */
     double inverse_length[READ];
     double base[READ]; /* where it meets the scene; -1: it never does */
-    float fraction[READ], room[READ];
+    float fraction[READ], room[READ], limit[READ];
     struct read_axis x, y;
 };
 
@@ -152,6 +152,12 @@ INLINE vd clip(vd a, double limit) { return d_most(d_set(-limit), d_min(d_set(li
 /* A ray meets a body that it passes by TOUCH, and what rounding adds, perhaps beside its box. For each unit of the
  * extent's ratio to the bounding radius, which is less than 1.42 times the scene's largest coordinate. */
 #define TOUCH_ROOM 0x1p-19
+
+/* As set_limit() has it. */
+INLINE vd find_limit(vd fraction, vd length, vd base, vd room) {
+    const vd distance = (fraction * d_set(1 + 0x1p-22) + d_set(0x1p-149)) * length - base;
+    return clip(distance + d_abs(distance) * d_set((double)ROOM) + room, (double)FLT_MAX);
+}
 
 /* Cuts from .. to down to where a line lies between two sides. NaN on a side that it lies in. */
 INLINE void cut_stretch(vd low, vd high, vd origin, vd inverse, vd *from, vd *to) {
@@ -194,8 +200,8 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         const vd motion_x = get_lanes(out->direction_x + k, single), motion_y = get_lanes(out->direction_y + k, single);
         const vd length = d_sqrt(motion_x * motion_x + motion_y * motion_y), inverse_length = one / length;
         const vl is_finite = d_le(d_abs(x), largest) & d_le(d_abs(y), largest) & d_le(length, largest);
-        const vl has_answer = is_finite & d_lt(zero, length) &
-                              d_le(zero, single ? d_set((double)*out->fraction) : d_of_floats(out->fraction + k));
+        const vd fraction = single ? d_set((double)*out->fraction) : d_of_floats(out->fraction + k);
+        const vl has_answer = is_finite & d_lt(zero, length) & d_le(zero, fraction);
         const vd direction_x = motion_x * inverse_length, direction_y = motion_y * inverse_length;
         const vd inverse_x = one / direction_x, inverse_y = one / direction_y;
         const vd touch = d_set(least_touch) + (d_abs(x) + d_abs(y)) * d_set(0x1p-48);
@@ -211,14 +217,19 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         d_store(out->inverse_length + k, inverse_length);
         d_store(out->base + k, d_select(d_le(zero, to), base, -one));
         d_put_floats(out->room + k, clip(room, (double)FLT_MAX));
+        d_put_floats(out->limit + k, find_limit(fraction, length, base, room));
         put_axis(start_x, room, inverse_x, k, &out->x);
         put_axis(start_y, room, inverse_y, k, &out->y);
     }
 }
 
-INLINE struct axis get_axis(const struct read_axis *axis, size_t k, int min, int max) {
+/* Planes of greatest coordinates lie so many floats behind those of the least. */
+enum { PLANES_APART = PLANE(max_x) - PLANE(min_x) };
+
+INLINE struct axis get_axis(const struct read_axis *axis, size_t k, int min) {
     const bool backwards = axis->inverse[k] < 0;
-    return (struct axis){backwards,           backwards ? max : min, backwards ? min : max, axis->first_start[k],
+    const int first = min + PLANES_APART * backwards;
+    return (struct axis){backwards,           first,           2 * min + PLANES_APART - first, axis->first_start[k],
                          axis->last_start[k], axis->inverse[k]};
 }
 
@@ -229,14 +240,15 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
                           {rays->direction_x[k], rays->direction_y[k]},
                           rays->length[k],
                           rays->inverse_length[k]};
-    w->x = get_axis(&rays->x, k, PLANE(min_x), PLANE(max_x));
-    w->y = get_axis(&rays->y, k, PLANE(min_y), PLANE(max_y));
+    w->x = get_axis(&rays->x, k, PLANE(min_x));
+    w->y = get_axis(&rays->y, k, PLANE(min_y));
     w->base = rays->base[k];
     w->room = rays->room[k];
     w->chosen = read_chosen(&batch->options->search, rows->ray);
     w->found = 0;
     w->rows = rows;
-    set_limit(w, rays->fraction[k]);
+    w->limit = rays->limit[k];
+    w->limit_fraction = rays->fraction[k];
 }
 
 /* ------------------------------------------------------------------------------------------------ a node */
@@ -440,6 +452,8 @@ NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
 
 /* ------------------------------------------------------------------------------------------------ rays together */
 
+INLINE bool goes_in_lanes(const struct bundle *b) { return IN_LANES && b->in_lanes; }
+
 INLINE void begin_lanes(struct bundle *b) {
     struct nearest *const nearest = &b->nearest;
     nearest->waiting = 0;
@@ -475,7 +489,7 @@ static void begin_bundle(const narc_ray_batch *batch, struct bundle *b) {
     }
     b->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
                   !search->mask.base;
-    if (b->in_lanes)
+    if (goes_in_lanes(b))
         begin_lanes(b);
     b->left_x = (float)b->walks[left].ray.direction.x;
     b->left_y = (float)b->walks[left].ray.direction.y;
@@ -535,19 +549,22 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
     return nearest;
 }
 
-/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body. */
+/* Writes what waits of these rays to their rows. Neighbours mostly hit the same body, often by the same feature. */
 NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t rays) {
     struct nearest *const nearest = &b->nearest;
     double(*const from)[LANES] = nearest->met;
+    const narc_ray_hit *last = NULL;
     struct body_frame frame = {.header = NULL};
-    int32_t loaded = INT32_MAX;
+    int32_t loaded = INT32_MAX, feature = 0;
     for (rays &= nearest->waiting; rays; rays &= rays - 1) {
         const unsigned k = (unsigned)FIND_LOWEST(rays);
         struct walk *const w = &b->walks[k];
         const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
         if (nearest->body[k] != loaded)
             load_body_frame(batch->shapes, batch->bodies, body, &frame);
+        const bool is_same = last && nearest->body[k] == loaded && nearest->feature[k] == feature;
         loaded = nearest->body[k];
+        feature = nearest->feature[k];
         const struct meeting met = {.foot = {from[0][k], from[1][k]},
                                     .direction = {from[2][k], from[3][k]},
                                     .entry = {.normal = {from[4][k], from[5][k]},
@@ -555,7 +572,14 @@ NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t r
                                               .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
                                     .ahead = from[6][k],
                                     .distance = from[7][k]};
-        put_meeting(&frame, &w->ray, &met, INFINITY, w->rows);
+        put_place(&frame, &w->ray, &met, INFINITY, w->rows);
+        if (is_same) {
+            w->rows->feature = last->feature;
+            w->rows->radius = last->radius;
+        } else {
+            put_feature(&frame, &met.entry, w->rows);
+        }
+        last = w->rows;
         w->rows->body = body;
         w->rows->count = 1;
         w->found = 1;
@@ -599,10 +623,8 @@ INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uin
             UNROLL
             for (int i = 0; i < 8; i++)
                 select_doubles(m, nearest->met[i] + k + l, values[i]);
-            const vd distance =
-                (d_of_floats(lanes + l) * d_set(1 + 0x1p-22) + d_set(0x1p-149)) * d_load(nearest->length + k + l);
-            const vd limit = distance + d_abs(distance) * d_set((double)ROOM) + d_set((double)b->walks[0].room);
-            d_put_floats(limits + l, clip(limit, (double)FLT_MAX));
+            d_put_floats(limits + l, find_limit(d_of_floats(lanes + l), d_load(nearest->length + k + l), d_set(0),
+                                                d_set((double)b->walks[0].room)));
         }
         select_floats(hits, b->limits + k, v_load(limits));
     }
@@ -633,17 +655,17 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
         struct body_frame frame;
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
             continue;
-        if (b->in_lanes && !narc_is_piece(frame.header))
+        if (goes_in_lanes(b) && !narc_is_piece(frame.header))
             rays = cast_in_lanes(batch, b, &frame, index->body[NARC_NODE_SLOTS * leaf + slot], rays);
         for (; rays; rays &= rays - 1) {
             const unsigned k = (unsigned)FIND_LOWEST(rays);
             struct walk *const w = &b->walks[k];
-            if (b->in_lanes)
+            if (goes_in_lanes(b))
                 put_hits(batch, b, 1u << k);
             if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
                 cast_at_body(batch, w, &frame, index->body[NARC_NODE_SLOTS * leaf + slot]);
             b->limits[k] = w->limit;
-            if (b->in_lanes && w->found > 0) {
+            if (goes_in_lanes(b) && w->found > 0) {
                 b->nearest.fraction[k] = w->rows->fraction;
                 b->nearest.body[k] = (int32_t)(w->rows->body ^ 0x80000000u);
             }
@@ -673,7 +695,7 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
             visit_leaf_together(batch, b, node, slots, d.near[0]);
         do {
             if (!take_slot(&d, b->limit, &level, &slot, &is_near)) {
-                if (b->in_lanes)
+                if (goes_in_lanes(b))
                     put_hits(batch, b, UINT32_MAX);
                 return;
             }
