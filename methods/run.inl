@@ -21,7 +21,7 @@
 /* Writes the contacts of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void store_contacts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                            const struct feature *on_a, const struct feature *on_b) {
-    const struct answer answer = find_answer(queue, k, separation, n, on_a, on_b);
+    const struct answer answer = find_answer(queue, k, separation, n, on_a, on_b, true);
     const vi pairs = get_bits(queue, PAIR, k);
     char *place[V_WIDTH];
     find_places(call, pairs, keep, place);
