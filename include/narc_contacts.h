@@ -78,9 +78,10 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *                       says of these bodies; those of pairs of which neither moves (narc_pair_filter), what it said
  *                       when one did. Above 0: a row with an edge, or of ground, is kept while its points have
  *                       moved less than that against each other since it was asked for, turns counted by the smaller
- *                       body's diameter: features and the normal in A stay, points and separations follow the
- *                       bodies. So a separation is off by less than `recycling`, and a contact that should have come
- *                       at another place of the two may come late by as much
+ *                       body's diameter, and the first of them is within the margin: features and the normal in A
+ *                       stay, points and separations follow the bodies. So a separation is off by less than
+ *                       `recycling`, and a contact that should have come at another place of the two may come late by
+ *                       as much
  *   motion_x, motion_y  world axes: what each body moves in this step; pairs that come close on the way are there, too
  *   reach               at least 0: how far beyond that a body may reach, such as by rotation
  *   ahead               at least 0: how much further than the margin contacts of a body are told, a fast one's; of two

@@ -194,6 +194,7 @@ enum { NARC_ORDER_BODIES = 128 };
  * those of a mover follow each other, its row is the one with the number of A, and says whom it hits first; all such
  * rows are misses before. */
 typedef struct narc_cast_batch {
+    const struct narc_kernel_table *kernels; /* in use; few casts go to others, which ask its pair kernel */
     const narc_batch *batch;
     narc_motions motions[2];
     float target, tolerance;

@@ -129,7 +129,7 @@ narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, si
 narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
     enum {
         BYTES = sizeof(narc_pose_bits) + sizeof(narc_motion_bits) + 2 * sizeof(narc_box) + sizeof(narc_body_filter) +
-                2 * sizeof(uint32_t) + 5
+                2 * sizeof(uint32_t) + sizeof(float) + 5
     };
     if (broad->body_memory && count <= broad->body_capacity)
         return NARC_OK;
@@ -140,6 +140,7 @@ narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
     broad->known.poses = take(&at, n, sizeof *broad->known.poses);
     broad->known.count = 0;
     broad->known.motions = take(&at, n, sizeof *broad->known.motions);
+    broad->known.slack = take(&at, n, sizeof *broad->known.slack);
     broad->known.moved = take(&at, n, 1);
     broad->known.changed = take(&at, n, 1);
     broad->boxes_now = take(&at, n, sizeof *broad->boxes_now);

@@ -75,6 +75,7 @@ typedef struct narc_known_poses {
     narc_pose_bits *poses;
     narc_motion_bits *motions;   /* if there are columns of any */
     size_t count;                /* of the first bodies */
+    float *slack;                /* so far a body may move and be in its box still: boxes_now are larger by this at first */
     uint8_t *moved;              /* 1: the box may be another one than the kept box was made from */
     uint8_t *changed;            /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
     narc_precision precision;    /* of positions */

@@ -41,6 +41,15 @@
 #define UNROLL_FEW _Pragma("GCC unroll 4")
 #endif
 
+/* The same, but not for one pair at a time, of which such a loop ends early. */
+#ifndef NARC_ONE_PAIR
+#define UNROLL_PAIRS UNROLL
+#elif defined(__clang__)
+#define UNROLL_PAIRS _Pragma("nounroll")
+#else
+#define UNROLL_PAIRS _Pragma("GCC unroll 1")
+#endif
+
 #define LIKELY(condition) __builtin_expect(condition, 1)
 #define FETCH(address)    __builtin_prefetch(address)
 #define TYPE_OF(value)    __typeof__(value)

@@ -27,6 +27,7 @@ typedef struct box_job {
     narc_box_batch batch;
     const narc_kernel_table *kernels;
     const narc_known_poses *known;
+    float slack;                    /* known.slack of a body whose box is new */
     narc_float_column reach, ahead; /* known, too */
     narc_index_column run;
     narc_index_column moved; /* the bodies, where they are listed */
@@ -113,6 +114,55 @@ static narc_motion_bits get_motion_bits(const box_job *job, size_t k) {
     return bits;
 }
 
+static double position_of(narc_precision precision, uint64_t bits) {
+    double position;
+    float single;
+    const uint32_t low = (uint32_t)bits;
+    if (precision == NARC_FLOAT64) {
+        memcpy(&position, &bits, sizeof position);
+        return position;
+    }
+    memcpy(&single, &low, sizeof single);
+    return (double)single;
+}
+
+static bool is_unit(float cosine, float sine) {
+    return fabsf(cosine * cosine + sine * sine - 1) < (float)NARC_ROTATION_TOLERANCE / 2;
+}
+
+/* As far as this, or less, all points of a body have gone from one pose to another; NaN or infinite where nothing is known.
+ * Scale and shape are the same. */
+static float find_way(const box_job *job, const narc_pose_bits *from, const narc_pose_bits *to, size_t body) {
+    const narc_bodies *const bodies = job->batch.bodies;
+    const narc_shape_header *const shape = &job->batch.shapes->headers[narc_index_at(bodies->shape, body)];
+    const float extent = fabsf(shape->bound_x) + fabsf(shape->bound_y) + shape->bound_radius;
+    const narc_precision precision = bodies->x.precision;
+    const double x = position_of(precision, to->word[0]) - position_of(precision, from->word[0]);
+    const double y = position_of(precision, to->word[1]) - position_of(precision, from->word[1]);
+    float then[2], now[2];
+    memcpy(then, &from->word[2], sizeof then);
+    memcpy(now, &to->word[2], sizeof now);
+    const float turn = fabsf(now[0] - then[0]) + fabsf(now[1] - then[1]);
+    const float way = (float)(fabs(x) + fabs(y)) + turn * extent * narc_float_or(bodies->scale, body, 1);
+    return is_unit(then[0], then[1]) && is_unit(now[0], now[1]) ? way * (1 + 0x1p-6f) : INFINITY;
+}
+
+/* Is a body within its box still, as it has hardly moved since this was computed? What is left of its slack is less then. */
+static bool stays_in_box(const box_job *job, const narc_pose_bits *from, const narc_pose_bits *to, size_t body) {
+    float *const slack = &job->known->slack[body];
+    const float left = job->slack > 0 ? *slack - find_way(job, from, to, body) : -1;
+    if (!(left >= 0))
+        return false;
+    *slack = left - left * 0x1p-22f; /* a way that is lost in rounding is one, too */
+    return true;
+}
+
+/* What a body with this box may move: none, if it has none or is so far away that rounding counts. */
+static float find_own_slack(const narc_box *box, float slack) {
+    const float far = fmaxf(fmaxf(fabsf(box->min_x), fabsf(box->max_x)), fmaxf(fabsf(box->min_y), fabsf(box->max_y)));
+    return far < slack * 0x1p18f ? slack - far * 0x1p-20f : -1;
+}
+
 /* Lists those of bodies first .. end - 1, or of the listed ones, whose poses or motions are not the known ones, which they
  * are then. */
 static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t *list) {
@@ -145,11 +195,14 @@ static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t 
         }
         if (same_pose && same_motion)
             continue;
+        const bool stays = same_shape && stays_in_box(job, &known.poses[k], &now, k);
         known.poses[k] = now;
         if (!same_shape)
             known.changed[k] = NARC_ALL_CHANGED;
         else if (!same_pose)
             known.changed[k] |= NARC_CHANGED;
+        if (stays)
+            continue;
         known.moved[k] |= job->out_boxes != NULL;
         list[count++] = (uint32_t)k;
     }
@@ -169,6 +222,8 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
         return;
     if (count > 0) /* mostly nothing moves */
         skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
+    for (size_t i = 0; i < count && job->slack > 0; i++)
+        job->known->slack[list[i]] = find_own_slack(&job->out_boxes[list[i]], job->slack);
     for (size_t i = 0; i < count && (job->reach.base || job->ahead.base); i++) {
         const float ahead = narc_float_or(job->ahead, list[i], 0), reach = narc_float_or(job->reach, list[i], 0);
         job->out_boxes[list[i]] = add_reach(job->out_boxes[list[i]], ahead >= 0 && ahead <= FLT_MAX ? reach : -1);
@@ -236,30 +291,28 @@ static narc_status check_moved(const narc_shapes *shapes, const narc_step *step,
     return NARC_OK;
 }
 
-static bool has_motions(const narc_step *step) {
-    return step->motion_x.base || step->motion_y.base || step->reach.base || step->ahead.base || step->run.base;
-}
-
 bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step) {
     const narc_known_poses *const known = &broad->known;
     return known->precision == step->bodies->x.precision && known->shapes == shapes &&
            known->history == shapes->history && known->margin == step->margin && known->skin == step->skin &&
-           known->has_motions == has_motions(step) && known->has_boxes == !step->pairs;
+           known->has_motions == narc_has_motions(step) && known->has_boxes == !step->pairs;
 }
 
 narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
                                     bool listed, narc_error *error) {
     const narc_bodies *const bodies = step->bodies;
-    const narc_box_options box_options = {.margin = step->margin * 0.5f,
+    const float slack = narc_find_slack(step->skin, narc_has_motions(step));
+    const narc_box_options box_options = {.margin = step->margin * 0.5f + slack,
                                           .motion_x = step->motion_x,
                                           .motion_y = step->motion_y,
                                           .workers = step->workers};
     narc_known_poses *const known = &broad->known;
     if (!narc_are_poses_known(broad, shapes, step))
         narc_forget_poses(broad);
-    known->has_motions = has_motions(step);
+    known->has_motions = narc_has_motions(step);
     known->has_boxes = !step->pairs;
     box_job job = {.known = known,
+                   .slack = step->pairs ? 0 : slack,
                    .reach = step->reach,
                    .ahead = step->ahead,
                    .run = step->run,

@@ -85,8 +85,19 @@ static inline narc_box narc_empty_box(void) { return (narc_box){INFINITY, INFINI
 /* A box that is larger on each side by at least `by`, hardly more, and finite. */
 narc_box narc_widen_box(narc_box box, float by);
 
-/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, and without a look at them if those that
- * have are `listed`. Errors as narc_compute_boxes() has them. */
+static inline bool narc_has_motions(const narc_step *step) {
+    return step->motion_x.base || step->motion_y.base || step->reach.base || step->ahead.base || step->run.base;
+}
+
+/* What of the skin lies around broad->boxes_now, so that bodies that tremble keep theirs; kept boxes have the rest. */
+static inline float narc_find_slack(float skin, bool has_motions) { return has_motions ? 0 : skin / 16; }
+
+static inline float narc_find_kept_skin(const narc_step *step) {
+    return step->skin - narc_find_slack(step->skin, narc_has_motions(step));
+}
+
+/* Computes broad->boxes_now, larger by the slack. Bodies that have hardly moved keep theirs, and without a look at them if those
+ * that have moved are `listed`. Errors as narc_compute_boxes() has them. */
 narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
                                     bool listed, narc_error *error);
 

@@ -105,7 +105,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
     const narc_pair_filter filter = filter_in_use(u); /* a copy, which nothing that is written could change */
-    const float half = u->step->skin / 2;
+    const float half = narc_find_kept_skin(u->step) / 2;
     bool left = false, rest = false;
     size_t fresh_count = 0, k = first;
     (void)part;
@@ -317,7 +317,7 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         const bool has = narc_is_box(&box);
         skipped += !has && !broad->is_given;
         skipped -= !whole && !has_kept_box(broad, k) && !broad->is_given;
-        broad->kept_boxes[k] = has ? narc_widen_box(box, u->step->skin) : nowhere;
+        broad->kept_boxes[k] = has ? narc_widen_box(box, narc_find_kept_skin(u->step)) : nowhere;
         broad->known.moved[k] = 0;
         if (broad->has_filter) {
             broad->filters[k] = filter_of(u, k);

@@ -53,7 +53,7 @@ static float find_room(const narc_contact_step *s, uint32_t body) {
 /* What is looked at of each pair, in one place: the loop over all pairs is as long as much of what follows. */
 typedef struct pair_view {
     const uint32_t *a, *b, *previous, *order; /* previous NULL: the list is the last one */
-    const uint8_t *marks, *flags, *changed;
+    const uint8_t *marks, *flags, *state, *changed;
     const narc_box *boxes;
     const float *room;
     float margin_room; /* INFINITY: no pair is known to have no row by its boxes */
@@ -67,6 +67,7 @@ static pair_view view_pairs(const narc_contact_step *s) {
                        .order = c->order,
                        .marks = s->list->marks,
                        .flags = c->flags,
+                       .state = c->state,
                        .changed = c->broad->known.changed,
                        .boxes = c->broad->boxes_now,
                        .room = c->room,
@@ -152,10 +153,10 @@ static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t f
             c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, are_at_rest(s, a, v->b[k]) ? NARC_REST : what};
 }
 
-/* The first pair from `k` on with a body that has changed. Four at a time, as most of them have none. */
-static size_t find_changed(const narc_pairs *pairs, const uint8_t *changed, size_t k) {
-    const uint32_t *const a = pairs->a.base, *const b = pairs->b.base;
-    const size_t count = pairs->count;
+/* The first slot from `k` on with a body that has changed. Four at a time, as most of them have none. */
+static size_t find_changed(const pair_view *v, size_t k, size_t count) {
+    const uint32_t *const a = v->a, *const b = v->b;
+    const uint8_t *const changed = v->changed;
     while (count - k >= 4 && !(changed[a[k]] | changed[b[k]] | changed[a[k + 1]] | changed[b[k + 1]] |
                                changed[a[k + 2]] | changed[b[k + 2]] | changed[a[k + 3]] | changed[b[k + 3]]))
         k += 4;
@@ -290,6 +291,9 @@ NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) 
         c->sensors_asked[c->sensor_count++] = slot;
 }
 
+/* Marks of slots that are no plain pair of two bodies that may move. */
+enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
+
 /* What of its flags a slot keeps. */
 static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
                                 [NARC_FOLLOW] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
@@ -303,70 +307,117 @@ static inline unsigned find_flags(unsigned was, bool reshaped, unsigned marks, u
            (what == NARC_REST ? NARC_SLOT_STALE : 0);
 }
 
+/* The lists that slots are sorted into. */
+typedef struct slot_lists {
+    uint32_t *asked, *known, *candidates; /* behind the last of each */
+} slot_lists;
+
+/* Finds out what is to be done with a slot, the bodies of which have changed in the ways `found`. What differs from slot to
+ * slot as chance has it is without a branch. */
+INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool special, bool more,
+                      unsigned follow, uint8_t *all_flags, slot_lists *to) {
+    const uint32_t slot = (uint32_t)k;
+    const unsigned changed = found & NARC_ALL_CHANGED, was = all_flags[k], marks = v->marks[k];
+    const unsigned stale = find_stale(was, marks);
+    if (!(changed | stale))
+        return;
+    unsigned what = NARC_ASK;
+    if (special || marks & SPECIAL)
+        what = find_special(s, v, slot, changed | stale);
+    const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
+    if (what == NARC_ASK) { /* one that touches is better asked */
+        const unsigned follows = !stale & !reshaped & ((was & follow) != 0);
+        what = !touches && are_apart(v, v->a[k], v->b[k]) ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK;
+    }
+    if (what == NARC_NOTHING)
+        return;
+    const unsigned now = find_flags(was, reshaped, marks, what), asks = what == NARC_ASK;
+    const unsigned entry = asks & (now / NARC_SLOT_ENTRY);
+    all_flags[k] = (uint8_t)now;
+    *to->asked = *to->known = *to->candidates = slot;
+    to->asked += asks - entry;
+    to->known += entry;
+    to->candidates += (what == NARC_FOLLOW) & touches;
+    if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
+        do_more(s, slot, what);
+}
+
+/* In a scene at rest so many slots are looked at at a time, byte by byte, many of which a vector holds. */
+enum { CHUNK = 64 };
+
+/* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: they touch, are as they were,
+ * and their rows may follow if a body has moved. Puts the numbers of all others, less `first`, into `other`, and what has
+ * changed of both bodies into `found`; returns how many these are. */
+static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
+                             uint8_t other[CHUNK], uint32_t **candidates) {
+    const uint32_t *const a = v->a + first, *const b = v->b + first;
+    const uint8_t *const changed = v->changed;
+    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, state[CHUNK] = {0}, now[CHUNK] = {0}, odd[CHUNK];
+    uint32_t *to = *candidates;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        now[i] = changed[a[i]] | changed[b[i]];
+    memcpy(flags, v->flags + first, n);
+    memcpy(marks, v->marks + first, n);
+    memcpy(state, v->state + first, n);
+    for (size_t i = 0; i < CHUNK; i++)
+        odd[i] = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
+                 (marks[i] & SPECIAL) | (~state[i] & NARC_TOUCHING) | (now[i] & NARC_RESHAPED);
+    for (size_t i = 0; i < n; i++) {
+        const unsigned stirs = now[i] & NARC_ALL_CHANGED;
+        *to = (uint32_t)(first + i);
+        to += (odd[i] == 0) & (stirs != 0);
+        other[count] = (uint8_t)i;
+        count += (odd[i] != 0) & (!kept | (now[i] != 0));
+    }
+    memcpy(found, now, sizeof now);
+    *candidates = to;
+    return count;
+}
+
 /* Slots are gone through in their own order, in which all that is kept of them lies, and not in that of pairs. What the loop
- * uses lies in variables of its own, as whatever is written in bytes might be any of it; what differs from slot to slot as
- * chance has it is without a branch. */
+ * uses lies in variables of its own, as whatever is written in bytes might be any of it. */
 void narc_sort_pairs(const narc_contact_step *s) {
-    enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
     narc_contacts *const c = s->contacts;
     const bool ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
     const bool kept = (is_list_kept(s) && c->marks_known) || (!s->list->kept && mark_new_slots(s));
     c->lists_known = kept;
     if (!kept)
         mark_slots(s);
-    pair_view v = view_pairs(s);
-    v.a = c->a;
-    v.b = c->b;
-    v.marks = c->marks;
-    const narc_pairs pairs = narc_view_slots(c);
-    const uint8_t *const state = c->state;
+    pair_view view = view_pairs(s);
+    view.a = c->a;
+    view.b = c->b;
+    view.marks = c->marks;
+    const pair_view v = view;
     uint8_t *const flags = c->flags;
-    uint32_t *asked = c->asked, *known = c->known, *candidates = c->candidates;
+    slot_lists to = {c->asked, c->known, c->candidates};
     const unsigned follow = s->step->recycling > 0 ? NARC_SLOT_KEPT : 0;
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
+    const bool rests = follow && !ground && !more && c->candidate_count > count / 4; /* as in the last step */
     c->sensor_count = 0;
-    for (size_t k = 0; k < count; k++) {
-        const uint32_t a = v.a[k], b = v.b[k], slot = (uint32_t)k;
-        const unsigned found = v.changed[a] | v.changed[b], changed = found & NARC_ALL_CHANGED;
-        const unsigned was = flags[k], marks = v.marks[k];
-        if (kept && !found) {
-            k = find_changed(&pairs, v.changed, k) - 1;
-            continue;
-        }
-        const unsigned stale = find_stale(was, marks);
-        if (!(changed | stale))
-            continue;
-        unsigned what = NARC_ASK;
-        if (ground || marks & SPECIAL)
-            what = find_special(s, &v, slot, changed | stale);
-        const bool touches = state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
-        if (what == NARC_ASK) {
-            /* one that touches is better asked */
-            const bool looks = !touches || was & follow;
-            const unsigned follows = !stale & !reshaped & ((was & follow) != 0);
-            what = looks && are_apart(&v, a, b) ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK;
-        }
-        if (what == NARC_NOTHING)
-            continue;
-        const unsigned now = find_flags(was, reshaped, marks, what), asks = what == NARC_ASK;
-        const unsigned entry = asks & (now / NARC_SLOT_ENTRY);
-        flags[k] = (uint8_t)now;
-        *asked = *known = *candidates = slot;
-        asked += asks - entry;
-        known += entry;
-        candidates += (what == NARC_FOLLOW) & touches;
-        if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
-            do_more(s, slot, what);
+    for (size_t first = 0; first < count && rests; first += CHUNK) {
+        uint8_t found[CHUNK], other[CHUNK];
+        const size_t n = count - first < CHUNK ? count - first : CHUNK;
+        const size_t others = pass_followers(&v, kept, first, n, found, other, &to.candidates);
+        for (size_t i = 0; i < others; i++)
+            sort_slot(s, &v, first + other[i], found[other[i]], ground, more, follow, flags, &to);
+    }
+    for (size_t k = 0; k < count && !rests; k++) {
+        const unsigned found = v.changed[v.a[k]] | v.changed[v.b[k]];
+        if (kept && !found)
+            k = find_changed(&v, k, count) - 1;
+        else
+            sort_slot(s, &v, k, found, ground, more, follow, flags, &to);
     }
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t slot = c->order[c->work[i].pair], what = c->work[i].what;
         const bool reshaped = (v.changed[v.a[slot]] | v.changed[v.b[slot]]) & NARC_RESHAPED;
         flags[slot] = (uint8_t)find_flags(flags[slot], reshaped, 0, what);
-        *candidates = slot;
-        candidates += what == NARC_FOLLOW && state[slot] & NARC_TOUCHING;
+        *to.candidates = slot;
+        to.candidates += what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING;
         do_more(s, slot, what);
     }
-    c->asked_count = (size_t)(asked - c->asked);
-    c->known_count = (size_t)(known - c->known);
-    c->candidate_count = (size_t)(candidates - c->candidates);
+    c->asked_count = (size_t)(to.asked - c->asked);
+    c->known_count = (size_t)(to.known - c->known);
+    c->candidate_count = (size_t)(to.candidates - c->candidates);
 }

@@ -21,7 +21,8 @@ void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const u
 /* Does the row of a pair that was kept in kept[item] follow its bodies? `to`: rows; NULL: may it? */
 static bool follow_row(const narc_contact_step *s, const narc_pairs *pairs, uint32_t pair, uint32_t item, void *to,
                        const narc_kept_row *kept) {
-    const narc_query query = {.selection = {&pair, sizeof pair}, .selection_count = 1};
+    const float margin = narc_find_margin(s, narc_index_at(pairs->a, pair), narc_index_at(pairs->b, pair));
+    const narc_query query = {.margin = margin, .selection = {&pair, sizeof pair}, .selection_count = 1};
     const narc_rows rows = narc_view_rows(s->contacts, to);
     narc_batch batch;
     uint32_t left;

@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* VERSION is another one whenever what is saved is. */
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 14, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 15, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
 
 static const char magic[8] = "NARCCNTS";
 
@@ -53,6 +53,7 @@ static void list_saved(narc_contacts *c, int list, narc_array out[SAVED_ARRAYS])
     narc_kept_list *const l = &b->lists[list];
     narc_known_poses *const known = &b->known;
     const size_t ids = l->has_ids, current = b->is_current, filter = current * b->has_filter;
+    const size_t slack = known->has_boxes && narc_find_slack(known->skin, known->has_motions) > 0;
     const size_t count = narc_list_arrays(c, out);
 #define ARRAY(pointer, size, count)                                                                                    \
     { NARC_OF_BODIES, (void **)(void *)&(pointer), size, count }
@@ -68,6 +69,7 @@ static void list_saved(narc_contacts *c, int list, narc_array out[SAVED_ARRAYS])
         ARRAY(b->boxes_now, known->has_boxes * sizeof *b->boxes_now, &known->count),
         ARRAY(known->poses, sizeof *known->poses, &known->count),
         ARRAY(known->motions, known->has_motions * sizeof *known->motions, &known->count),
+        ARRAY(known->slack, slack * sizeof *known->slack, &known->count),
         ARRAY(known->moved, 1, &known->count),
         ARRAY(known->changed, 1, &known->count),
         ARRAY(c->room, sizeof *c->room, &known->count)};

@@ -61,7 +61,7 @@ static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
     struct job *const job = argument;
     narc_box *const boxes = job->index->sweeps;
     const narc_motions *const motions = &job->casts.batch.motions[0];
-    size_t skipped = job->casts.kernels->box(&job->boxes, NULL, first, end - first, boxes);
+    size_t skipped = job->casts.batch.kernels->box(&job->boxes, NULL, first, end - first, boxes);
     (void)part;
     for (size_t k = first; k < end; k++) {
         const float x = narc_float_or(motions->x, k, 0), y = narc_float_or(motions->y, k, 0),
@@ -127,7 +127,7 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
         status = check_arguments(index, shapes, bodies, movers, q, out_rows, capacity, error);
     if (status == NARC_OK)
         status = narc_check_targets(&job.casts, movers->count, error);
-    if (status == NARC_OK && !(job.casts.kernels = narc_kernels(&status, error)))
+    if (status == NARC_OK && !(job.casts.batch.kernels = narc_kernels(&status, error)))
         return status;
     if (status == NARC_OK && narc_reserve_sweeps(index, movers->count) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)movers->count, "no memory for %zu movers", movers->count);

@@ -12,7 +12,7 @@
 enum { PART = 1024 };
 
 void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
-    const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, job->kernels);
+    const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, job->batch.kernels);
     const size_t skipped = kernels->casts(&job->batch, first, end);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
@@ -89,8 +89,8 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
         job.batch.motions[1] = job.batch.motions[0];
     job.batch.batch = &batch;
     job.batch.out = out_rows;
-    job.kernels = narc_kernels(&status, error);
-    if (!job.kernels)
+    job.batch.kernels = narc_kernels(&status, error);
+    if (!job.batch.kernels)
         return status;
     narc_run_ranges(o->workers, pairs->count, PART, cast_part, &job);
     if (o->out_skipped)

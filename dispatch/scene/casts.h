@@ -13,7 +13,6 @@
 /* What a call works on. */
 typedef struct narc_cast_job {
     narc_cast_batch batch;
-    const narc_kernel_table *kernels;
     atomic_size_t skipped;
 } narc_cast_job;
 

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -39,7 +40,11 @@ enum { PROBE, PROBE_AGAIN, CLIMB, POLYGONS, DECIDE, ANSWER, ANSWER_EDGES, STAGES
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and
  * pad() write up to a vector behind the last one. */
+#ifdef NARC_ONE_PAIR
+enum { CAPACITY = 1 };
+#else
 enum { CAPACITY = FLUSH + STEP + V_WIDTH };
+#endif
 _Static_assert(STEP % V_WIDTH == 0 && STEP <= FLUSH, "stages take whole vectors");
 
 /* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */
@@ -155,7 +160,7 @@ INLINE void get_item(const struct queue *queue, int k, vf *item, int fields) {
 }
 
 /* Appends the lanes `keep` of `item`. */
-INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
+SHARED void push(struct queue *queue, vm keep, const vf *item, int fields) {
     const vp packing = vm_packing(keep);
     const int end = queue->count;
     UNROLL
@@ -169,12 +174,19 @@ INLINE void pass_on(const struct queue *queue, int k, vm left, int fields, struc
     vf item[FIELDS];
     if (!vm_any(left))
         return;
+    if (CAPACITY == 1) {
+        memmove(to->item, queue->item, sizeof to->item);
+        to->count = 1;
+        return;
+    }
     get_item(queue, k, item, fields);
     push(to, left, item, fields);
 }
 
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */
 static inline void pad(struct queue *queue) {
+    if (CAPACITY == 1)
+        return;
     UNROLL
     for (int f = 0; f < QUEUE_FIELDS; f++)
         v_store(queue->item[f] + queue->count, v_set(0));

@@ -146,6 +146,8 @@ INLINE struct arc_pair load_arc_pair(const narc_record *records, vi record_a, vi
 }
 
 INLINE struct arc_pair select_arc_pair(vm m, const struct arc_pair *a, const struct arc_pair *b) {
+    if (V_WIDTH == 1)
+        return vm_any(m) ? *a : *b;
     return (struct arc_pair){select_arcs(m, &a->a, &b->a), select_arcs(m, &a->b, &b->b)};
 }
 

@@ -99,6 +99,7 @@ struct box_contact {
     vf separation;
     vec2 normal;
     struct box_side a, b;
+    vm left; /* of one pair by itself: that there is no answer here */
 };
 
 /* What the two edges tell. Sets where the answer is not certain, and where a corner touches a corner: then other edges
@@ -206,10 +207,10 @@ void NARC_NAMED(walk_capsules)(const struct box_pair *given, struct gap *out_bes
 INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {
     vm left, corners;
     struct box_contact c = find_facing(pair, &left, &corners);
-    left = vm_and(open, left);
+    c.left = left = vm_and(open, left);
     if (vm_any(vm_or(left, vm_and(open, corners)))) {
         vi corner_a = find_box_touching(&c.a), corner_b = find_box_touching(&c.b);
-        if (vm_any(left)) {
+        if (BLOCK > 1 && vm_any(left)) {
             struct gap gap;
             NARC_NAMED(walk_boxes)(pair, &gap);
             c.separation = v_select(left, gap.separation, c.separation);

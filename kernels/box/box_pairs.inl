@@ -59,7 +59,7 @@ enum { BOX_FLUSH = 1 };
 #else
 enum { BOX_FLUSH = 32 };
 #endif
-enum { BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
+enum { BOX_CAPACITY = BLOCK == 1 ? 1 : BOX_FLUSH + V_WIDTH };
 
 struct box_queue {
     _Alignas(64) float item[BOX_FIELDS][BOX_CAPACITY];

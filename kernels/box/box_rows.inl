@@ -146,40 +146,47 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
     }
 }
 
-/* Answers the pairs k ... of a queue. `edges`: are second points asked for? */
-INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
-                         bool edges) {
-    const struct box_pair pair = {queue, k, capsules};
-    const vi pairs = vi_bits(get_box_field(&pair, BOX_PAIR));
-    const vf margin = find_margins(call, pairs);
-    const vm open = vm_front(live);
-    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
-    const vm keep = vm_and(open, is_below(c.separation, margin));
-    if (!vm_any(keep))
-        return;
-    const vec2 n = c.normal, to_world = get_box_vec2(&pair, BOX_ROTATION_A);
-    const struct box_touch on_a = find_touch(&c.a, n, get_box_field(&pair, BOX_RADIUS_A), false);
-    const struct box_touch on_b = find_touch(&c.b, n, v_neg(get_box_field(&pair, BOX_RADIUS_B)), true);
+/* Writes the rows of pairs in the lanes `keep`, of which the first `live` are asked of. */
+INLINE void write_boxes(const struct call *call, const struct box_pair *pair, const struct box_contact *c, int live,
+                        vm keep, vf margin, bool edges) {
+    const vi pairs = vi_bits(get_box_field(pair, BOX_PAIR));
+    const vec2 n = c->normal, to_world = get_box_vec2(pair, BOX_ROTATION_A);
+    const struct box_touch on_a = find_touch(&c->a, n, get_box_field(pair, BOX_RADIUS_A), false);
+    const struct box_touch on_b = find_touch(&c->b, n, v_neg(get_box_field(pair, BOX_RADIUS_B)), true);
     const vf half = v_set(0.5f), flat = v_set(INFINITY), across = v_mul(half, v_add(on_a.across, on_b.across));
     const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
-    const vi of_a = find_box_feature(&pair, &c.a, &on_a, 4), of_b = find_box_feature(&pair, &c.b, &on_b, 6);
-    struct answer answer = {.separation = c.separation,
+    const vi of_a = find_box_feature(pair, &c->a, &on_a, 4), of_b = find_box_feature(pair, &c->b, &on_b, 6);
+    struct answer answer = {.separation = c->separation,
                             .normal = v2_rotate(to_world, n),
                             .point = v2_rotate(to_world, v2_rotate(n, place)),
                             .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
-                            .radius_a = v_select(on_a.parallel, flat, get_box_field(&pair, BOX_RADIUS_A)),
-                            .radius_b = v_select(on_b.parallel, flat, get_box_field(&pair, BOX_RADIUS_B))};
+                            .radius_a = v_select(on_a.parallel, flat, get_box_field(pair, BOX_RADIUS_A)),
+                            .radius_b = v_select(on_b.parallel, flat, get_box_field(pair, BOX_RADIUS_B))};
     char *to[V_WIDTH];
-    find_box_places(call, queue, k + live - 1, pairs, keep, to);
+    find_box_places(call, pair->queue, pair->k + live - 1, pairs, keep, to);
     if (edges) {
-        const struct sides sides = find_box_sides(call, &pair, &c, &on_a, &on_b, place, margin);
-        answer.reach_a = find_box_reach(&pair, &c.a, &on_a);
-        answer.reach_b = find_box_reach(&pair, &c.b, &on_b);
-        const struct manifold_points points = find_manifold_points(call, &answer, &sides);
-        write_manifolds(to, find_numbers(call, pairs), &answer, &points);
+        const struct sides sides = find_box_sides(call, pair, c, &on_a, &on_b, place, margin);
+        answer.reach_a = find_box_reach(pair, &c->a, &on_a);
+        answer.reach_b = find_box_reach(pair, &c->b, &on_b);
+        write_sides(call, to, pairs, &answer, &sides);
     } else {
         write_rows(call, to, find_numbers(call, pairs), &answer);
     }
+}
+
+/* Answers the pairs k ... of a queue, or returns false. `edges`: are second points asked for? */
+INLINE bool answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
+                         bool edges) {
+    const struct box_pair pair = {queue, k, capsules};
+    const vf margin = find_margins(call, vi_bits(get_box_field(&pair, BOX_PAIR)));
+    const vm open = vm_front(live);
+    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
+    const vm keep = vm_and(open, is_below(c.separation, margin));
+    if (BLOCK == 1 && vm_any(c.left))
+        return false;
+    if (vm_any(keep))
+        write_boxes(call, &pair, &c, live, keep, margin, edges);
+    return true;
 }
 
 #endif

@@ -27,7 +27,7 @@ struct couple {
 };
 
 /* Couple p, with edge `turn` + p of B; `wraps`: B's edge lies before +x. */
-SHARED struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
+INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
     const struct pose pose = get_box_pose(pair);
     const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
     const vec2 of_a = find_box_normal(pair, BOX_HALF_A, edge_a), of_b = find_side_normal(pair, edge_b, true);
@@ -46,7 +46,7 @@ SHARED struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm
 
 /* Takes the candidate of the interval between a couple's junctions, or of the one behind them, up to `end`, if it is
  * better, in the lanes `which`. Returns whether the gap rises at the interval's end. */
-SHARED vm try_interval(const struct box_pair *pair, const struct couple *last, const struct couple *couple, vec2 end,
+INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, const struct couple *couple, vec2 end,
                        bool behind, vm which, vm rises, struct gap *best) {
     const vm none = vm_front(0), last_a = behind ? none : couple->b_first, last_b = behind ? none : couple->a_first;
     const vec2 start = behind ? couple->high : couple->low;
@@ -63,7 +63,7 @@ SHARED vm try_interval(const struct box_pair *pair, const struct couple *last, c
 }
 
 /* What is told of the largest gap: a normal of unit length (sat/faces.inl). */
-SHARED void tell_box_normal(const struct box_pair *pair, struct gap *best) {
+INLINE void tell_box_normal(const struct box_pair *pair, struct gap *best) {
     const vf radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B)),
              slack = get_box_field(pair, BOX_SLACK);
     best->normal = v2_divide(best->normal, best->length);

@@ -135,8 +135,8 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     const vm at_right_a = vm_or(vm_and(rises, behind_a), vm_and_not(before_a, rises));
     const vm at_right_b = vm_or(vm_and(rises, behind_b), vm_and_not(before_b, rises));
     vi corner_a = vi_select(at_right_a, second, first), corner_b = vi_select(at_right_b, second, first);
-    left = vm_and(open, left);
-    if (vm_any(left)) {
+    c.left = left = vm_and(open, left);
+    if (BLOCK > 1 && vm_any(left)) {
         struct gap gap;
         NARC_NAMED(walk_capsules)(pair, &gap);
         c.separation = v_select(left, gap.separation, c.separation);

@@ -57,7 +57,10 @@ INLINE vec2 place_corner(vec2 center, const struct pose *pose, bool is_b) {
 
 /* The record of corner j in each lane, for v_rows(). */
 INLINE void store_corner_record(const struct polygon *p, struct ring ring, int j, int32_t index[V_WIDTH]) {
-    if (!p->full)
+    if (BLOCK == 1) {
+        vi_store(index, ring.base);
+        index[0] += j < p->most ? j : 0;
+    } else if (!p->full)
         vi_store(index, vi_select(vi_lt(vi_set(j), ring.count), vi_add(ring.base, vi_set(j)), ring.base));
 }
 
@@ -70,7 +73,7 @@ INLINE void load_polygon(const narc_record *records, struct ring ring, const str
     while (!p->full && p->most > 3 && !vm_any(vi_lt(vi_set(p->most - 1), ring.count)))
         p->most--;
     vi_store(index, ring.base);
-    UNROLL
+    UNROLL_PAIRS
     for (int j = 0; j < MAX_CORNERS; j += 2) {
         vf first[4], second[4], normals[4];
         if (j >= p->most) {

@@ -94,8 +94,7 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
                                     .place = place,
                                     .margin = margin,
                                     .named = vm_front(V_WIDTH)};
-        const struct manifold_points points = find_manifold_points(call, &answer, &sides);
-        write_manifolds(to, find_numbers(call, pairs), &answer, &points);
+        write_sides(call, to, pairs, &answer, &sides);
     } else {
         write_rows(call, to, find_numbers(call, pairs), &answer);
     }

@@ -70,8 +70,7 @@ INLINE void answer_settled(const struct call *call, struct queue *queues, int be
         if (edges) {
             struct sides sides;
             find_sides(call, queue, k, on_a.record, on_b.record, n, find_contact_place(&on_a, &on_b), &sides);
-            const struct manifold_points points = find_manifold_points(call, &answer, &sides);
-            write_manifolds(place, find_numbers(call, pairs), &answer, &points);
+            write_sides(call, place, pairs, &answer, &sides);
         } else {
             write_rows(call, place, find_numbers(call, pairs), &answer);
         }

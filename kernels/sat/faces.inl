@@ -111,11 +111,15 @@ NOINLINE void tell_faces(const struct call *call, const struct queue *queue, int
     *normal = choose_face(&arcs, pose.position, loose, faces, circle[0], circle[1], *normal);
 }
 
-/* The unit normal of the gap of the pairs k ... of a queue, in the lanes `which`. */
-INLINE vec2 find_normal(const struct call *call, const struct queue *queue, int k, vm which, const struct gap *gap) {
+INLINE vm find_loose(const struct call *call, const struct queue *queue, int k, vm which, const struct gap *gap) {
     const struct pose pose = get_pose(queue, k);
     const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
-    const vm loose = vm_and(which, is_loose(&arcs, pose.position));
+    return vm_and(which, is_loose(&arcs, pose.position));
+}
+
+/* The unit normal of the gap of the pairs k ... of a queue, in the lanes `which`. */
+INLINE vec2 find_normal(const struct call *call, const struct queue *queue, int k, vm which, const struct gap *gap) {
+    const vm loose = find_loose(call, queue, k, which, gap);
     vec2 n = v2_divide(gap->normal, gap->length);
     if (vm_any(loose))
         tell_faces(call, queue, k, gap, loose, &n);

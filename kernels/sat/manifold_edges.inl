@@ -333,6 +333,13 @@ INLINE struct manifold_points find_manifold_points(const struct call *call, cons
     return m;
 }
 
+/* Writes the rows of manifolds that may have second points. */
+SHARED void write_sides(const struct call *call, char *const *place, vi pairs, const struct answer *answer,
+                        const struct sides *sides) {
+    const struct manifold_points points = find_manifold_points(call, answer, sides);
+    write_manifolds(place, find_numbers(call, pairs), answer, &points);
+}
+
 /* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */
 INLINE void find_sides(const struct call *call, const struct queue *queue, int k, vi record_a, vi record_b, vec2 n,
                        vec2 place, struct sides *s) {

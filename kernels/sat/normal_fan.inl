@@ -107,7 +107,7 @@ INLINE struct fan start_fan(const narc_record *records, const struct queue *queu
 
 /* Passes the junction ahead: the arc that starts there takes over. The junction ahead of it on that shape belongs to
  * the next round where the list begins anew. */
-INLINE void pass_junction(struct fan *fan, const narc_record *records, const struct pose *pose) {
+SHARED void pass_junction(struct fan *fan, const narc_record *records, const struct pose *pose) {
     const vm is_a = fan->a_is_next;
     const vi one = vi_set(1);
     const vi passed =

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
  * pair.c - the pair kernel: one pair by itself, with one lane. The functions are those of all pairs, one after the other,
- * and so are the bits; there is no block, and no queue has more than one pair. What only the whole formula decides, pieces
- * of chains and pairs without an answer are left to the other kernels.
+ * and so are the bits; there is no block, and no queue has more than one pair. What only the whole formula decides, what
+ * more than two edges of boxes may, pieces of chains and pairs without an answer are left to the other kernels.
+ *
+ * Without vectors there is no kernel: all is left. SSE4.1's lanes take more instructions and text than plain C.
  */
 #define NARC_ONE_PAIR
 #undef NARC_SIMD
-#ifdef __SSE4_1__
+#ifdef __AVX__
 #define NARC_SIMD "simd/one.h"
 #else
 #define NARC_SIMD "simd/scalar.h"
@@ -14,6 +16,13 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+
+#include "kernels.h"
+
+/* What becomes of a pair. */
+enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
+
+#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"
@@ -23,17 +32,15 @@
 #include "base/vec2.inl"
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
-#include "box/box_walk.c"
 #include "box/capsules.inl"
-#include "kernels.h"
 #include "sat/answers.inl"
+#include "sat/certificates.inl"
+#include "sat/faces.inl"
+#include "sat/normal_fan.inl"
 #include "sat/row_stages.inl"
 #include "sat/search.inl"
 #include "sat/stages.inl"
 #include "simd/simd.h"
-
-/* What becomes of a pair. */
-enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 
 /* The call of one pair. */
 struct one {
@@ -44,18 +51,21 @@ struct one {
 
 static const struct question contacts = {.kind = CONTACT_ROWS}, manifolds = {.kind = MANIFOLD_ROWS};
 
+/* No initialiser: that would clear much that nobody reads. */
 INLINE void start_one(struct one *one, const narc_batch *batch, const narc_one_pair *at, bool manifold, void *out) {
     const struct body_pair bodies = {{v_set(at->x), v_set(at->y)},
                                      {v_set(at->cosine_a), v_set(at->sine_a)},
                                      {v_set(at->cosine_b), v_set(at->sine_b)},
                                      v_set(at->scale_a),
                                      v_set(at->scale_b)};
-    one->call = (struct call){.batch = batch,
-                              .first = at->place,
-                              .count = 1,
-                              .margin = at->margin,
-                              .question = manifold ? &manifolds : &contacts,
-                              .rows = &one->rows};
+    one->call.batch = batch;
+    one->call.first = at->place;
+    one->call.count = 1;
+    one->call.margin = at->margin;
+    one->call.margins.base = NULL;
+    one->call.question = manifold ? &manifolds : &contacts;
+    one->call.rows = &one->rows;
+    one->call.bits = NULL;
     one->rows.out = (narc_rows){.base = out};
     one->rows.dense = false;
     one->rows.done = one->rows.listed = 0;
@@ -72,92 +82,110 @@ INLINE struct filter set_up_one(const struct one *one, const narc_one_pair *at, 
     return set_up_pairs(&one->call, &in, 0, &one->placement, vm_front(1), 0, item);
 }
 
-#define PAIR const narc_batch *batch, const narc_one_pair *at, bool manifold, void *out
-
-NOINLINE int find_of_circles(PAIR) {
-    struct one one;
+NOINLINE int find_of_circles(struct one *one, const narc_one_pair *at, bool manifold) {
     vf item[FIELDS];
-    start_one(&one, batch, at, manifold, out);
-    const struct filter circles = set_up_one(&one, at, item);
+    const struct filter circles = set_up_one(one, at, item);
+    (void)manifold;
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
-    return vm_any(answer_discs(&one.call, vm_front(1), circles.margin, item, false)) ? UNANSWERED : end_one(&one);
+    return vm_any(answer_discs(&one->call, vm_front(1), circles.margin, item, false)) ? UNANSWERED : end_one(one);
+}
+
+/* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
+INLINE bool decide_one(const struct call *call, struct queue *queues) {
+    const struct queue *const queue = &queues[DECIDE];
+    const vm live = vm_front(1);
+    vm certain;
+    const struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, &certain);
+    if (!vm_any(certain) || vm_any(find_loose(call, queue, 0, live, &gap)))
+        return false;
+    if (vm_any(is_below(gap.separation, get_margins(call, queue, 0))))
+        settle(call, queues, queue, 0, live, gap.separation, v2_divide(gap.normal, gap.length), gap.record_a,
+               gap.record_b);
+    return true;
 }
 
 /* Pairs of polygons and all that is searched for, in the order of rows.c's stages. */
-NOINLINE int search_one(PAIR) {
-    struct one one;
+NOINLINE int search_one(struct one *one, const narc_one_pair *at, bool manifold) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
     vf item[FIELDS];
-    start_one(&one, batch, at, manifold, out);
-    const struct filter circles = set_up_one(&one, at, item);
+    const struct filter circles = set_up_one(one, at, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
-    const struct call *const call = &one.call;
-    if (vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B]))) {
-        push(&queues[POLYGONS], vm_front(1), item, ROW_FIELDS);
+    const struct call *const call = &one->call;
+    const bool polygons = vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B])),
+               smooth = !polygons && vm_any(both_have(item, NARC_SHAPE_SMOOTH));
+    for (int s = PROBE; s <= CLIMB; s++)
+        start_queue(&queues[s], &arcs);
+    push(&queues[polygons ? POLYGONS : smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
+    if (polygons)
         compare_edges(call, queues, 0);
-        if (queues[POLYGONS].count > 0)
-            answer_compared(call, queues, 0, manifold);
-    } else {
-        for (int s = PROBE; s <= CLIMB; s++)
-            start_queue(&queues[s], &arcs);
-        const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
-        push(&queues[smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
-        if (smooth)
-            probe_axis(&rows, call, queues, 0);
-        if (queues[PROBE_AGAIN].count > 0)
-            probe_again(&rows, call, queues, 0);
-        if (queues[CLIMB].count > 0)
-            climb_from(&rows, call, queues, 0);
-    }
-    if (queues[DECIDE].count > 0) {
-        vm certain;
-        const struct gap gap = walk_near(batch->shapes->records, &queues[DECIDE], 0, vm_front(1), &certain);
-        if (!vm_any(certain))
-            return UNANSWERED;
-        settle_gap(call, queues, &queues[DECIDE], 0, vm_front(1), &gap);
-    }
+    if (queues[POLYGONS].count > 0)
+        answer_compared(call, queues, 0, manifold);
+    if (smooth)
+        probe_axis(&rows, call, queues, 0);
+    if (queues[PROBE_AGAIN].count > 0)
+        probe_again(&rows, call, queues, 0);
+    if (queues[CLIMB].count > 0)
+        climb_from(&rows, call, queues, 0);
+    if (queues[DECIDE].count > 0 && !decide_one(call, queues))
+        return UNANSWERED;
     const bool edges = queues[ANSWER_EDGES].count > 0;
     if (edges || queues[ANSWER].count > 0)
         answer_settled(call, queues, 0, edges);
-    return end_one(&one);
+    return end_one(one);
 }
 
 /* Two boxes or two capsules. */
-INLINE int find_of_forms(PAIR, bool capsules) {
-    struct one one;
+INLINE int find_of_forms(struct one *one, const narc_one_pair *at, bool manifold, bool capsules) {
     struct box_queue queue = {.count = 0};
-    start_one(&one, batch, at, manifold, out);
+    const narc_box_form *const forms = one->call.batch->shapes->boxes;
     const int32_t shape_a = (int32_t)at->shape_a, shape_b = (int32_t)at->shape_b;
-    const struct box_form a = load_box_forms(batch->shapes->boxes, &shape_a);
-    const struct box_form b = load_box_forms(batch->shapes->boxes, &shape_b);
-    const vm in_range = one.placement.in_range;
-    const vm taken = capsules ? take_capsules(&one.call, &a, &b, &one.placement, in_range, 0, &queue)
-                              : take_boxes(&one.call, &a, &b, &one.placement, in_range, 0, &queue);
+    const struct box_form a = load_box_forms(forms, &shape_a), b = load_box_forms(forms, &shape_b);
+    const vm in_range = one->placement.in_range;
+    const vm taken = capsules ? take_capsules(&one->call, &a, &b, &one->placement, in_range, 0, &queue)
+                              : take_boxes(&one->call, &a, &b, &one->placement, in_range, 0, &queue);
     if (!vm_any(taken))
-        return search_one(batch, at, manifold, out);
-    if (queue.count > 0)
-        answer_boxes(&one.call, &queue, 0, 1, capsules, manifold);
-    return end_one(&one);
+        return search_one(one, at, manifold);
+    if (queue.count > 0 && !answer_boxes(&one->call, &queue, 0, 1, capsules, manifold))
+        return UNANSWERED;
+    return end_one(one);
 }
 
-NOINLINE int find_of_boxes(PAIR) { return find_of_forms(batch, at, manifold, out, false); }
-NOINLINE int find_of_capsules(PAIR) { return find_of_forms(batch, at, manifold, out, true); }
+NOINLINE int find_of_boxes(struct one *one, const narc_one_pair *at, bool manifold) {
+    return find_of_forms(one, at, manifold, false);
+}
 
-int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(PAIR) {
+NOINLINE int find_of_capsules(struct one *one, const narc_one_pair *at, bool manifold) {
+    return find_of_forms(one, at, manifold, true);
+}
+
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_one_pair *at, bool manifold,
+                                               void *out_row) {
     const narc_shapes *const shapes = batch->shapes;
     const narc_shape_header *const a = &shapes->headers[at->shape_a], *const b = &shapes->headers[at->shape_b];
-    if (!NARC_SHORTCUTS || narc_is_piece(a) || narc_is_piece(b))
+    struct one one;
+    if (narc_is_piece(a) || narc_is_piece(b))
         return UNANSWERED;
+    start_one(&one, batch, at, manifold, out_row);
     if (a->flags & b->flags & NARC_SHAPE_CIRCLE)
-        return find_of_circles(batch, at, manifold, out);
+        return find_of_circles(&one, at, manifold);
     const uint32_t forms =
         shapes->box_count > 0 ? shapes->boxes[at->shape_a].info & shapes->boxes[at->shape_b].info : 0;
     return (forms & NARC_IS_BOX       ? find_of_boxes
             : forms & NARC_IS_CAPSULE ? find_of_capsules
-                                      : search_one)(batch, at, manifold, out);
+                                      : search_one)(&one, at, manifold);
 }
+
+#else
+
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_one_pair *at, bool manifold,
+                                               void *out_row) {
+    (void)batch, (void)at, (void)manifold, (void)out_row;
+    return UNANSWERED;
+}
+
+#endif

@@ -100,6 +100,11 @@ INLINE vm has_hardly_moved(const vf word[WORDS], const struct pose *pose, vec2 s
     return v_lt(v_add(v2_length(moved), v_mul(word[OF_LEVER], v2_length(turned))), tolerance);
 }
 
+/* Of a point of a row with this normal, in A's frame. */
+INLINE vf find_separation(const vf word[WORDS], vec2 normal, vec2 span) {
+    return v_sub(v2_dot(span, normal), v_add(word[OF_RADIUS_A], word[OF_RADIUS_B]));
+}
+
 /* Moves normals and points with their bodies. */
 INLINE void move_rows(const vf word[WORDS], const struct placement *placement, const vec2 span[2],
                       struct rows_of *rows) {
@@ -109,7 +114,7 @@ INLINE void move_rows(const vf word[WORDS], const struct placement *placement, c
     UNROLL
     for (int i = 0; i < 2; i++) {
         const vf *const p = word + OF_POINT + 4 * i;
-        const vf separation = v_sub(v2_dot(span[i], n), v_add(word[OF_RADIUS_A], word[OF_RADIUS_B]));
+        const vf separation = find_separation(word, n, span[i]);
         const vf out_of_a = v_add(word[OF_RADIUS_A], v_mul(v_set(0.5f), separation));
         const vec2 place = v2_rotate(placement->rotation_a, v2_add((vec2){p[0], p[1]}, v2_scale(n, out_of_a)));
         const vf moved[3] = {place.x, place.y, separation};
@@ -119,12 +124,12 @@ INLINE void move_rows(const vf word[WORDS], const struct placement *placement, c
 }
 
 /* Lets rows of those of a batch's pairs first .. first + count - 1 follow whose bodies have moved by less than the
- * tolerance; `batch->row_size` says which rows. Lists the numbers of all other pairs in `left`, in their order, and returns
+ * tolerance, and whose first point still is within the margin; `batch->row_size` says which rows. Lists the numbers of all other pairs in `left`, in their order, and returns
  * how many there are; their rows stay as they were. Number item[i] of what is kept and of the rows is that of the pair at
  * first + i; `item` NULL: its own number. Without rows (`out` NULL) it is only told who may. */
 size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, const uint32_t *item,
                            const narc_kept_row *kept, float tolerance, const narc_rows *out, uint32_t *left) {
-    const struct call call = {.batch = batch, .margin = 0};
+    const struct call call = {.batch = batch, .margin = batch->query->margin, .margins = batch->query->margins};
     const bool manifold = batch->row_size == sizeof(narc_manifold);
     struct sources given = copy_sources(batch);
     const enum pose_layout layout = find_layout(&given);
@@ -144,9 +149,10 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
             vf word[WORDS];
             load_items(kept, WORDS, number, in_line, word);
             const vec2 span[2] = {find_span(word, &placement.pose, 0), find_span(word, &placement.pose, 1)};
-            const vm live = vm_front(n - k);
+            const vec2 normal = {word[OF_NORMAL], word[OF_NORMAL + 1]};
+            const vm live = vm_front(n - k), near = v_lt(find_separation(word, normal, span[0]), placement.margin);
             const vm follows = vm_and(vm_and(live, placement.in_range),
-                                      has_hardly_moved(word, &placement.pose, span[0], v_set(tolerance)));
+                                      vm_and(near, has_hardly_moved(word, &placement.pose, span[0], v_set(tolerance))));
             for (uint32_t lanes = vm_bits(vm_and_not(live, follows)); lanes; lanes &= lanes - 1)
                 left[open++] = (uint32_t)indices.number[k + FIND_LOWEST(lanes)];
             const uint32_t lanes = vm_bits(follows);

@@ -15,13 +15,12 @@
 #include "polygon/polygon_contact.inl"
 #include "polygon/polygon_edges.inl"
 #include "sat/certificates.inl"
-#include "sat/faces.inl"
 #include "sat/normal_fan.inl"
 #include "sat/search.inl"
 #include "sat/stages.inl"
 #include "simd/simd.h"
 
-INLINE struct verdict judge(const struct call *call, struct queue *queue, int k, vm live) {
+SHARED struct verdict judge(const struct call *call, struct queue *queue, int k, vm live) {
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
     const vf limit = v_add(margin, find_lookup_slack(queue, k));
@@ -68,25 +67,23 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
         if (!vm_any(near))
             continue;
         const vm clear = v_lt(best->second, v_sub(best->gap, v_mul(v_set(CLEAR_EDGE), slack)));
+        const vf code = v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4)));
         vf item[FIELDS];
+        if (CAPACITY == 1) { /* it stays in its place */
+            store_vec2(queue, DIRECTION, k, best->normal);
+            v_store(queue->item[EDGE_CODE] + k, code);
+            pass_on(queue, k, live, FIELDS, vm_any(clear) ? queue : &queues[DECIDE]);
+            continue;
+        }
         get_item(queue, k, item, ROW_FIELDS);
         set_vec2(item, DIRECTION, best->normal);
-        item[EDGE_CODE] = v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4)));
+        item[EDGE_CODE] = code;
         if (vm_any(vm_and_not(near, clear)))
             push(&queues[DECIDE], vm_and_not(near, clear), item, ROW_FIELDS);
         if (vm_any(vm_and(near, clear)))
             push(queue, vm_and(near, clear), item, FIELDS);
     }
     pad(queue); /* what was behind them has no edges */
-}
-
-/* Settles the pairs k ... of a queue of which the gap is known, in the lanes `live`. */
-INLINE void settle_gap(const struct call *call, struct queue *queues, const struct queue *queue, int k, vm live,
-                       const struct gap *gap) {
-    const vm wanted = vm_and(live, is_below(gap->separation, get_margins(call, queue, k)));
-    if (vm_any(wanted))
-        settle(call, queues, queue, k, wanted, gap->separation, find_normal(call, queue, k, wanted, gap), gap->record_a,
-               gap->record_b);
 }
 
 #endif

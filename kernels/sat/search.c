@@ -58,7 +58,10 @@ static void decide(const struct call *call, struct queue *queues, int begin) {
         const vm live = vm_front(queue->count - k);
         struct gap gap;
         decide_gap(call->batch->shapes, queue, k, live, &gap);
-        settle_gap(call, queues, queue, k, live, &gap);
+        const vm wanted = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
+        if (vm_any(wanted))
+            settle(call, queues, queue, k, wanted, gap.separation, find_normal(call, queue, k, wanted, &gap),
+                   gap.record_a, gap.record_b);
     }
 }
 

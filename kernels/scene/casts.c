@@ -490,44 +490,56 @@ static narc_bodies view_side(const narc_casts *casts, int side, const float *x, 
                          .shape = {casts->side[side].shape, item}};
 }
 
-#if !NARC_SMALL
-/* Asks one cast by itself; where that has no answer, as all are asked. */
-static void ask_one(const narc_batch *contacts, narc_casts *casts, size_t k) {
-    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
-    const narc_one_pair at = {.place = k,
-                              .shape_a = a->shape[k],
-                              .shape_b = b->shape[k],
-                              .x = casts->x_now[k],
-                              .y = casts->y_now[k],
-                              .cosine_a = casts->cosine_now[0][k],
-                              .sine_a = casts->sine_now[0][k],
-                              .scale_a = a->scale[k],
-                              .cosine_b = casts->cosine_now[1][k],
-                              .sine_b = casts->sine_now[1][k],
-                              .scale_b = b->scale[k],
-                              .margin = contacts->query->margin};
-    const narc_rows row = {.base = (char *)&casts->contact[k], .stride = sizeof casts->contact[0]};
-    size_t unused = 0;
-    if (NARC_NAMED(pair)(contacts, &at, false, &casts->contact[k]) < 0)
-        NARC_NAMED(contact)(contacts, k, 1, &unused, &row);
-}
-#endif
+static const narc_query all_rows = {.margin = INFINITY};
 
-/* What touches at the times of all casts: a row each, as margins are infinite. */
-static void ask_contacts(const narc_batch *contacts, narc_casts *casts) {
-    const narc_rows rows = {.base = (char *)casts->contact, .stride = sizeof casts->contact[0]};
+/* What touches at the times of casts `first` ...: a row each. */
+NOINLINE void ask_contacts(const narc_shapes *shapes, narc_casts *casts, size_t first, size_t count) {
+    static const float zeros[CAST_SLOTS];
+    const narc_bodies a = view_side(casts, 0, zeros, zeros), b = view_side(casts, 1, casts->x_now, casts->y_now);
+    const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &b};
+    const narc_rows rows = {.base = (char *)&casts->contact[first], .stride = sizeof casts->contact[0]};
     size_t unused = 0;
-#if !NARC_SMALL
-    for (size_t k = 0; casts->count <= NARC_FEW && k < casts->count; k++)
-        ask_one(contacts, casts, k);
-    if (casts->count <= NARC_FEW)
-        return;
-#endif
-    NARC_NAMED(contact)(contacts, 0, casts->count, &unused, &rows);
+    narc_batch batch; /* an initialiser would clear its own sets, too */
+    batch.shapes = shapes;
+    batch.a = &a;
+    batch.b = &b;
+    batch.pairs = &pairs;
+    batch.query = &all_rows;
+    batch.first = 0;
+    batch.count = batch.asked = CAST_SLOTS;
+    batch.row_size = batch.more_at = 0;
+    batch.of_casts = true;
+    batch.flat_sine = 0;
+    NARC_NAMED(contact)(&batch, first, count, &unused, &rows);
 }
+
+#if !NARC_SMALL
+/* The same of a few casts, each by itself where that has an answer. */
+NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
+    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
+    narc_batch batch;
+    batch.shapes = given->batch->shapes;
+    batch.query = &all_rows;
+    for (size_t k = 0; k < casts->count; k++) {
+        const narc_one_pair at = {.place = k,
+                                  .shape_a = a->shape[k],
+                                  .shape_b = b->shape[k],
+                                  .x = casts->x_now[k],
+                                  .y = casts->y_now[k],
+                                  .cosine_a = casts->cosine_now[0][k],
+                                  .sine_a = casts->sine_now[0][k],
+                                  .scale_a = a->scale[k],
+                                  .cosine_b = casts->cosine_now[1][k],
+                                  .sine_b = casts->sine_now[1][k],
+                                  .scale_b = b->scale[k],
+                                  .margin = INFINITY};
+        if (given->kernels->pair(&batch, &at, false, &casts->contact[k]) < 0)
+            ask_contacts(batch.shapes, casts, k, 1);
+    }
+}
+#endif
 
 size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end) {
-    static const float zeros[CAST_SLOTS];
     const narc_batch *const batch = given->batch;
     struct cast_call call = {.given = given,
                              .shapes = batch->shapes,
@@ -538,17 +550,6 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
     narc_casts casts;
     casts.count = 0;
     casts.front_only = given->front_only;
-    const narc_bodies a = view_side(&casts, 0, zeros, zeros), b = view_side(&casts, 1, casts.x_now, casts.y_now);
-    const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &b};
-    const narc_query query = {.margin = INFINITY};
-    const narc_batch contacts = {.shapes = batch->shapes,
-                                 .a = &a,
-                                 .b = &b,
-                                 .pairs = &pairs,
-                                 .query = &query,
-                                 .count = CAST_SLOTS,
-                                 .asked = CAST_SLOTS,
-                                 .of_casts = true};
     while (casts.count > 0 || first < end) {
         while (casts.count + CAST_GROUP <= CAST_SLOTS && first < end) {
             const size_t count = end - first < CAST_GROUP ? end - first : CAST_GROUP;
@@ -556,7 +557,12 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
             first += count;
         }
         place_casts(&casts);
-        ask_contacts(&contacts, &casts);
+#if !NARC_SMALL
+        if (casts.count <= NARC_FEW)
+            ask_few(given, &casts);
+        else
+#endif
+            ask_contacts(batch->shapes, &casts, 0, casts.count);
         advance_casts(&call, &casts);
     }
     return call.skipped;

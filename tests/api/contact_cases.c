@@ -661,4 +661,38 @@ TEST(a_filter_makes_pairs) {
     destroy_few(few);
 }
 
+/* Two that creep or turn towards each other, by so little in a step that most keep their boxes, are listed when they are near,
+ * though they were not when they began. */
+TEST(bodies_that_creep_are_found) {
+    struct test_random random = test_random_named("creeping");
+    for (size_t trial = 0; trial < test_trials(60); trial++) {
+        struct few *const few = make_few(capsule_of(4, 0.25), 2, NULL);
+        const double gap = 0.02 + 2 * random_between(&random, 0.9, 1.01), step = random_between(&random, 0.002, 0.05);
+        const bool turns = trial % 2;
+        size_t found = 0, listed = 0;
+        few->body[1].x = 0;
+        few->body[1].y = 0.5 + gap;
+        assert_int_equal(step_few(few)->count, gap < 2.02);
+        for (double way = 0; way < 1.1; way += step) {
+            const double angle = turns ? asin(way / 2) : 0;
+            for (int k = 0; k < 2; k++) {
+                few->body[k].cosine = (float)cos(angle);
+                few->body[k].sine = (float)(k == 0 ? sin(angle) : -sin(angle));
+                few->body[k].y = (k == 0 ? 0 : 0.5 + gap) + (turns ? 0 : k == 0 ? way : -way);
+            }
+            const narc_step_result *const r = step_few(few);
+            const narc_pairs pair = {.count = 1};
+            const narc_query query = {.margin = few->step.margin};
+            narc_manifold row;
+            size_t count;
+            expect_ok(narc_find_manifolds(few->store, &few->bodies, &pair, &query, &row, 1, &count, NULL), NULL);
+            assert_int_equal(r->touching_count, count);
+            found += count;
+            listed += r->count;
+        }
+        assert_true(found > 0 && listed > 0);
+        destroy_few(few);
+    }
+}
+
 TEST_MAIN("contact cases")

@@ -190,7 +190,7 @@ static size_t check_followed(const struct step_world *w, const narc_step *step, 
         if (row->count == 0)
             assert_true(margins[k] >= step->margin);
         else
-            assert_true(fabsf(deepest - margins[k]) < step->recycling);
+            assert_true(fabsf(deepest - margins[k]) < step->recycling && row->point[0].separation < step->margin);
         assert_true(!(r->state[slot] & NARC_FOLLOWED) || fabsf(hypotf(row->normal_x, row->normal_y) - 1) < 1e-5f);
     }
     return followed;
@@ -417,7 +417,7 @@ TEST(loads_what_was_saved_alone) {
         status = narc_load_contacts(small, w->store, saved.all, saved.count, &r, &error);
         assert_true(status == NARC_OK || (status == NARC_ERROR_MEMORY && hash_result(r) == before));
     }
-    assert_true(failures > 10 && hash_result(r) != before);
+    assert_true(failures >= 10 && hash_result(r) != before); /* 10 pieces of memory, some scenes more */
     allowed = SIZE_MAX;
     step.bodies = &bodies;
     expect_ok(narc_update_contacts(small, w->store, &step, &r, &error), &error);

@@ -10,14 +10,9 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/* Sanitizers have a malloc() of their own, and other C libraries no name for theirs. */
-#if defined(__has_feature) /* clang */
-#define IS_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
-#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IS_SANITIZED 1
-#else
-#define IS_SANITIZED 0
-#endif
+#include "sanitizers.h"
+
+/* Other C libraries have no name for their malloc(). */
 #if defined(__GLIBC__) && !IS_SANITIZED
 #define CAN_FAIL 1
 #else

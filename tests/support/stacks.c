@@ -12,13 +12,12 @@
 #include <unistd.h>
 
 #include "guard.h"
+#include "sanitizers.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
-const bool large_frames = true;
-#elif defined(__has_feature)
-const bool large_frames = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#ifdef __OPTIMIZE__
+const bool large_frames = IS_SANITIZED;
 #else
-const bool large_frames = false;
+const bool large_frames = true;
 #endif
 
 enum { FORBIDDEN = 1 << 20 };
