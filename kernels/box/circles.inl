@@ -55,16 +55,64 @@ INLINE vm are_with_circle(const struct box_form *a, const struct box_form *b) {
     return vm_or(vm_and(a_is, vi_lt(zero, b->info)), vm_and(b_is, vi_lt(zero, a->info)));
 }
 
+/* Sets the bits of pairs in the lanes `near` that overlap for certain, if nothing else is asked for; returns the others.
+ * `square`: the centre's distance from the sharp shape, squared. */
+INLINE vm settle_deep(const struct call *call, int32_t number, vm near, vf square, vf radii, vf two) {
+    if (!call->bits)
+        return near;
+    const vf core = v_max(v_sub(radii, two), v_set(0));
+    const vm deep = vm_and(near, v_lt(square, v_mul(core, core)));
+    call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
+    return vm_and_not(near, deep);
+}
+
+INLINE void push_circles(const struct placement *placement, vm near, int32_t number, vec2 half, vf scale, vf radius,
+                         vf radius_circle, vi code, struct box_queue *queue) {
+    vf item[BOX_FIELDS];
+    set_vec2(item, BOX_POSITION, placement->pose.position);
+    set_vec2(item, BOX_ROTATION, placement->pose.rotation);
+    set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
+    set_vec2(item, BOX_HALF_A, half);
+    item[BOX_SCALE_B] = scale;
+    item[BOX_RADIUS_A] = radius;
+    item[BOX_RADIUS_B] = radius_circle;
+    item[BOX_CODE] = v_of_bits(code);
+    item[BOX_PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
+    push_boxes(queue, near, item, CIRCLE_FIELDS);
+}
+
+/* What take_circles() does, where all are two circles: the same values. */
+INLINE vm take_two_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
+                           const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
+    const struct pose *pose = &placement->pose;
+    const vec2 t = pose->position;
+    const vf zero = v_set(0), x = v_abs(t.x), y = v_abs(t.y);
+    const vf radius_a = v_mul(a->radius, pose->scale_a), radius_b = v_mul(b->radius, pose->scale_b);
+    const vf radii = v_add(radius_a, radius_b);
+    const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(x, y), radii)), two = v_add(slack, slack);
+    const vf square = v2_dot(t, t), limit = v_add(v_add(radii, placement->margin), slack);
+    const vm apart = v_lt(v_mul(limit, limit), square), certain = v_lt(two, v_max(x, y));
+    const vm sizes = vm_and(is_box_in_range(radius_a), is_box_in_range(radius_b));
+    const vm taken = vm_and(vm_and(which, sizes), vm_or(certain, apart));
+    const vm near = settle_deep(call, number, vm_and_not(taken, apart), square, radii, two);
+    if (vm_any(near))
+        push_circles(placement, near, number, (vec2){zero, zero}, zero, radius_a, radius_b, vi_set(0), queue);
+    return taken;
+}
+
 /* Takes pairs with a circle, in the lanes `which`: puts those that may have a contact into the queue. Returns the lanes
  * that it took. */
 INLINE vm take_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
                        const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
+    const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
+    if (!vm_any(vm_and_not(which, vm_and(vi_lt(last, a->info), vi_lt(last, b->info)))))
+        return take_two_circles(call, a, b, placement, which, number, queue);
     const struct pose *pose = &placement->pose;
     const vec2 t = pose->position, q = pose->rotation, t_b = v2_unrotate(q, t);
     const vf zero = v_set(0);
     const vm is_a = vm_and_not(is_form(a, NARC_IS_CIRCLE), is_form(b, NARC_IS_CIRCLE)); /* A is the circle, and B not */
     const vi info = vi_select(is_a, b->info, a->info);
-    const vm sides = vm_not(vi_lt(vi_set((int32_t)NARC_IS_CIRCLE - 1), info));
+    const vm sides = vm_not(vi_lt(last, info));
     const vm capsule = vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)NARC_IS_CAPSULE)));
     const vec2 half = v2_select(is_a, b->half, a->half);
     const vf scale = v_select(is_a, pose->scale_b, pose->scale_a);
@@ -87,13 +135,8 @@ INLINE vm take_circles(const struct call *call, const struct box_form *a, const 
     const vm apart = v_lt(v_mul(limit, limit), square);
     const vm at_edge = vm_or(at_x, at_y), certain = vm_or(at_edge, at_corner);
     const vm sizes = vm_and(is_box_in_range(size_other), is_box_in_range(radius_circle));
-    vm taken = vm_and(vm_and(which, sizes), vm_or(certain, apart)), near = vm_and_not(taken, apart);
-    if (call->bits) { /* nothing but overlaps is asked for */
-        const vf core = v_max(v_sub(radii, two), zero);
-        const vm deep = vm_and(near, v_lt(square, v_mul(core, core)));
-        call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
-        near = vm_and_not(near, deep);
-    }
+    const vm taken = vm_and(vm_and(which, sizes), vm_or(certain, apart));
+    const vm near = settle_deep(call, number, vm_and_not(taken, apart), square, radii, two);
     if (vm_any(near)) {
         const vm left = v_lt(p.x, zero), below = v_lt(p.y, zero);
         /* Edges 0 to 3 lie at +x, +y, -x, -y; corners at +x +y, -x +y, -x -y, +x -y. Of a capsule corner 3 is its end at
@@ -106,17 +149,7 @@ INLINE vm take_circles(const struct call *call, const struct box_form *a, const 
                             vi_set(0));
         code = vi_add(code, vi_add(choose_bit(is_a, CIRCLE_IS_A), choose_bit(capsule, BESIDE_CAPSULE)));
         code = vi_add(code, vi_shift_left(vi_and(info, vi_set(3)), 4));
-        vf item[BOX_FIELDS];
-        set_vec2(item, BOX_POSITION, t);
-        set_vec2(item, BOX_ROTATION, q);
-        set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
-        set_vec2(item, BOX_HALF_A, half);
-        item[BOX_SCALE_B] = scale;
-        item[BOX_RADIUS_A] = radius;
-        item[BOX_RADIUS_B] = radius_circle;
-        item[BOX_CODE] = v_of_bits(code);
-        item[BOX_PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
-        push_boxes(queue, near, item, CIRCLE_FIELDS);
+        push_circles(placement, near, number, half, scale, radius, radius_circle, code, queue);
     }
     return taken;
 }
