@@ -52,7 +52,7 @@ INLINE vm take_detour(const struct call *call, const struct pair_indices *indice
         const vm with_circle = vm_and(in_range, are_with_circle(&a, &b));
         if (vm_any(two_capsules))
             left = vm_and_not(left, take_capsules(call, &a, &b, placement, two_capsules, number, capsules));
-        if (vm_any(with_circle))
+        if (NARC_CIRCLE_FORMS && vm_any(with_circle))
             left = vm_and_not(left, take_circles(call, &a, &b, placement, with_circle, number, circles));
     }
     const bool with_boxes = boxes->count > 0 && (capsules->count | circles->count) > 0;

@@ -158,8 +158,7 @@ INLINE vm take_circles(const struct call *call, const struct box_form *a, const 
 struct circle_contact {
     vf separation;
     vec2 normal, center;  /* of the circle */
-    vec2 corner, before;  /* the one that touches, and that before its edge */
-    vec2 start, end;      /* the ends of its arc */
+    vec2 corner, start;   /* of the other one: the corner that touches, and the normal of the edge before it */
     vm is_a, sides, edge; /* is A the circle; has the other one sides; does its edge touch? */
     vi arc;               /* the caller's number of the other one's arc, or of its edge */
     vf radius, radius_circle;
@@ -200,7 +199,7 @@ INLINE struct circle_contact find_circle_contact(const struct box_pair *pair) {
     const vec2 b = v2_add(t, v2_rotate(get_box_vec2(pair, BOX_ROTATION), origin));
     vec2 u = b;
     c.center = b;
-    c.corner = c.before = c.start = c.end = origin;
+    c.corner = c.start = origin;
     c.arc = vi_set(0);
     if (vm_any(c.sides)) {
         const vm capsule = has_bit(code, BESIDE_CAPSULE);
@@ -208,9 +207,7 @@ INLINE struct circle_contact find_circle_contact(const struct box_pair *pair) {
         c.arc = vi_select(capsule, vi_and(vi_add(end, first), vi_set(1)), vi_and(vi_add(number, first), vi_set(3)));
         c.center = v2_select(c.is_a, origin, b);
         c.corner = place_form_corner(pair, c.is_a, capsule, number);
-        c.before = place_form_corner(pair, c.is_a, capsule, vi_sub(number, vi_set(1)));
         c.start = place_form_normal(pair, c.is_a, capsule, number);
-        c.end = place_form_normal(pair, c.is_a, capsule, vi_add(number, vi_select(capsule, vi_set(2), vi_set(1))));
         u = v2_sub(v2_select(c.is_a, c.corner, c.center), v2_select(c.is_a, c.center, c.corner));
     }
     const vf length = v2_length(u);
@@ -234,7 +231,13 @@ INLINE void answer_circles(const struct call *call, const struct box_queue *queu
     const vec2 on_circle = v2_add(c.center, v2_scale(n, radius_circle)), step = v2_scale(n, radius),
                on_other = v2_add(c.corner, step);
     const vf half = v_set(0.5f), along = v2_cross(n, on_circle), touched = v2_cross(n, on_other);
-    const vf before = v_select(c.edge, v2_cross(n, v2_add(c.before, step)), touched);
+    const vi number = vi_and(get_box_code(&pair), vi_set(3));
+    const vm capsule = has_bit(get_box_code(&pair), BESIDE_CAPSULE);
+    vf before = touched;
+    if (vm_any(c.edge)) { /* from the corner before the edge on */
+        const vec2 corner = place_form_corner(&pair, c.is_a, capsule, vi_sub(number, vi_set(1)));
+        before = v_select(c.edge, v2_cross(n, v2_add(corner, step)), touched);
+    }
     const vf min = v_min(touched, before), max = v_max(touched, before);
     const vf most = v_max(v_select(c.is_a, along, min), v_select(c.is_a, min, along)),
              least = v_min(v_select(c.is_a, along, max), v_select(c.is_a, max, along));
@@ -249,7 +252,8 @@ INLINE void answer_circles(const struct call *call, const struct box_queue *queu
                             .radius_b = v_select(c.is_a, curved, c.radius_circle)};
     if (call->question->kind == MANIFOLD_ROWS) {
         const vi all_round = vi_set(-1); /* NARC_REACH_ONE twice */
-        const struct feature arc = {.start = c.start, .end = c.end};
+        const vi next = vi_add(number, vi_select(capsule, vi_set(2), vi_set(1)));
+        const struct feature arc = {.start = c.start, .end = place_form_normal(&pair, c.is_a, capsule, next)};
         const vi reach = vi_select(c.sides, find_reach(&arc, n, vi_set(0), c.edge), all_round);
         answer.reach_a = vi_select(c.is_a, all_round, reach);
         answer.reach_b = vi_select(c.is_a, reach, all_round);

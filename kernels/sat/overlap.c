@@ -148,7 +148,7 @@ NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count,
                                   .edged = NARC_SHORTCUTS ? CLIMB : 0,
                                   .end = STAGES};
     static box_stage *const answers[BOX_QUEUES] = {answer_box_overlaps, answer_capsule_overlaps,
-                                                   answer_circle_overlaps};
+                                                   NARC_CIRCLE_FORMS ? answer_circle_overlaps : NULL};
     struct queue queues[STAGES];
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     struct box_queue boxes[BOX_QUEUES];

@@ -89,7 +89,8 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     struct call call = *given;
     call.concave = concave;
     box_stage *const answers[BOX_QUEUES] = {second ? question->boxes : answer_rows_of_boxes,
-                                            second ? question->capsules : answer_rows_of_capsules, answer_circle_rows};
+                                            second ? question->capsules : answer_rows_of_capsules,
+                                            NARC_CIRCLE_FORMS ? answer_circle_rows : NULL};
     if (NARC_SHORTCUTS && call.batch->shapes->box_count > 0)
         start_boxes(&call, boxes, answers);
     run_pairs(&call, &course, queues);
