@@ -21,6 +21,13 @@
 #define NARC_SHORTCUTS 1
 #endif
 
+/* Are pairs with a circle answered by its form (box/circles.inl)? Not in modules for WebAssembly, which have to be small. */
+#ifdef __wasm__
+#define NARC_CIRCLE_FORMS 0
+#else
+#define NARC_CIRCLE_FORMS NARC_SHORTCUTS
+#endif
+
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
  * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
 typedef struct narc_batch {

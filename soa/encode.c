@@ -288,15 +288,19 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     static const float sides[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     const narc_shape_header *header = &shape->header;
     const narc_record *arcs = &shape->records[narc_angle_records(header->count)];
-    const bool capsule = header->count == 2;
-    if ((header->count != 4 && !capsule) || header->extent_ratio == UINT8_MAX || (header->flags & NARC_SHAPE_SMOOTH))
+    const bool circle = header->flags & NARC_SHAPE_CIRCLE, capsule = header->count == 2 && !circle;
+    const bool smooth = header->flags & NARC_SHAPE_SMOOTH;
+    if ((header->count != 4 && header->count != 2) || header->extent_ratio == UINT8_MAX || smooth != circle)
         return (narc_box_form){.info = 0};
     const float x = fabsf(arcs[0].arc.center_x), radius = arcs[0].arc.radius;
     const float y = capsule ? arcs[0].arc.start_x : arcs[0].arc.center_y; /* of a capsule a zero with its sign */
     const float least_edge = ldexpf(1, 5 * (header->flags >> NARC_SIZE_CLASS_SHIFT) - 47);
     /* A header that was loaded may say anything of the bounding circle; kernels go by half of its size. */
-    bool found = x > least_edge && header->bound_radius <= 1.001f * (x + y + radius);
-    if (capsule) {
+    bool found = (circle || x > least_edge) && header->bound_radius <= 1.001f * (x + y + radius);
+    if (circle) {
+        for (size_t k = 0; k < 2; k++)
+            found = found && has_same_bits(arcs[k].arc.center_x, 0) && has_same_bits(arcs[k].arc.center_y, 0);
+    } else if (capsule) {
         const float up[2] = {y, 1}, down[2] = {-y, -1};
         found = found && y == 0 && is_corner(&arcs[0].arc, -x, 0, radius, up, down) &&
                 is_corner(&arcs[1].arc, x, 0, radius, down, up);
@@ -306,8 +310,8 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
             found =
                 found && is_corner(&arcs[k].arc, sides[k][0] * x, sides[k][1] * y, radius, normals[k], normals[k + 1]);
     }
-    const uint32_t kind = capsule ? NARC_IS_CAPSULE : NARC_IS_BOX;
-    return (narc_box_form){x, y, radius, found ? kind | header->first_arc : 0};
+    const uint32_t info = circle ? NARC_IS_CIRCLE : (capsule ? NARC_IS_CAPSULE : NARC_IS_BOX) | header->first_arc;
+    return (narc_box_form){x, y, radius, found ? info : 0};
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */

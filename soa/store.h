@@ -132,11 +132,11 @@ typedef union narc_record {
 
 /* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
  * the sides of the rectangle of the corners' centres. Or a capsule along the x axis about its own origin, as a box
- * without height. Batches of boxes and of capsules read nothing else of a shape (kernels/box/).
+ * without height, or a circle about it, as one without sides. Batches of these read nothing else of a shape (kernels/box/).
  *   half_y of a capsule   A zero: x of the normal of its edge at +y, with its sign, which makes a bit of an answer. The
  *                         normal at -y is the opposite one.
- *   info   0: the shape is neither; else NARC_IS_BOX or NARC_IS_CAPSULE and, in its lowest bits, the first_arc of its
- *          header.
+ *   info   0: the shape is none of these; else NARC_IS_..., and in its lowest bits, but for a circle, the first_arc of
+ *          its header.
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -146,6 +146,7 @@ typedef struct narc_box_form {
 
 #define NARC_IS_BOX     4u
 #define NARC_IS_CAPSULE 8u
+#define NARC_IS_CIRCLE  16u
 
 /* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with
  * fewer, and a concave arc has two. */
@@ -192,7 +193,7 @@ struct narc_shapes {
     uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    size_t box_count;                     /* shapes with a form of a box or a capsule */
+    size_t box_count;                     /* shapes with a form of a box, a capsule or a circle */
     size_t piece_count;                   /* shapes that are pieces of chains */
     uint8_t largest_ratio;                /* the largest extent_ratio that a shape has had */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */

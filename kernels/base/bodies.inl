@@ -14,7 +14,7 @@
 #include "kernels.h"
 #include "simd/simd.h"
 
-/* The numbers of a block's pairs, their bodies and shapes. The lanes behind the last pair repeat the first. */
+/* The numbers of a block's pairs, their bodies and shapes. The lanes behind the last pair repeat it. */
 struct pair_indices {
     _Alignas(64) int32_t number[BLOCK], a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
@@ -31,35 +31,64 @@ INLINE struct sources copy_sources(const narc_batch *batch) {
     return (struct sources){*batch->a, *batch->b, *batch->pairs, batch->query->selection};
 }
 
-/* Item k of a block: a pair, its bodies and their shapes. */
-INLINE void load_pair(const struct sources *given, size_t number, size_t a, size_t b, int k, struct pair_indices *out) {
-    out->number[k] = (int32_t)(uint32_t)number;
-    out->a[k] = (int32_t)(uint32_t)a;
-    out->b[k] = (int32_t)(uint32_t)b;
-    out->shape_a[k] = (int32_t)narc_index_at(given->a.shape, a);
-    out->shape_b[k] = (int32_t)narc_index_at(given->b.shape, b);
+INLINE void load_shapes_of(const struct sources *given, int k, struct pair_indices *out) {
+    out->shape_a[k] = (int32_t)narc_index_at(given->a.shape, (uint32_t)out->a[k]);
+    out->shape_b[k] = (int32_t)narc_index_at(given->b.shape, (uint32_t)out->b[k]);
 }
 
-INLINE void load_indices(const struct sources *given, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column a = given->pairs.a, b = given->pairs.b;
-    if (a.base && b.base && !given->selection.base) {
+/* Pairs `first` ... of those that are asked of, and their bodies; `shapes`: and those, if no poses bring them. */
+INLINE void load_pairs(const struct sources *given, size_t first, int count, bool shapes, struct pair_indices *out) {
+    const narc_index_column a = given->pairs.a, b = given->pairs.b, list = given->selection;
+    const bool arrays = a.base && b.base && a.stride == sizeof *a.base && b.stride == sizeof *b.base;
+    if (LIKELY(arrays && !list.base && count == BLOCK)) {
+        UNROLL
+        for (int k = 0; k < BLOCK; k += V_WIDTH) {
+            vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
+            vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
+            vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
+        }
         UNROLL_FEW
-        for (size_t k = 0; k < (size_t)count; k++)
-            load_pair(given, first + k, narc_index_at(a, first + k), narc_index_at(b, first + k), (int)k, out);
+        for (int k = 0; shapes && k < BLOCK; k++)
+            load_shapes_of(given, k, out);
+        return;
+    }
+    if (LIKELY(arrays && list.base && list.stride == sizeof *list.base && count == BLOCK)) {
+        UNROLL_FEW
+        for (int k = 0; k < BLOCK; k++) {
+            const uint32_t number = list.base[first + (size_t)k];
+            out->number[k] = (int32_t)number;
+            out->a[k] = (int32_t)a.base[number];
+            out->b[k] = (int32_t)b.base[number];
+            if (shapes)
+                load_shapes_of(given, k, out);
+        }
+        return;
+    }
+    if (LIKELY(a.base && b.base && !list.base)) {
+        UNROLL_FEW
+        for (size_t k = 0; k < (size_t)count; k++) {
+            out->number[k] = (int32_t)(uint32_t)(first + k);
+            out->a[k] = (int32_t)narc_index_at(a, first + k);
+            out->b[k] = (int32_t)narc_index_at(b, first + k);
+            if (shapes)
+                load_shapes_of(given, (int)k, out);
+        }
     } else {
         for (int k = 0; k < count; k++) {
-            const size_t number =
-                given->selection.base ? narc_index_at(given->selection, first + (size_t)k) : first + (size_t)k;
-            load_pair(given, number, a.base ? narc_index_at(a, number) : number,
-                      b.base ? narc_index_at(b, number) : number, k, out);
+            const size_t place = first + (size_t)k, number = list.base ? narc_index_at(list, place) : place;
+            out->number[k] = (int32_t)(uint32_t)number;
+            out->a[k] = (int32_t)(uint32_t)(a.base ? narc_index_at(a, number) : number);
+            out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
+            if (shapes)
+                load_shapes_of(given, k, out);
         }
     }
-    for (int k = count; k % V_WIDTH != 0; k++) {
-        out->number[k] = out->number[0];
-        out->a[k] = out->a[0];
-        out->b[k] = out->b[0];
-        out->shape_a[k] = out->shape_a[0];
-        out->shape_b[k] = out->shape_b[0];
+    for (int k = count; k % V_WIDTH != 0; k++) { /* lanes behind the last pair repeat it */
+        out->number[k] = out->number[count - 1];
+        out->a[k] = out->a[count - 1];
+        out->b[k] = out->b[count - 1];
+        if (shapes)
+            load_shapes_of(given, k, out);
     }
 }
 
@@ -145,7 +174,7 @@ struct body_pair {
 };
 
 INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
-                             struct body_pair *out) {
+                             struct body_pair *out, int32_t *const out_shapes[2]) {
     const char *row = bodies->x.base, *half = row + 2 * sizeof(double);
     const ptrdiff_t stride = bodies->x.stride;
     const vf shifts[2] = {shift ? shift->x : v_set(0), shift ? shift->y : v_set(0)};
@@ -154,6 +183,10 @@ INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const 
     v_rows(half, stride, b, of_b);
     v_double_differences(row, stride, a, b, shift ? shifts : NULL, difference);
     *out = (struct body_pair){{difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
+    if (out_shapes) {
+        vi_store(out_shapes[0], vi_bits(of_a[3]));
+        vi_store(out_shapes[1], vi_bits(of_b[3]));
+    }
 }
 
 INLINE void load_columns(const struct sources *given, const int32_t *a, const int32_t *b, const vec2 *shift,
@@ -174,9 +207,9 @@ INLINE struct body_pair load_lanes(const narc_bodies *a, const narc_bodies *b, s
                               v_load(a->scale.base + k), v_load(b->scale.base + k)};
 }
 
-/* `shift`: of B, or NULL. */
+/* `shift`: of B, or NULL. `out_shapes`: where those of POSE_DOUBLE_ROWS go, or NULL. */
 INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layout layout, const int32_t *a,
-                                    const int32_t *b, const vec2 *shift) {
+                                    const int32_t *b, const vec2 *shift, int32_t *const out_shapes[2]) {
     struct body_pair pair;
     if (LIKELY(layout == POSE_ROWS && !shift)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
@@ -188,7 +221,7 @@ INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layou
                                   load_column_or(given->a.scale, a, 1),
                                   load_column_or(given->b.scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
-        load_double_rows(&given->a, a, b, shift, &pair);
+        load_double_rows(&given->a, a, b, shift, &pair, out_shapes);
     } else if (layout == POSE_LANES) {
         pair = load_lanes(&given->a, &given->b, (uint32_t)*a);
     } else {

@@ -77,14 +77,16 @@ INLINE struct placement place_bodies(const struct body_pair *bodies, vf margin) 
                               vm_and(near, vm_and(valid_a, valid_b))};
 }
 
-/* That of the pairs k ... of a block. */
-INLINE struct placement place_pairs(const struct call *call, const struct sources *given, const struct pair_indices *in,
-                                    int k, enum pose_layout layout) {
+/* That of the pairs k ... of a block. `shapes`: those that POSE_DOUBLE_ROWS bring go to the indices, too. */
+INLINE struct placement place_pairs(const struct call *call, const struct sources *given, struct pair_indices *in,
+                                    int k, enum pose_layout layout, bool shapes) {
     const narc_pairs *pairs = &given->pairs;
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
     const vec2 shift = {load_column_or(pairs->shift_x, in->number + k, 0),
                         load_column_or(pairs->shift_y, in->number + k, 0)};
-    const struct body_pair bodies = load_bodies(given, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
+    int32_t *const out_shapes[] = {in->shape_a + k, in->shape_b + k};
+    const struct body_pair bodies =
+        load_bodies(given, layout, in->a + k, in->b + k, shifted ? &shift : NULL, shapes ? out_shapes : NULL);
     return place_bodies(&bodies, load_column_or(call->margins, in->number + k, call->margin));
 }
 

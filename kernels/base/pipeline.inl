@@ -214,7 +214,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
-        load_indices(&given, call->first + block, n, &indices);
+        load_pairs(&given, call->first + block, n, layout != POSE_DOUBLE_ROWS, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
             begin_block_of_pieces(call, &given, &met, block);
         if (course->edged > 0 && block % REMEMBERED == 0)
@@ -223,7 +223,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
-            const struct placement placement = place_pairs(call, &given, &indices, k, layout);
+            const struct placement placement = place_pairs(call, &given, &indices, k, layout, true);
             vm asked = vm_front(n - k);
             if (course->take && !LIKELY(!call->boxes)) {
                 asked = course->take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);

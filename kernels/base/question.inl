@@ -19,10 +19,10 @@
 /* Answers the pairs `begin` ... of its queue, or passes them on to those of later stages. */
 typedef void stage(const struct call *call, struct queue *queues, int begin);
 
-/* Answers the pairs k ... of a queue of boxes or of capsules, `live` of them (box/box_pairs.inl). */
+/* Answers the pairs k ... of a queue of boxes, of capsules or with a circle, `live` of them (box/box_pairs.inl). */
 struct box_queue;
 typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
-enum { OF_BOXES, OF_CAPSULES, BOX_QUEUES };
+enum { OF_BOXES, OF_CAPSULES, WITH_CIRCLE, BOX_QUEUES };
 
 /* What a row is (write_rows() in rows.inl). */
 enum row_kind { CONTACT_ROWS, MANIFOLD_ROWS, SEPARATION_ROWS };

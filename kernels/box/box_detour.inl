@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * box_detour.inl - the way of pairs of two boxes or two capsules, beside that of all others (pipeline.inl): a queue for
- * each of the two kinds, of which a few vectors are answered at a time.
+ * box_detour.inl - the way of pairs of two boxes, of two capsules, and of a circle and any of the three, beside that of all
+ * others (pipeline.inl): a queue for each of these kinds, of which a few vectors are answered at a time.
  */
 #ifndef NARC_BOX_BOX_DETOUR_INL
 #define NARC_BOX_BOX_DETOUR_INL
@@ -16,26 +16,31 @@
 #include "base/rows.inl"
 #include "box/box_pairs.inl"
 #include "box/capsules.inl"
+#include "box/circles.inl"
 #include "kernels.h"
 #include "simd/simd.h"
 
-INLINE void start_boxes(struct call *call, struct box_queue queues[BOX_QUEUES], box_stage *boxes, box_stage *capsules) {
-    queues[OF_BOXES].count = queues[OF_CAPSULES].count = 0;
-    queues[OF_BOXES].answer = boxes;
-    queues[OF_CAPSULES].answer = capsules;
+/* `answers`: of each queue. */
+INLINE void start_boxes(struct call *call, struct box_queue queues[BOX_QUEUES], box_stage *const answers[BOX_QUEUES]) {
+    for (int kind = 0; kind < BOX_QUEUES; kind++) {
+        queues[kind].count = 0;
+        queues[kind].answer = answers[kind];
+    }
     call->boxes = queues;
 }
 
 INLINE bool boxes_wait(const struct call *call) {
-    return call->boxes && (call->boxes[OF_BOXES].count > 0 || call->boxes[OF_CAPSULES].count > 0);
+    const struct box_queue *const queues = call->boxes;
+    return queues && (queues[OF_BOXES].count | queues[OF_CAPSULES].count | queues[WITH_CIRCLE].count) > 0;
 }
 
-/* Takes pairs of boxes or capsules, of those in the lanes `open`, and answers them a few vectors at a time. Returns the
- * other lanes. `number`: of the first pair. */
+/* Takes pairs of shapes that have forms, of those in the lanes `open`, and answers them a few vectors at a time. Returns
+ * the other lanes. `number`: of the first pair. */
 INLINE vm take_detour(const struct call *call, const struct pair_indices *indices, int k,
                       const struct placement *placement, vm open, int32_t number) {
     const narc_box_form *forms = call->batch->shapes->boxes;
-    struct box_queue *const boxes = &call->boxes[OF_BOXES], *const capsules = &call->boxes[OF_CAPSULES];
+    struct box_queue *const boxes = &call->boxes[OF_BOXES], *const capsules = &call->boxes[OF_CAPSULES],
+                            *const circles = &call->boxes[WITH_CIRCLE];
     const struct box_form a = load_box_forms(forms, indices->shape_a + k);
     const struct box_form b = load_box_forms(forms, indices->shape_b + k);
     const vm in_range = vm_and(open, placement->in_range), two_boxes = vm_and(in_range, are_forms(&a, &b, NARC_IS_BOX));
@@ -44,17 +49,22 @@ INLINE vm take_detour(const struct call *call, const struct pair_indices *indice
         left = vm_and_not(left, take_boxes(call, &a, &b, placement, two_boxes, number, boxes));
     if (vm_any(left)) {
         const vm two_capsules = vm_and(in_range, are_forms(&a, &b, NARC_IS_CAPSULE));
+        const vm with_circle = vm_and(in_range, are_with_circle(&a, &b));
         if (vm_any(two_capsules))
             left = vm_and_not(left, take_capsules(call, &a, &b, placement, two_capsules, number, capsules));
+        if (NARC_CIRCLE_FORMS && vm_any(with_circle))
+            left = vm_and_not(left, take_circles(call, &a, &b, placement, with_circle, number, circles));
     }
-    if (call->rows && boxes->count > 0 && capsules->count > 0)
+    const bool with_boxes = boxes->count > 0 && (capsules->count | circles->count) > 0;
+    if (call->rows && (with_boxes || (capsules->count > 0 && circles->count > 0)))
         call->rows->done = -1; /* two queues are not in the order of their pairs */
     else if (call->rows && !vm_any(left) && !call->rows->dense && call->rows->done == number)
         call->rows->done += V_WIDTH;
-    if (boxes->count >= BOX_FLUSH)
-        run_boxes(call, boxes, false);
-    if (capsules->count >= BOX_FLUSH)
-        run_boxes(call, capsules, false);
+    _Static_assert((BOX_FLUSH & (BOX_FLUSH - 1)) == 0, "where one has reached it, the union of their bits has");
+    if ((boxes->count | capsules->count | circles->count) >= BOX_FLUSH)
+        for (int kind = 0; kind < BOX_QUEUES; kind++)
+            if (call->boxes[kind].count >= BOX_FLUSH)
+                run_boxes(call, &call->boxes[kind], false);
     return left;
 }
 

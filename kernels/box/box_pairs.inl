@@ -40,14 +40,15 @@ enum {
     BOX_ROTATION = 2,
     BOX_ROTATION_A = 4, /* A's rotation in the world */
     BOX_HALF_A = 6,     /* the half sizes of A, scaled */
-    BOX_HALF_B = 8,     /* those of B, not scaled: its corners are turned first */
-    BOX_SCALE_B = 10,
+    BOX_SCALE_B = 8,
     BOX_RADIUS_A, /* scaled */
     BOX_RADIUS_B,
-    BOX_SLACK,
-    BOX_CODE, /* bits: edge of A 0-1, edge of B 2-3, first arcs 4-5 and 6-7, BOX_TIE 8 */
-    BOX_PAIR, /* counted from the first of the call */
-    BOX_FIELDS
+    BOX_CODE,      /* bits: edge of A 0-1, edge of B 2-3, first arcs 4-5 and 6-7, BOX_TIE 8 */
+    BOX_PAIR,      /* counted from the first of the call */
+    CIRCLE_FIELDS, /* what pairs with a circle have (circles.inl) */
+    BOX_SLACK = CIRCLE_FIELDS,
+    BOX_HALF_B, /* those of B, not scaled: its corners are turned first */
+    BOX_FIELDS = BOX_HALF_B + 2
 };
 
 enum { BOX_TIE = 1 << 8 };
@@ -67,10 +68,10 @@ struct box_queue {
 };
 
 /* Appends the lanes `keep` of `item`. */
-INLINE void push_boxes(struct box_queue *queue, vm keep, const vf item[BOX_FIELDS]) {
+INLINE void push_boxes(struct box_queue *queue, vm keep, const vf *item, int fields) {
     const vp packing = vm_packing(keep);
     UNROLL
-    for (int f = 0; f < BOX_FIELDS; f++)
+    for (int f = 0; f < fields; f++)
         v_store(queue->item[f] + queue->count, v_pack(packing, item[f]));
     queue->count += COUNT_BITS(vm_bits(keep));
 }
@@ -183,7 +184,7 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         item[BOX_SLACK] = slack;
         item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
         item[BOX_PAIR] = v_of_bits(pairs);
-        push_boxes(queue, near, item);
+        push_boxes(queue, near, item, BOX_FIELDS);
     }
     return taken;
 }

@@ -89,7 +89,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
         item[BOX_SLACK] = slack;
         item[BOX_CODE] = v_of_bits(vi_add(code, first));
         item[BOX_PAIR] = v_of_bits(pairs);
-        push_boxes(queue, near, item);
+        push_boxes(queue, near, item, BOX_FIELDS);
     }
     return taken;
 }

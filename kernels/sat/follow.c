@@ -148,11 +148,11 @@ INLINE size_t follow_pairs(const narc_batch *batch, size_t first, size_t count, 
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
-        load_bodies_of(&given, first + block, n, &indices);
+        load_pairs(&given, first + block, n, false, &indices);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = indices.number + k;
             const bool in_line = are_in_line(number);
-            const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
+            const struct placement placement = place_pairs(&call, &given, &indices, k, layout, false);
             const vm live = vm_front(n - k);
             vf word[ENTRY_WORDS];
             load_items(entries, ENTRY_WORDS, number, in_line, word);

@@ -41,40 +41,4 @@ INLINE void load_items(const void *items, int words, const int32_t *number, bool
             v_rows((const float *)items + w, size, number, word + w);
 }
 
-/* The pairs of a block, without their shapes. */
-INLINE void load_bodies_of(const struct sources *given, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column a = given->pairs.a, b = given->pairs.b;
-    const bool selected = given->selection.base != NULL;
-    if (LIKELY(!selected && count == BLOCK && a.stride == sizeof *a.base && b.stride == sizeof *b.base && a.base &&
-               b.base)) {
-        UNROLL
-        for (int k = 0; k < BLOCK; k += V_WIDTH) {
-            vi_store(out->number + k, vi_add(vi_lanes(), vi_set((int32_t)(uint32_t)first + k)));
-            vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
-            vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
-        }
-        return;
-    }
-    const narc_index_column list = given->selection;
-    if (LIKELY(selected && count == BLOCK && list.stride == sizeof *list.base && a.stride == sizeof *a.base &&
-               b.stride == sizeof *b.base && a.base && b.base)) {
-        UNROLL_FEW
-        for (int k = 0; k < BLOCK; k++) {
-            const uint32_t number = list.base[first + (size_t)k];
-            out->number[k] = (int32_t)number;
-            out->a[k] = (int32_t)a.base[number];
-            out->b[k] = (int32_t)b.base[number];
-        }
-        return;
-    }
-    const int end = (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH; /* lanes behind the last pair repeat it */
-    for (int k = 0; k < end; k++) {
-        const size_t at = first + (size_t)(k < count ? k : count - 1);
-        const size_t number = selected ? narc_index_at(given->selection, at) : at;
-        out->number[k] = (int32_t)(uint32_t)number;
-        out->a[k] = (int32_t)(uint32_t)(a.base ? narc_index_at(a, number) : number);
-        out->b[k] = (int32_t)(uint32_t)(b.base ? narc_index_at(b, number) : number);
-    }
-}
-
 #endif

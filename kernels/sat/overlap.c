@@ -20,6 +20,7 @@
 #include "box/box_detour.inl"
 #include "box/box_pairs.inl"
 #include "box/capsules.inl"
+#include "box/circles.inl"
 #include "kernels.h"
 #include "piece/overlaps.inl"
 #include "sat/certificates.inl"
@@ -128,6 +129,12 @@ static void answer_capsule_overlaps(const struct call *call, const struct box_qu
     mark_box_overlaps(call, queue, k, live, true);
 }
 
+static void answer_circle_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    const struct box_pair pair = {queue, k, false};
+    const struct circle_contact c = find_circle_contact(&pair);
+    mark_pairs(call, vi_bits(get_box_field(&pair, BOX_PAIR)), vm_and(vm_front(live), v_lt(c.separation, v_set(0))));
+}
+
 /* All pairs; of those with a piece, which ones are near. */
 NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[STAGES] = {NARC_SHORTCUTS ? probe_overlaps : NULL,
@@ -140,11 +147,13 @@ NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
                                   .edged = NARC_SHORTCUTS ? CLIMB : 0,
                                   .end = STAGES};
+    static box_stage *const answers[BOX_QUEUES] = {answer_box_overlaps, answer_capsule_overlaps,
+                                                   NARC_CIRCLE_FORMS ? answer_circle_overlaps : NULL};
     struct queue queues[STAGES];
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     struct box_queue boxes[BOX_QUEUES];
     if (NARC_SHORTCUTS && batch->shapes->box_count > 0)
-        start_boxes(&call, boxes, answer_box_overlaps, answer_capsule_overlaps);
+        start_boxes(&call, boxes, answers);
     run_pairs(&call, &course, queues);
     if (NARC_SHORTCUTS && call.boxes)
         end_boxes(&call);

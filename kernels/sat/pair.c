@@ -33,6 +33,7 @@ enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "box/capsules.inl"
+#include "box/circles.inl"
 #include "sat/answers.inl"
 #include "sat/certificates.inl"
 #include "sat/faces.inl"
@@ -77,15 +78,6 @@ INLINE struct filter set_up_one(const struct one *one, const narc_one_pair *at, 
     in.shape_a[0] = (int32_t)at->shape_a;
     in.shape_b[0] = (int32_t)at->shape_b;
     return set_up_pairs(&one->call, &in, 0, &one->placement, vm_front(1), 0, item);
-}
-
-NOINLINE int find_of_circles(struct one *one, const narc_one_pair *at, bool manifold) {
-    vf item[FIELDS];
-    const struct filter circles = set_up_one(one, at, item);
-    (void)manifold;
-    if (vm_any(vm_or(circles.invalid, circles.apart)))
-        return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
-    return vm_any(answer_discs(&one->call, vm_front(1), circles.margin, item, false)) ? UNANSWERED : end_one(one);
 }
 
 /* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
@@ -160,6 +152,20 @@ NOINLINE int find_of_capsules(struct one *one, const narc_one_pair *at, bool man
     return find_of_forms(one, at, manifold, true);
 }
 
+/* A circle, and any shape that has a form. */
+NOINLINE int find_with_circle(struct one *one, const narc_one_pair *at, bool manifold) {
+    struct box_queue queue;
+    const narc_box_form *const forms = one->call.batch->shapes->boxes;
+    const int32_t shape_a = (int32_t)at->shape_a, shape_b = (int32_t)at->shape_b;
+    const struct box_form a = load_box_forms(forms, &shape_a), b = load_box_forms(forms, &shape_b);
+    queue.count = 0;
+    if (!vm_any(take_circles(&one->call, &a, &b, &one->placement, one->placement.in_range, 0, &queue)))
+        return search_one(one, at, manifold);
+    if (queue.count > 0)
+        answer_circles(&one->call, &queue, 0, 1);
+    return end_one(one);
+}
+
 int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_one_pair *at, bool manifold,
                                                void *out_row) {
     const narc_shapes *const shapes = batch->shapes;
@@ -168,13 +174,11 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const na
     if (narc_is_piece(a) || narc_is_piece(b))
         return UNANSWERED;
     start_one(&one, batch, at, manifold, out_row);
-    if (a->flags & b->flags & NARC_SHAPE_CIRCLE)
-        return find_of_circles(&one, at, manifold);
-    const uint32_t forms =
-        shapes->box_count > 0 ? shapes->boxes[at->shape_a].info & shapes->boxes[at->shape_b].info : 0;
-    return (forms & NARC_IS_BOX       ? find_of_boxes
-            : forms & NARC_IS_CAPSULE ? find_of_capsules
-                                      : search_one)(&one, at, manifold);
+    const uint32_t form_a = shapes->boxes[at->shape_a].info, form_b = shapes->boxes[at->shape_b].info;
+    return (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE ? find_with_circle
+            : form_a & form_b & NARC_IS_BOX                        ? find_of_boxes
+            : form_a & form_b & NARC_IS_CAPSULE                    ? find_of_capsules
+                                                                   : search_one)(&one, at, manifold);
 }
 
 #else

@@ -141,12 +141,12 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
     size_t open = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
-        load_bodies_of(&given, first + block, n, &indices);
+        load_pairs(&given, first + block, n, false, &indices);
         const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = items + k;
             const bool in_line = are_in_line(number);
-            const struct placement placement = place_pairs(&call, &given, &indices, k, layout);
+            const struct placement placement = place_pairs(&call, &given, &indices, k, layout, false);
             vf word[WORDS];
             load_items(kept, WORDS, number, in_line, word);
             const vec2 span[2] = {find_span(word, &placement.pose, 0), find_span(word, &placement.pose, 1)};
@@ -187,12 +187,12 @@ void NARC_NAMED(keep)(const narc_batch *batch, size_t first, size_t count, const
     struct pair_indices indices;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
-        load_indices(&given, first + block, n, &indices);
+        load_pairs(&given, first + block, n, true, &indices);
         const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = items + k;
             const struct rows_of row = load_rows(rows, number, manifold);
-            const struct body_pair bodies = load_bodies(&given, layout, indices.a + k, indices.b + k, NULL);
+            const struct body_pair bodies = load_bodies(&given, layout, indices.a + k, indices.b + k, NULL, NULL);
             const struct headers a = load_headers(batch->shapes->headers, indices.shape_a + k);
             const struct headers b = load_headers(batch->shapes->headers, indices.shape_b + k);
             const vec2 q_a = find_unit(bodies.rotation_a), q_b = find_unit(bodies.rotation_b);

@@ -19,6 +19,7 @@
 #include "box/box_detour.inl"
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
+#include "box/circles.inl"
 #include "kernels.h"
 #include "piece/beside.inl"
 #include "piece/concave_detour.inl"
@@ -63,6 +64,10 @@ static void answer_rows_of_capsules(const struct call *call, const struct box_qu
     answer_boxes(call, queue, k, live, true, false);
 }
 
+static void answer_circle_rows(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_circles(call, queue, k, live);
+}
+
 /* Takes the pairs through `end` stages, each with a queue. `concave`: one for pairs with concave arcs, or NULL if there are
  * no pieces. */
 NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, struct queue *concave) {
@@ -86,9 +91,11 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     struct box_queue boxes[BOX_QUEUES];
     struct call call = *given;
     call.concave = concave;
+    box_stage *const answers[BOX_QUEUES] = {second ? question->boxes : answer_rows_of_boxes,
+                                            second ? question->capsules : answer_rows_of_capsules,
+                                            NARC_CIRCLE_FORMS ? answer_circle_rows : NULL};
     if (NARC_SHORTCUTS && call.batch->shapes->box_count > 0)
-        start_boxes(&call, boxes, second ? question->boxes : answer_rows_of_boxes,
-                    second ? question->capsules : answer_rows_of_capsules);
+        start_boxes(&call, boxes, answers);
     run_pairs(&call, &course, queues);
     if (NARC_SHORTCUTS && call.boxes)
         end_boxes(&call);

@@ -363,7 +363,7 @@ INLINE void begin_half(const struct cast_call *call, narc_casts *casts, size_t k
  * no answer, are done. */
 NOINLINE void begin_casts(struct cast_call *call, size_t first, size_t count, narc_casts *casts) {
     struct pair_indices in;
-    load_indices(&call->sources, first, (int)count, &in);
+    load_pairs(&call->sources, first, (int)count, true, &in);
     for (int k = 0; k < (int)count; k += V_WIDTH) {
         const size_t to = casts->count;
         float outcome[V_WIDTH];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * routes.c - pairs of discs are answered without a queue where a vector has no others, and pairs with edges skip stages
+ * routes.c - pairs of discs have a short way where a vector has no others, and pairs with edges skip stages
  * where most of those before them rest on each other: answers must not depend on the company of a pair.
  * And where proofs once claimed too much.
  */
