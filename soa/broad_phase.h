@@ -73,11 +73,11 @@ enum { NARC_CHANGED = 1, NARC_RESHAPED = 2, NARC_ALL_CHANGED = 3, NARC_HAS_NEW =
 /* The poses that boxes were computed from the last time, which serve again while all else is the same. */
 typedef struct narc_known_poses {
     narc_pose_bits *poses;
-    narc_motion_bits *motions;   /* if there are columns of any */
-    size_t count;                /* of the first bodies */
-    float *slack;                /* so far a body may move and be in its box still: boxes_now are larger by this at first */
-    uint8_t *moved;              /* 1: the box may be another one than the kept box was made from */
-    uint8_t *changed;            /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
+    narc_motion_bits *motions; /* if there are columns of any */
+    size_t count;              /* of the first bodies */
+    float *slack;     /* so far a body may move and be in its box still: boxes_now are larger by this at first */
+    uint8_t *moved;   /* 1: the box may be another one than the kept box was made from */
+    uint8_t *changed; /* NARC_CHANGED, NARC_RESHAPED: since who keeps contacts set it to 0 */
     narc_precision precision;    /* of positions */
     bool has_motions, has_boxes; /* has_boxes: boxes_now are theirs */
     const narc_shapes *shapes;

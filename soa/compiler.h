@@ -43,7 +43,12 @@
 
 #define LIKELY(condition) __builtin_expect(condition, 1)
 #define FETCH(address)    __builtin_prefetch(address)
-#define TYPE_OF(value)    __typeof__(value)
+#ifdef __wasm__ /* it has no such instruction */
+#define FETCHES 0
+#else
+#define FETCHES 1
+#endif
+#define TYPE_OF(value) __typeof__(value)
 
 /* Within a function that only fetches: GCC takes it for one without effect, and leaves out its calls. */
 #ifdef __clang__

@@ -165,7 +165,7 @@ INLINE bool begins_with_piece(const struct call *call, narc_index_column body, n
 }
 
 INLINE struct pieces_met meet_pieces(const struct call *call, const struct sources *given) {
-    struct pieces_met met = {.many = call->batch->shapes->record_count >= MANY_RECORDS};
+    struct pieces_met met = {.many = FETCHES && call->batch->shapes->record_count >= MANY_RECORDS};
     if (met.many && call->count > BLOCK) {
         met.of_a = begins_with_piece(call, given->pairs.a, given->a.shape);
         met.of_b = begins_with_piece(call, given->pairs.b, given->b.shape);
