@@ -123,14 +123,19 @@ narc_status narc_check_numbers(const narc_query *query, const char *name, narc_e
     return status;
 }
 
+narc_status narc_check_asking(const narc_query *query, narc_error *error) {
+    const narc_status status = narc_check_numbers(query, "query", error);
+    return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
+}
+
 static narc_status check_query(const narc_query *query, size_t pair_count, narc_error *error) {
-    narc_status status = narc_check_numbers(query, "query", error);
+    const narc_status status = narc_check_asking(query, error);
     if (status == NARC_OK && !query->selection.base && query->selection_count > 0)
         return narc_fail_missing(error, "query.selection");
     if (status == NARC_OK && query->selection_count > pair_count)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->selection_count,
                          "query.selection_count is %zu, but there are %zu pairs", query->selection_count, pair_count);
-    return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
+    return status;
 }
 
 struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side) {

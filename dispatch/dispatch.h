@@ -27,6 +27,9 @@ narc_status narc_check_count(size_t count, size_t most, const char *items, narc_
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
 
+/* And that nothing is asked for that this version does not know: what there is to check of a query without its pairs. */
+narc_status narc_check_asking(const narc_query *query, narc_error *error);
+
 /* The sine of a query's flat angle; below 0: no second points. */
 float narc_find_flat_sine(float angle);
 

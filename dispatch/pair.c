@@ -106,15 +106,7 @@ size_t narc_find_few_manifolds(const narc_batch *batch, size_t first, size_t cou
 
 static const narc_query defaults;
 
-static bool is_in_order(const narc_query *query) {
-    for (size_t k = 0; k < sizeof query->reserved / sizeof(void *); k++)
-        if (query->reserved[k])
-            return false;
-    return query->margin == query->margin && query->second_margin == query->second_margin &&
-           query->flat_angle <= NARC_MAX_FLAT_ANGLE;
-}
-
-/* Through a batch, which says what is wrong. What counts of a query is copied; there is a row in any case. */
+/* Through a batch, which says what is wrong. What is of many pairs in a query does not count; there is a row in any case. */
 static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, const narc_body *b, const narc_query *query,
                              bool manifold, void *out_row, narc_error *error) {
     if (!a || !b || !out_row)
@@ -122,14 +114,14 @@ static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, cons
     const narc_body two[] = {*a, *b};
     const narc_bodies bodies = narc_view_bodies(two, 2);
     const narc_pairs pair = {.count = 1};
-    narc_query own = {.margin = query->margin,
-                      .second_margin = query->second_margin,
-                      .flat_angle = query->flat_angle,
-                      .dense = 1,
-                      .out_skipped = query->out_skipped,
-                      .front_only = query->front_only};
+    narc_query own = *query;
     size_t count;
-    memcpy(own.reserved, query->reserved, sizeof own.reserved);
+    own.margins = (narc_float_column){NULL, 0};
+    own.selection = (narc_index_column){NULL, 0};
+    own.selection_count = own.first = own.count = 0;
+    own.row_stride = 0;
+    own.workers = NULL;
+    own.dense = 1;
     return manifold ? narc_find_manifolds(shapes, &bodies, &pair, &own, out_row, 1, &count, error)
                     : narc_find_contacts(shapes, &bodies, &pair, &own, out_row, 1, &count, error);
 }
@@ -138,7 +130,7 @@ static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, cons
 static int ask_kernel(const narc_shapes *shapes, const narc_body *a, const narc_body *b, const narc_query *query,
                       bool manifold, void *out_row) {
     if (!shapes || !a || !b || !out_row || a->shape >= shapes->count || b->shape >= shapes->count ||
-        !is_in_order(query))
+        narc_check_asking(query, NULL) != NARC_OK)
         return -1;
     narc_status status = NARC_OK;
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);

@@ -72,8 +72,8 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *                       boxes were made
  *   same_pairs          not 0: these are the pairs of the last step that did not fail, and are not looked at. (Bodies that
  *                       have other numbers make others of them)
- *   skin                at least 0: bodies may move by this until pairs are looked for again. A larger one makes that
- *                       rarer, and more pairs
+ *   skin                at least 0: bodies may move by seven eighths of this until pairs are looked for again. A larger
+ *                       one makes that rarer, and more pairs
  *   recycling           at least 0, a length. 0: rows are, to the last bit, what narc_find_manifolds() (or contacts)
  *                       says of these bodies; those of pairs of which neither moves (narc_pair_filter), what it said
  *                       when one did. Above 0: a row with an edge, or of ground, is kept while its points have

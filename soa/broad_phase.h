@@ -82,7 +82,7 @@ typedef struct narc_known_poses {
     bool has_motions, has_boxes; /* has_boxes: boxes_now are theirs */
     const narc_shapes *shapes;
     uint64_t history;   /* of the shapes */
-    float margin, skin; /* the skin: for `moved` */
+    float margin, skin; /* the skin: for `moved`, `slack` */
 } narc_known_poses;
 
 /* Where a kernel puts the bodies whose boxes overlap, a and b in any order: room for some now, and more when it asks. */

@@ -144,6 +144,8 @@ static float find_way(const box_job *job, const narc_pose_bits *from, const narc
     memcpy(now, &to->word[2], sizeof now);
     const float turn = fabsf(now[0] - then[0]) + fabsf(now[1] - then[1]);
     const float way = (float)(fabs(x) + fabs(y)) + turn * extent * narc_float_or(bodies->scale, body, 1);
+    if (narc_is_piece(shape)) /* its box holds what lies behind it, too */
+        return INFINITY;
     return is_unit(then[0], then[1]) && is_unit(now[0], now[1]) ? way * (1 + 0x1p-6f) : INFINITY;
 }
 

@@ -89,11 +89,13 @@ static inline bool narc_has_motions(const narc_step *step) {
     return step->motion_x.base || step->motion_y.base || step->reach.base || step->ahead.base || step->run.base;
 }
 
-/* What of the skin lies around broad->boxes_now, so that bodies that tremble keep theirs; kept boxes have the rest. */
+/* What of the skin lies around broad->boxes_now, so that bodies that tremble keep theirs. Kept boxes are larger than
+ * these by what is left without it again: a body may be out of its box by as much, and pairs that are listed are not further
+ * apart than they may be. */
 static inline float narc_find_slack(float skin, bool has_motions) { return has_motions ? 0 : skin / 16; }
 
 static inline float narc_find_kept_skin(const narc_step *step) {
-    return step->skin - narc_find_slack(step->skin, narc_has_motions(step));
+    return step->skin - 2 * narc_find_slack(step->skin, narc_has_motions(step));
 }
 
 /* Computes broad->boxes_now, larger by the slack. Bodies that have hardly moved keep theirs, and without a look at them if those

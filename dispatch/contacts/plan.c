@@ -329,7 +329,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
     if (what == NARC_ASK) { /* one that touches is better asked */
         const unsigned follows = !stale & !reshaped & ((was & NARC_SLOT_KEPT) != 0);
-        what = !touches && are_apart(v, v->a[k], v->b[k]) ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK;
+        what = follows ? NARC_FOLLOW : !touches && are_apart(v, v->a[k], v->b[k]) ? NARC_APART : NARC_ASK;
     }
     if (what == NARC_NOTHING)
         return;
@@ -347,9 +347,9 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
 /* In a scene at rest so many slots are looked at at a time, byte by byte, many of which a vector holds. */
 enum { CHUNK = 64 };
 
-/* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: they touch, are as they were,
- * and their rows may follow if a body has moved. Puts the numbers of all others, less `first`, into `other`, and what has
- * changed of both bodies into `found`; returns how many these are. */
+/* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: something is kept of them, they
+ * are as they were, and a body has moved. Puts the numbers of all others, less `first`, into `other`, and what has changed
+ * of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but time. */
 static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
                              uint8_t other[CHUNK], uint32_t **candidates) {
     const uint32_t *const a = v->a + first, *const b = v->b + first;

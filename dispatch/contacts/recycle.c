@@ -27,7 +27,7 @@ void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const u
         .margin = INFINITY, .dense = 1, .selection = {slots, sizeof *slots}, .selection_count = count};
     const narc_rows out = {.base = (char *)c->kept + offsetof(narc_kept_row, apart), .stride = sizeof *c->kept};
     narc_batch batch;
-    size_t skipped;
+    size_t skipped = 0;
     const narc_kernel_table *const kernels = count > 0 ? narc_fill_slots(s, pairs, &query, &batch) : NULL;
     if (!kernels)
         return;
@@ -42,6 +42,8 @@ void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const u
         kept->lever = -(0x1p17f * c->room[a] + apart);
         if (kept->apart > 0 && kept->apart < INFINITY)
             c->flags[slot] |= NARC_SLOT_KEPT;
+        else
+            *kept = (narc_kept_row){.lever = 0}; /* it is saved, of use or not */
     }
 }
 

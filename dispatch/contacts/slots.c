@@ -134,10 +134,10 @@ narc_status narc_reserve_slots(const narc_contact_step *s) {
     const struct {
         narc_growth growth;
         size_t *capacity, count;
-    } needed[] = {{NARC_OF_SLOTS, &c->slot_capacity,
-                   slots + 1}, /* what is listed without a branch may be written behind the last */
+    } needed[] = {/* what is listed without a branch may be written behind the last */
+                  {NARC_OF_SLOTS, &c->slot_capacity, slots + 1},
                   {NARC_OF_SLOTS_AHEAD, &c->ahead_capacity, s->step->ahead.base ? slots : 0},
-                  {NARC_OF_PAIRS, &c->order_capacity, pairs},
+                  {NARC_OF_PAIRS, &c->order_capacity, pairs + 1},
                   {NARC_OF_FILTERED_PAIRS, &c->filtered_capacity, c->broad->has_filter ? pairs : 0},
                   {NARC_OF_GROUND_PAIRS, &c->ground_capacity, s->has_ground ? pairs : 0},
                   {NARC_OF_EVENTS, &c->event_capacity, pairs + (list->kept ? 0 : list->lost_count)},

@@ -47,9 +47,11 @@ INLINE void load_pairs(const struct sources *given, size_t first, int count, boo
             vi_store(out->a + k, vi_load((const int32_t *)a.base + first + k));
             vi_store(out->b + k, vi_load((const int32_t *)b.base + first + k));
         }
-        UNROLL_FEW
-        for (int k = 0; shapes && k < BLOCK; k++)
-            load_shapes_of(given, k, out);
+        if (shapes) {
+            UNROLL_FEW
+            for (int k = 0; k < BLOCK; k++)
+                load_shapes_of(given, k, out);
+        }
         return;
     }
     if (LIKELY(arrays && list.base && list.stride == sizeof *list.base && count == BLOCK)) {
@@ -144,7 +146,7 @@ INLINE vf load_column_or(narc_float_column column, const int32_t *number, float 
 }
 
 /* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, or
- * where one set has doubles, in double precision), then rounded. */
+ * where one set has doubles, in double precision), then rounded. dispatch/pair.c has the same bits of one pair. */
 INLINE float find_difference(narc_position_column of_a, narc_position_column of_b, size_t a, size_t b,
                              const float *shift) {
     if (of_a.precision == NARC_FLOAT32 && of_b.precision == NARC_FLOAT32 && !shift)

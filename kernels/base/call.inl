@@ -23,7 +23,7 @@ struct call {
     uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
     struct rows *rows;               /* the others: the same */
     const struct question *question; /* theirs */
-    struct box_queue *boxes;         /* pairs of boxes and of capsules that wait (box/box_detour.inl), or NULL */
+    struct box_queue *boxes;         /* pairs of forms that wait (box/box_detour.inl), or NULL */
     bool pieces;                     /* are there pieces of chains? */
     struct queue *concave;           /* rows, with pieces: where pairs with a concave arc wait; else NULL */
 };

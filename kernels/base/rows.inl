@@ -21,7 +21,7 @@
 #include "simd/simd.h"
 
 /* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. All pairs
- * before `done` are answered and have `listed` rows, or wait in the queue of boxes, or in that of capsules, in their
+ * before `done` are answered and have `listed` rows, or wait in a queue of forms (box/box_detour.inl), in their
  * order; -1: no more rows are listed. */
 struct rows {
     narc_rows out;
@@ -65,14 +65,14 @@ INLINE char *find_place(const struct call *call, int32_t pair) {
  * vain stays in one line of the cache. */
 INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
     struct rows *rows = call->rows;
-    char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
-    const ptrdiff_t stride = rows->out.stride;
-    int32_t row[V_WIDTH];
     if (BLOCK == 1) {
         rows->known[0] = vm_any(keep) != 0;
         place[0] = choose(rows->known[0], rows->out.base, rows->spare);
         return;
     }
+    char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
+    const ptrdiff_t stride = rows->out.stride;
+    int32_t row[V_WIDTH];
     vi_store(row, vi_select(keep, pairs, vi_set(NARC_ROW_GROUP)));
     for (int lane = 0; lane < V_WIDTH; lane++) {
         place[lane] = choose(row[lane] < NARC_ROW_GROUP, base + row[lane] * stride, rows->spare);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * answers.inl - the last step of pairs with rows: of two circles, which is their only one, of those that the search has
+ * answers.inl - the last step of pairs with rows: of two circles off their origins, which is their only one, of those that the search has
  * settled, and of polygons.
  */
 #ifndef NARC_SAT_ANSWERS_INL

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * kept.inl - what is kept of pairs, and their bodies, without their shapes.
+ * kept.inl - what is kept of pairs, at their numbers.
  */
 #ifndef NARC_SAT_KEPT_INL
 #define NARC_SAT_KEPT_INL

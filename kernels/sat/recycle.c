@@ -125,8 +125,9 @@ INLINE void move_rows(const vf word[WORDS], const struct placement *placement, c
 }
 
 /* Lets rows of those of a batch's pairs first .. first + count - 1 follow whose bodies have moved by less than the
- * tolerance, and whose first point still is within the margin, and pairs without a row stay so; `batch->row_size` says which rows. Lists the numbers of all other pairs in `left`, in their order, and returns
- * how many there are; their rows stay as they were. Number item[i] of what is kept and of the rows is that of the pair at
+ * tolerance, and whose first point still is within the margin, and pairs without a row stay so; `batch->row_size` says which
+ * rows. Lists the numbers of all other pairs in `left`, in their order, and returns how many there are; their rows stay as
+ * they were. Number item[i] of what is kept and of the rows is that of the pair at
  * first + i; `item` NULL: its own number. Without rows (`out` NULL) it is only told who may. */
 size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, const uint32_t *item,
                            const narc_kept_row *kept, float tolerance, const narc_rows *out, uint32_t *left) {

@@ -66,8 +66,8 @@ INLINE struct probe probe_arcs(const narc_record *records, const struct queue *q
     return p;
 }
 
-/* Of two circles there is nothing to search: the gap is largest from centre to centre. They are answered as they are
- * set up, without a queue. */
+/* Of two circles there is nothing to search: the gap is largest from centre to centre. Those that have no form, off their
+ * origins, are answered as they are set up, without a queue. */
 
 /* Are there pairs in the lanes `open`, all of two circles? */
 INLINE bool are_discs(vm open, const vf item[FIELDS]) {

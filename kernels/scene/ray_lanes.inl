@@ -156,8 +156,7 @@ struct lane_rays {
 };
 
 /* Where they meet a body that is no piece, all in front of them: out_fraction is at least 0, -1 of those that are to be
- * asked alone, and NaN of others. `ignores`: these are not
- * asked that start in the body. False if it is that of all. */
+ * asked alone, and NaN of others. `ignores`: those that start in the body are not asked. False if it is that of all. */
 INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays *rays, bool ignores,
                           struct entry_lanes *entries, struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
     const narc_shape_header *const header = frame->header;

@@ -661,6 +661,62 @@ TEST(a_filter_makes_pairs) {
     destroy_few(few);
 }
 
+/* As many pairs as there is room for, and behind their slots one that had a pair: nothing is written behind the lists. */
+TEST(lists_have_room_behind_slots_that_are_free) {
+    enum { FIRST = 4, ALL = 260 /* as many as there is room for after FIRST */ };
+    allowed = SIZE_MAX;
+    struct few *const few = make_few(box_of(1, 1, 0), 2 * ALL + 4, &watched);
+    uint32_t a[ALL], b[ALL];
+    narc_pairs pairs = {.a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    few->step.pairs = &pairs;
+    few->step.recycling = 0.05f;
+    for (uint32_t step = 0; step < 10; step++) {
+        pairs.count = step == 0 ? FIRST : ALL;
+        for (uint32_t k = 0; k < ALL; k++) {
+            const uint32_t pair = k > 0 || step < 2 ? k : step < 4 ? ALL : ALL + 1;
+            a[k] = 2 * pair;
+            b[k] = 2 * pair + 1;
+        }
+        for (size_t k = 1; k < few->bodies.count; k += 2)
+            few->body[k].x += 1e-4;
+        assert_int_equal(step_few(few)->touching_count, pairs.count);
+    }
+    destroy_few(few);
+}
+
+/* Steps after loading are those after saving: pairs without a row, whose boxes part later, too. */
+TEST(bare_pairs_are_loaded_as_they_were) {
+    const double x[] = {1.9, 1.901, 1.902, 1.903, 1.904, 2.1, 1.9, 1.901, 4, 1.9};
+    struct few *const few = make_few(box_of(sqrt(2), sqrt(2), 0), 2, NULL);
+    narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    struct bytes from = {0}, to = {0};
+    narc_error error;
+    few->step.skin = 0.5f;
+    for (int k = 0; k < 2; k++)
+        few->body[k].cosine = few->body[k].sine = 0.70710678f;
+    for (size_t k = 0; k < sizeof x / sizeof *x; k++) {
+        few->body[1].x = few->body[1].y = x[k];
+        const narc_step_result *const r = step_few(few);
+        const size_t asked = r->asked_count;
+        assert_int_equal(r->touching_count, 0);
+        save(saved, &from);
+        if (k == 4)
+            expect_ok(narc_load_contacts(loaded, few->store, from.all, from.count, NULL, &error), &error);
+        if (k <= 4)
+            continue;
+        few->contacts = loaded;
+        assert_int_equal(step_few(few)->asked_count, asked);
+        few->contacts = saved;
+        save(loaded, &to);
+        assert_int_equal(from.count, to.count);
+        assert_memory_equal(from.all, to.all, to.count);
+    }
+    free(from.all);
+    free(to.all);
+    narc_destroy_contacts(loaded);
+    destroy_few(few);
+}
+
 /* Two that creep or turn towards each other, by so little in a step that most keep their boxes, are listed when they are near,
  * though they were not when they began, and have a row as soon as there is one. */
 TEST(bodies_that_creep_are_found) {
@@ -668,7 +724,7 @@ TEST(bodies_that_creep_are_found) {
     for (size_t trial = 0; trial < test_trials(60); trial++) {
         struct few *const few = make_few(capsule_of(4, 0.25), 2, NULL);
         const float ahead[] = {0.3f, 0.3f}, more = trial % 4 < 2 ? 0.6f : 0;
-        const double gap = 0.02 + (double)more + 2 * random_between(&random, 0.9, 1.01);
+        const double gap = 0.02 + (double)more + 2 * random_between(&random, 0.85, 1.01);
         const double step = random_between(&random, 0.002, 0.05);
         const bool turns = trial % 2;
         size_t found = 0, listed = 0;
@@ -676,7 +732,7 @@ TEST(bodies_that_creep_are_found) {
             few->step.ahead = few->step.reach = NARC_ARRAY(ahead);
         few->body[1].x = 0;
         few->body[1].y = 0.5 + gap;
-        assert_int_equal(step_few(few)->count, gap - (double)more < 2.02);
+        assert_int_equal(step_few(few)->count, gap - (double)more < (more > 0 ? 2.02 : 1.895));
         for (double way = 0; way < 1.1; way += step) {
             const double angle = turns ? asin(way / 2) : 0;
             for (int k = 0; k < 2; k++) {

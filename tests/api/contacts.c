@@ -63,19 +63,6 @@ static void give_pairs(struct test_random *random, size_t count, struct given *o
     }
 }
 
-struct bytes {
-    size_t count;
-    char *all;
-};
-
-static void save(const narc_contacts *contacts, struct bytes *out) {
-    narc_error error;
-    out->count = narc_count_contact_bytes(contacts);
-    out->all = realloc(out->all, out->count);
-    assert_non_null(out->all);
-    expect_ok(narc_save_contacts(contacts, out->all, out->count, &error), &error);
-}
-
 /* Of each body the slots that are its pairs'. */
 static void check_body_slots(narc_contacts *contacts, const narc_step_result *r, uint32_t body) {
     const uint32_t *slots;

@@ -698,7 +698,7 @@ TEST(allocates_nothing_once_it_has_grown) {
         const narc_pair_list *list = update(broad, store, &step);
         assert_int_equal(list->kept, round % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
-        if (round == 7)
+        if (round == STEPS / 2)
             after = ledger.allocations;
     }
     assert_int_equal(ledger.allocations, after);

@@ -397,6 +397,14 @@ void check_contact_rows(const narc_step_result *manifolds, const narc_step_resul
     }
 }
 
+void save(const narc_contacts *contacts, struct bytes *out) {
+    narc_error error;
+    out->count = narc_count_contact_bytes(contacts);
+    out->all = realloc(out->all, out->count);
+    assert_non_null(out->all);
+    expect_ok(narc_save_contacts(contacts, out->all, out->count, &error), &error);
+}
+
 narc_contacts *make_contacts(uint32_t row_kind, const narc_allocator *allocator) {
     narc_contacts *contacts;
     narc_error error;

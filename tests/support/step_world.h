@@ -44,6 +44,14 @@ void move_step_world(struct step_world *w);
 /* A step of the world; its filter is `filter` if the world has one. */
 narc_step make_step(const struct step_world *w, const narc_bodies *bodies, const narc_pair_filter *filter);
 
+/* Contacts as they are saved; `all` is to be freed. */
+struct bytes {
+    size_t count;
+    char *all;
+};
+
+void save(const narc_contacts *contacts, struct bytes *out);
+
 narc_contacts *make_contacts(uint32_t row_kind, const narc_allocator *allocator); /* with a struct mark in each slot */
 struct mark mark_of(uint64_t a, uint64_t b);
 
