@@ -22,5 +22,5 @@ if (system("test -s ".data." && echo yes") eq "yes") {
     set yrange [*:*]
     set xtics (4, 6, 8, 12, 16)
     plot for [c = 2:5] data using 1:c with linespoints title columnheader(c) lw 3 pt 7 ps 0.6 lc rgb colors[c], \
-        for [c = 6:7] data using 1:c with linespoints title columnheader(c) lw 1.5 pt 6 ps 0.6 dt 2 lc rgb colors[c]
+        for [c = 6:9] data using 1:c with linespoints title columnheader(c) lw 1.5 pt 6 ps 0.6 dt 2 lc rgb colors[c]
 }

@@ -24,7 +24,8 @@ struct table {
 /* The plot's curves; see plots.gp. */
 static const char series[] = "narc overlap = overlap/$2/pile/BEST; narc overlap, AVX2 = overlap/$2/pile/avx2;"
                              "narc contact = contact/$2/pile/BEST; narc contact, AVX2 = contact/$2/pile/avx2;"
-                             "Box2D b2CollidePolygons = contact/$2/pile/box2d; Box2D GJK = overlap/$2/pile/box2d";
+                             "Box2D b2CollidePolygons = contact/$2/pile/box2d; Box2D GJK = overlap/$2/pile/box2d;"
+                             "libccd GJK = overlap/$2/pile/ccd-gjk; libccd MPR = overlap/$2/pile/ccd-mpr";
 static const char sizes[] = "4 = n4; 6 = n6; 8 = n8; 12 = n12; 16 = n16";
 
 static const struct table tables[] = {
@@ -81,7 +82,9 @@ static const struct table tables[] = {
      "one by one = $1/gons8/$2/BEST/by1 / 6; AVX2 = $1/gons8/$2/avx2/by1 / 6; Box2D = $1/gons8/$2/box2d",
      1},
     {"ns a region | bodies", "that finds 48 = region-48; that finds 3 = region-3", SCENES,
-     "batch = $1/gons8/$2/BEST / 3; one by one = $1/gons8/$2/BEST/by1 / 3; Box2D = $1/gons8/$2/box2d", 1},
+     "batch = $1/gons8/$2/BEST / 3; one by one = $1/gons8/$2/BEST/by1 / 3; Box2D = $1/gons8/$2/box2d;"
+     "GEOS = $1/gons8/$2/geos",
+     1},
     {"ns a point: the nearest body", SCENES, "",
      "8-gons = nearest/gons8/$1/BEST; one by one = nearest/gons8/$1/BEST/by1;"
      "8 arcs = nearest/n8/$1/BEST;"

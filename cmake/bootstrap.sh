@@ -19,7 +19,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   soak       pairs of all families beside the reference, and all queries beside scalar, seed after seed, until it is
              interrupted, or for as many seconds as the option says
   coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
-  bench      the kernels and what a scene is asked, beside Box2D 3.2 if it is installed; results go to out/.
+  bench      the kernels and what a scene is asked, beside Box2D 3 if it is installed, libccd and GEOS; results go to out/.
              Options are Google Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
@@ -50,9 +50,10 @@ library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
 fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
+peer_packages="g++ libbenchmark-dev libccd-dev libgeos-dev"
 test_packages="$run_packages g++ binutils python3 python3-numpy dpkg-dev file meson"
-gate_packages="$test_packages libbenchmark-dev clang libomp-dev clang-format clang-tidy valgrind"
-bench_packages="$library_packages g++ libbenchmark-dev gnuplot-nox"
+gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
+bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"

@@ -6,17 +6,29 @@
 
 #include <string.h>
 
+#define MISSING(id, query, who, library)                                                                               \
+    const struct peer id = {.question = query, .name = who, .missing = "built without " library}
 #ifndef BENCH_BOX2D
-#define MISSING(query)                                                                                                 \
-    { .question = query, .name = "box2d", .missing = "built without Box2D" }
-const struct peer box2d_collide = MISSING("contact"), box2d_overlap = MISSING("overlap"), box2d_world = MISSING("stay"),
-                  box2d_ground = MISSING("ground"), box2d_rays = MISSING("ray"), box2d_regions = MISSING("region"),
-                  box2d_impacts = MISSING("impact");
 const char *box2d_name(void) { return "no Box2D"; }
+MISSING(box2d_collide, "contact", "box2d", "Box2D");
+MISSING(box2d_overlap, "overlap", "box2d", "Box2D");
+MISSING(box2d_world, "stay", "box2d", "Box2D");
+MISSING(box2d_ground, "ground", "box2d", "Box2D");
+MISSING(box2d_rays, "ray", "box2d", "Box2D");
+MISSING(box2d_regions, "region", "box2d", "Box2D");
+MISSING(box2d_impacts, "impact", "box2d", "Box2D");
+#endif
+#ifndef BENCH_CCD
+MISSING(ccd_gjk, "overlap", "ccd-gjk", "libccd");
+MISSING(ccd_mpr, "overlap", "ccd-mpr", "libccd");
+#endif
+#ifndef BENCH_GEOS
+MISSING(geos_regions, "region", "geos", "GEOS");
 #endif
 
-static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_ground,
-                                           &box2d_rays,    &box2d_regions, &box2d_impacts, &disc_loop};
+static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_rays,
+                                           &box2d_ground,  &box2d_regions, &box2d_impacts, &ccd_gjk,
+                                           &ccd_mpr,       &geos_regions,  &disc_loop};
 
 const struct peer *find_peer(const char *query, const char *name) {
     for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)

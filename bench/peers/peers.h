@@ -53,6 +53,8 @@ const char *box2d_name(void); /* with its version */
 
 extern const struct peer box2d_collide, box2d_overlap, box2d_world, box2d_ground, box2d_rays, box2d_regions,
     box2d_impacts;
+extern const struct peer ccd_gjk, ccd_mpr;
+extern const struct peer geos_regions;
 extern const struct peer disc_loop;
 
 #endif
