@@ -109,19 +109,19 @@ bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shap
 /* The pairs of bodies that are closer than the step's margin, and perhaps others, none further apart than margin + 3 * skin
  * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made; or the caller's own pairs.
  *   A list has all pairs of KEPT BOXES that overlap and may form a pair. When a body has left its kept box, or has
- * another filter, it and all bodies with less than half of the skin, or more than one and a half, left on a side get new
- * ones, larger than they are now by the skin. All bodies do if there are more or fewer than in the last call, or others
- * by their ids, with the first filter, after narc_forget_pairs(), and perhaps after a call that failed.
+ * another filter, it and all bodies with less than half of the kept skin (narc_find_kept_skin()), or more than one and a
+ * half, left on a side get new ones, larger than boxes_now by the kept skin. All bodies do if there are more or fewer than in
+ * the last call, or others by their ids, with the first filter, after narc_forget_pairs(), and perhaps after a call that failed.
  *   step      its lengths and reserved pointers are checked
  *   out_list  see narc_pair_list. A broken body (narc_bodies; also one whose motion or reach is NaN, infinite, or below 0 as
  *             a reach) is in no pair that was found, and counted in `skipped`
  * The list depends on the bodies of this call and of those before. For the same calls it is the same, bit by bit, for any
  * number of threads and whichever way it was made.
- *   Time: a look at each body, and narc_compute_boxes() of those whose position, rotation, scale or shape differs from
- * the last call's (of all where the store of shapes has changed). With a new list also a walk over all pairs, and a search
- * for those of the bodies with new boxes; if these are more than one in 16, or others by their ids, the time of
- * narc_find_pairs() and narc_match_pairs().
- *   Memory: some 240 bytes for each body, 260 with ids, and some 55 for each pair, and a quarter of it for growth; kept
+ *   Time: a look at each body, and narc_compute_boxes() of those whose scale or shape differs from the last call's, or which
+ * may have gone as far as the slack since theirs (of all where the store of shapes has changed). With a new list also a walk
+ * over all pairs, and a search for those of the bodies with new boxes; if these are more than one in 16, or others by their
+ * ids, the time of narc_find_pairs() and narc_match_pairs().
+ *   Memory: some 245 bytes for each body, 265 with ids, and some 55 for each pair, and a quarter of it for growth; kept
  * from step to step.
  *   On an error the last list is as it was and valid, and the next call goes on from there. */
 narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step,
