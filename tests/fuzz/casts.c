@@ -198,11 +198,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     for (size_t k = 0; k < RAYS; k++)
         q.rays[k] = (struct test_ray){(double)(float)take_step(&from, 8), (double)(float)take_step(&from, 8),
                                       (float)take_step(&from, 16), (float)take_step(&from, 16), 1};
-    const narc_index_options options = {.fast = take_below(&from, 2)};
+    narc_point origin = {0, 0};
+    const narc_index_options options = {.fast = take_below(&from, 2), .origin = &origin};
+    const narc_box_options boxes = {.origin = &origin};
     take_flights(&from, &q.scene);
     for (size_t k = 0; k < BODIES; k++)
         q.owner[k] = (uint32_t)take_below(&from, 4) - 1;
-    assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, q.boxes, NULL), NARC_OK);
+    origin = (narc_point){take_step(&from, 1e9), take_step(&from, 8)};
+    assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, &boxes, q.boxes, NULL), NARC_OK);
     assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
     assert_int_equal(narc_build_index(q.index, q.boxes, BODIES, &options, NULL), NARC_OK);
     struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
