@@ -327,11 +327,13 @@ static void check_step(reference *r, const body *bodies, size_t count, bool with
     const bool renew = find_expected(r, bodies, count);
     const narc_pair_list *first = NULL;
     for (size_t t = 0; t < OBJECTS; t++) {
-        const narc_workers workers = narc_openmp_workers(thread_counts[t]);
+        narc_workers workers;
+        narc_openmp_workers(thread_counts[t], &workers);
         size_t none;
         step.workers = &workers;
         if (t == WHOLE)
-            assert_int_equal(narc_find_pairs(r->broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, &none, NULL), NARC_OK);
+            assert_int_equal(narc_find_pairs(r->broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, 0, &none, NULL),
+                             NARC_OK);
         const narc_pair_list *const list = update(r->broads[t], store, &step);
         first = first ? first : list;
         check_equal_lists(list, first);
@@ -687,7 +689,8 @@ TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady lists");
     struct ledger ledger = {0};
     narc_broad_phase *broad = create_broad_phase(&ledger);
-    const narc_workers workers = narc_openmp_workers(2);
+    narc_workers workers;
+    narc_openmp_workers(2, &workers);
     const narc_bodies all = view(bodies, COUNT);
     const narc_step step = {
         .bodies = &all, .margin = 0.5f, .skin = 0.125f, .id = NARC_COLUMN(bodies, id), .workers = &workers};
