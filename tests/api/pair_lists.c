@@ -545,7 +545,7 @@ TEST(follows_bodies) {
                             {"numbers", 100 + test_trials(2900), 40, 60, 10, .with_ids = false},
                             {"few", test_trials(2000), 0, 4, 2, .with_ids = true},
                             {"bare", test_trials(1000), 40, 60, 8, .with_ids = true, .bare = true},
-                            {"thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, .with_ids = true},
+                            {"thousands", 6 + test_trials(6), MOST_BODIES - 10, MOST_BODIES, 150, .with_ids = true},
                             {"kinds", 100 + test_trials(900), 40, 60, 10, .kinds = true}};
     for (size_t k = 0; k < sizeof worlds / sizeof *worlds; k++) {
         const world *const w = &worlds[k];
@@ -763,7 +763,7 @@ static size_t fail_allocations(const struct given *before, const struct given *a
 /* More bodies than before; bodies that had no ids get some; few bodies that move into the midst of many; as many bodies
  * as before, of which half meet now: there is memory for them but not for their pairs. */
 TEST(survives_failing_allocations) {
-    enum { FEW = 300, MANY = 5000, MOVED = 100 };
+    enum { FEW = 150, MANY = 1600, MOVED = 100 };
     static body bodies[MANY], later[MANY], moved[MANY], crowd[FEW];
     struct test_random random = test_random_named("failing lists");
     for (size_t k = 0; k < MANY; k++) {
