@@ -70,7 +70,7 @@ static void check_pointers(void) {
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
            AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
-               AT(front_only, 40) && AT(reserved, 48));
+               AT(front_only, 40) && AT(parting, 44) && AT(reserved, 48));
     LAYOUT(narc_chain_options, 56,
            AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(thickness, 24) &&
                AT(both_sides, 28) && AT(reserved, 32));
