@@ -46,7 +46,7 @@ static const narc_kernel_table *find_kernels(size_t count, narc_status *out_stat
 /* ------------------------------------------------------------------------------------------------ distances */
 
 narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
-                                narc_index_column body, const narc_workers *workers, narc_distance *out_rows,
+                                const narc_index_column *body, const narc_workers *workers, narc_distance *out_rows,
                                 narc_error *error) {
     narc_status status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
@@ -58,9 +58,11 @@ narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bo
     const narc_kernel_table *const kernels = find_kernels(points->count, &status, error);
     if (!kernels)
         return status;
-    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points, .body = body, .out = out_rows},
+    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points, .out = out_rows},
                      .kernel = kernels->distance};
-    status = narc_check_named(shapes, bodies, body, points->count, "point", workers, error);
+    if (body)
+        job.batch.body = *body;
+    status = narc_check_named(shapes, bodies, job.batch.body, points->count, "point", workers, error);
     if (status == NARC_OK)
         narc_run_ranges(workers, points->count, PART, answer_part, &job);
     return status;
@@ -90,7 +92,8 @@ narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodie
                      .out_bits = out_bits};
     if (!job.kernels)
         return status;
-    job.batch.body = body ? *body : (narc_index_column){NULL, 0};
+    if (body)
+        job.batch.body = *body;
     status = narc_check_named(shapes, bodies, job.batch.body, points->count, "point", workers, error);
     if (status == NARC_OK)
         narc_run_ranges(workers, points->count, PART, answer_bits, &job);

@@ -24,7 +24,8 @@ static narc_pairs view(halves *pairs, size_t count) {
 
 static void match(narc_broad_phase *broad, const narc_pairs *olds, const narc_pairs *news, unsigned threads,
                   uint32_t *out) {
-    const narc_workers workers = narc_openmp_workers(threads);
+    narc_workers workers;
+    narc_openmp_workers(threads, &workers);
     assert_int_equal(narc_match_pairs(broad, olds, news, &workers, out), NARC_OK);
 }
 

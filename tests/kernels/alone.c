@@ -51,7 +51,8 @@ TEST(rays_hit_one_body_as_by_an_index) {
         struct room room = create_room(&random, precision, BODIES, 6);
         struct test_ray *const rays = make_rays(&random, &room, RAYS, 6);
         const narc_bodies bodies = scene_bodies(&room.scene);
-        const narc_workers workers = narc_openmp_workers(3);
+        narc_workers workers;
+        narc_openmp_workers(3, &workers);
         uint32_t body[RAYS];
         size_t hits = 0;
         rays[5].motion_x = NAN;
@@ -113,12 +114,13 @@ TEST(points_are_within_where_separations_are_below_0) {
         const narc_rays view = view_rays(at, count);
         const narc_points points = {.count = count, .x = view.x, .y = view.y};
         const narc_index_column column = {trial % 5 ? body : &body[count - 1], trial % 5 ? sizeof *body : 0};
-        const narc_workers workers = narc_openmp_workers(3);
+        narc_workers workers;
+        narc_openmp_workers(3, &workers);
         narc_distance *const rows = guard_allocate(count * sizeof *rows);
         uint64_t *const bits = guard_allocate(NARC_BIT_WORDS(count) * sizeof *bits);
         narc_error error;
         expect_ok(narc_find_inside(room.scene.store, &bodies, &points, &column, &workers, bits, &error), &error);
-        expect_ok(narc_find_distances(room.scene.store, &bodies, &points, column, NULL, rows, &error), &error);
+        expect_ok(narc_find_distances(room.scene.store, &bodies, &points, &column, NULL, rows, &error), &error);
         for (size_t k = 0; k < count; k++) {
             const bool is_in = bit_is_set(bits, k);
             assert_int_equal(is_in, rows[k].separation < 0);
@@ -150,7 +152,8 @@ TEST(points_are_never_within_ground) {
     const float x = 0, y = 3.9f;
     assert_int_equal(narc_add_chain(shapes, &hill, 1, NULL, &entry, 1, &count, NULL), NARC_OK);
     const narc_body ground = {entry.x, entry.y, 1, 0, 1, entry.shape};
-    const narc_bodies bodies = narc_view_bodies(&ground, 1);
+    narc_bodies bodies;
+    narc_view_bodies(&ground, 1, &bodies);
     const narc_points point = {.count = 1, .x = {&x, 0, NARC_FLOAT32}, .y = {&y, 0, NARC_FLOAT32}};
     assert_int_equal(narc_find_inside(shapes, &bodies, &point, NULL, NULL, &bits, NULL), NARC_OK);
     assert_true(bits == 0);
