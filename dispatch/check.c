@@ -28,6 +28,13 @@ narc_status narc_check_count(size_t count, size_t most, const char *items, narc_
     return NARC_OK;
 }
 
+narc_status narc_check_origin(const narc_point *origin, const char *owner, narc_error *error) {
+    if (origin && !(isfinite(origin->x) && isfinite(origin->y)))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, isfinite(origin->x) ? origin->y : origin->x,
+                         "%s.origin is (%g, %g)", owner, origin->x, origin->y);
+    return NARC_OK;
+}
+
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error) {
     if (first > total || *count > total - first)
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)*count,

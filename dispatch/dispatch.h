@@ -24,6 +24,9 @@ narc_status narc_check_reserved(void *const *reserved, size_t count, const char 
 /* Are there no more than `most`? `items` are named in the message. */
 narc_status narc_check_count(size_t count, size_t most, const char *items, narc_error *error);
 
+/* Is `owner`.origin finite? NULL is fine. */
+narc_status narc_check_origin(const narc_point *origin, const char *owner, narc_error *error);
+
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
 

@@ -65,19 +65,23 @@ NARC_API void narc_destroy_index(narc_index *index);
 /* What is 0 or NULL is left out, as all is for {0}.
  *   category   64 bits for each box, which questions compare with their masks; left out: all bits set
  *   fast       1: in the order of a curve, in a fraction of the time; questions then take up to twice as long
- *   workers    threads to use; NULL: the calling one. The index does not depend on them */
+ *   workers    threads to use; NULL: the calling one. The index does not depend on them
+ *   origin     that of the boxes (narc_box_options), finite; NULL: (0, 0). Rays, points, movers are in the world as ever, and
+ *              boxes that ask are relative to it, too */
 typedef struct narc_index_options {
     narc_word_column category;
     uint32_t fast;
     const narc_workers *workers;
-    void *reserved[4]; /* NULL */
+    const narc_point *origin;
+    void *reserved[3]; /* NULL */
 } narc_index_options;
 
 /* Makes the index one of these boxes; box k is that of body k, as narc_compute_boxes() gives them. An empty box is
  * found by no question.
  *   count     at most 2^31
  *   options   NULL: defaults
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY, and those for NARC_ISA; the index is as it was then.
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE (origin), NARC_ERROR_MEMORY, and those for NARC_ISA; the index is as it
+ * was then.
  * Fast: of boxes whose centres lie closer together than 1/65,536 of all of them are apart, no order is made.
  * Source: k-d splits at medians (Bentley 1975); sorting by Morton's curve (Morton 1966) if fast. */
 NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
@@ -116,7 +120,7 @@ typedef struct narc_index_query {
 } narc_index_query;
 
 /* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).
- *   boxes       `count` query boxes, at most 2^32 - 2; an empty one finds nothing
+ *   boxes       `count` query boxes, at most 2^32 - 2, from the index' origin; an empty one finds nothing
  *   query       NULL: defaults
  *   out_pairs   columns a (the query's number) and b (the body), which belong to the index until its next call of this
  *               function or of narc_cast_shapes(), or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:

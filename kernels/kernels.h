@@ -141,6 +141,7 @@ typedef struct narc_box_batch {
     const narc_bodies *bodies;
     float margin;
     narc_float_column motion_x, motion_y; /* base NULL: none */
+    const narc_point *origin;             /* NULL: (0, 0) */
 } narc_box_batch;
 
 /* What the kernel of parts works on. */

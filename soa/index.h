@@ -53,6 +53,7 @@ typedef struct narc_region {
 struct narc_index {
     narc_allocator allocator;
     size_t count;                           /* boxes that it was built from */
+    narc_point origin;                      /* of their coordinates, in the world */
     unsigned level_count;                   /* 0: there are no boxes, and no nodes */
     uint32_t first_node[NARC_INDEX_LEVELS]; /* of each level, in `nodes` and `order`; level 0 begins at 0 */
     uint32_t node_count[NARC_INDEX_LEVELS];

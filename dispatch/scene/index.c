@@ -85,8 +85,10 @@ static narc_status check_arguments(const narc_index *index, const narc_box *boxe
                                    const narc_index_options *options, narc_error *error) {
     if (!index || (!boxes && count > 0))
         return narc_fail_missing(error, !index ? "index" : "boxes");
-    const narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
-    return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
+    narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
+    if (status == NARC_OK)
+        status = narc_check_origin(options->origin, "options", error);
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 3, "options", error) : status;
 }
 
 narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_options *options,
@@ -103,6 +105,7 @@ narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t co
         return narc_fail(error, status, 0, (double)count, "no memory for an index of %zu boxes", count);
     narc_lay_out_index(index, count);
     index->masks = o->category.base ? index->mask_memory : NULL;
+    index->origin = o->origin ? *o->origin : (narc_point){0, 0};
     index->perimeter = 0;
     if (count == 0)
         return NARC_OK;
@@ -132,6 +135,7 @@ narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t co
     if (status != NARC_OK)
         return narc_fail(error, status, 0, (double)count, "no memory for the masks of %zu boxes", count);
     index->masks = o->category.base ? index->mask_memory : NULL;
+    index->origin = o->origin ? *o->origin : (narc_point){0, 0};
     const double perimeter = fit_index(index, kernels, boxes, o);
     const double slack = perimeter == index->perimeter ? 1 : perimeter / index->perimeter;
     if (out_slack)

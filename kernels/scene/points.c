@@ -295,7 +295,7 @@ struct step {
 struct search {
     const narc_point_batch *batch;
     place point;
-    float x, y, room; /* the point in single precision, and what that may be off by */
+    float x, y, room; /* the point in the index' coordinates, in single precision, and what that may be off by */
     struct chosen chosen;
     narc_distance *rows; /* the nearest so far, in their order: point, body and separation */
     size_t found;
@@ -455,10 +455,11 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
     waiting.count = 0;
     for (size_t k = first; k < end; k++) {
         struct search search = {.batch = batch, .point = load_point(batch->points, k), .chosen = read_chosen(query, k)};
-        search.x = (float)search.point.x;
-        search.y = (float)search.point.y;
-        search.room =
-            (float)((fabs(search.point.x - (double)search.x) + fabs(search.point.y - (double)search.y)) * 1.001);
+        const narc_point *const origin = &batch->index->origin;
+        const place at = {search.point.x - origin->x, search.point.y - origin->y};
+        search.x = (float)at.x;
+        search.y = (float)at.y;
+        search.room = (float)((fabs(at.x - (double)search.x) + fabs(at.y - (double)search.y)) * 1.001);
         search.rows = batch->out + k * batch->most;
         search.limit = -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance));
         search.limit_key = find_limit_key(search.limit);
