@@ -111,14 +111,6 @@ typedef struct narc_kept_row {
     float radius_a, radius_b, apart, lever;
 } narc_kept_row;
 
-/* One pair by itself: the position of B less that of A, as a batch has it, and the rest of both bodies. */
-typedef struct narc_one_pair {
-    uint32_t number; /* in its batch */
-    uint32_t shape_a, shape_b;
-    float x, y, cosine_a, sine_a, scale_a, cosine_b, sine_b, scale_b;
-    float margin;
-} narc_one_pair;
-
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
     return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;
