@@ -4,6 +4,7 @@
  * nearly all, and the others what it leaves.
  */
 #include "column.h"
+#include "compiler.h"
 #include "dispatch.h"
 #include "error.h"
 
@@ -45,7 +46,8 @@ static int ask_few(const narc_kernel_table *kernels, const narc_batch *batch, ui
     narc_body a, b;
     gather_pair(batch, number, &a, &b);
     const float margin = narc_float_or(batch->query->margins, number, batch->query->margin);
-    return kernels->pair(batch, &a, &b, margin, number, manifold, out_row);
+    const narc_one_pair asked = {batch, &a, &b, out_row, margin, number, manifold};
+    return kernels->pair(&asked);
 }
 
 static size_t find_few(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
@@ -108,14 +110,14 @@ size_t narc_find_few_manifolds(const narc_batch *batch, size_t first, size_t cou
 static const narc_query defaults;
 
 /* Through a batch, which says what is wrong. What is of many pairs in a query does not count; there is a row in any case. */
-static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, const narc_body *b, const narc_query *query,
-                             bool manifold, void *out_row, narc_error *error) {
-    if (!a || !b || !out_row)
-        return narc_fail_missing(error, !a ? "a" : !b ? "b" : "out_row");
-    const narc_body two[] = {*a, *b};
+NOINLINE narc_status ask_batch(const narc_one_pair *asked, narc_error *error) {
+    const narc_shapes *const shapes = asked->batch->shapes;
+    if (!asked->a || !asked->b || !asked->out_row)
+        return narc_fail_missing(error, !asked->a ? "a" : !asked->b ? "b" : "out_row");
+    const narc_body two[] = {*asked->a, *asked->b};
     const narc_bodies bodies = narc_view_bodies(two, 2);
     const narc_pairs pair = {.count = 1};
-    narc_query own = *query;
+    narc_query own = *asked->batch->query;
     size_t count;
     own.margins = (narc_float_column){NULL, 0};
     own.selection = (narc_index_column){NULL, 0};
@@ -123,14 +125,17 @@ static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, cons
     own.row_stride = 0;
     own.workers = NULL;
     own.dense = 1;
-    return manifold ? narc_find_manifolds(shapes, &bodies, &pair, &own, out_row, 1, &count, error)
-                    : narc_find_contacts(shapes, &bodies, &pair, &own, out_row, 1, &count, error);
+    return asked->manifold ? narc_find_manifolds(shapes, &bodies, &pair, &own, asked->out_row, 1, &count, error)
+                           : narc_find_contacts(shapes, &bodies, &pair, &own, asked->out_row, 1, &count, error);
 }
 
-static inline narc_status ask(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
-                              const narc_query *given, bool manifold, void *out_row, size_t row_size,
-                              narc_error *error) {
-    const narc_query *const query = given ? given : &defaults;
+/* What is needed behind the kernel's call is read from what it was given: nothing is kept in registers across it. */
+INLINE narc_status ask(const narc_shapes *shapes, const narc_body *a, const narc_body *b, const narc_query *given,
+                       bool manifold, void *out_row, narc_error *error) {
+    narc_batch batch; /* an initialiser would clear all of it, of which the kernel reads this */
+    batch.shapes = shapes;
+    batch.query = given ? given : &defaults;
+    const narc_one_pair asked = {&batch, a, b, out_row, batch.query->margin, 0, manifold};
     const narc_kernel_table *kernels = NULL;
     narc_status status = NARC_OK;
     int found = -1;
@@ -138,27 +143,24 @@ static inline narc_status ask(const narc_shapes *shapes, const narc_body *a, con
         (!given || narc_check_asking(given, NULL) == NARC_OK))
         kernels = narc_kernels(&status, NULL);
     if (kernels) {
-        narc_batch batch; /* an initialiser would clear all of it, of which the kernel reads this */
-        batch.shapes = shapes;
-        batch.query = query;
-        batch.flat_sine = manifold ? narc_find_flat_sine(query->flat_angle) : -1;
-        found = kernels->pair(&batch, a, b, query->margin, 0, manifold, out_row);
+        batch.flat_sine = manifold ? narc_find_flat_sine(batch.query->flat_angle) : -1;
+        found = kernels->pair(&asked);
     }
     if (found < 0)
-        return ask_batch(shapes, a, b, query, manifold, out_row, error);
+        return ask_batch(&asked, error);
     if (found == 0)
-        memset(out_row, 0, row_size);
-    if (given && given->out_skipped)
-        *given->out_skipped = 0;
+        memset(asked.out_row, 0, manifold ? sizeof(narc_manifold) : sizeof(narc_contact));
+    if (batch.query->out_skipped)
+        *batch.query->out_skipped = 0;
     return NARC_OK;
 }
 
 narc_status narc_find_contact(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
                               const narc_query *query, narc_contact *out_row, narc_error *error) {
-    return ask(shapes, a, b, query, false, out_row, sizeof *out_row, error);
+    return ask(shapes, a, b, query, false, out_row, error);
 }
 
 narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
                                const narc_query *query, narc_manifold *out_row, narc_error *error) {
-    return ask(shapes, a, b, query, true, out_row, sizeof *out_row, error);
+    return ask(shapes, a, b, query, true, out_row, error);
 }

@@ -111,6 +111,16 @@ typedef struct narc_kept_row {
     float radius_a, radius_b, apart, lever;
 } narc_kept_row;
 
+/* One pair by itself. Of the batch the shapes are read and, of manifolds, the flat sine and the query's second margin. */
+typedef struct narc_one_pair {
+    const narc_batch *batch;
+    const narc_body *a, *b;
+    void *out_row;
+    float margin;
+    uint32_t number; /* in its batch */
+    bool manifold;
+} narc_one_pair;
+
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
     return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;

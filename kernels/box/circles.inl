@@ -51,6 +51,22 @@ struct circle_pair {
     vi number, first;              /* of the corner that touches, or of that behind the edge; its first arc */
 };
 
+/* What is known of all pairs that are looked at: two circles; or one, and a shape with sides beside it. */
+enum circle_pairs { ANY_CIRCLES, TWO_CIRCLES, CIRCLE_IS_FIRST, CIRCLE_IS_LAST };
+
+/* One where A is the circle, and the other one elsewhere. */
+INLINE vf choose_side(enum circle_pairs of, vm is_a, vf first, vf other) {
+    return of == CIRCLE_IS_FIRST ? first : of == ANY_CIRCLES ? v_select(is_a, first, other) : other;
+}
+
+INLINE vi choose_side_bits(enum circle_pairs of, vm is_a, vi first, vi other) {
+    return of == CIRCLE_IS_FIRST ? first : of == ANY_CIRCLES ? vi_select(is_a, first, other) : other;
+}
+
+INLINE vec2 choose_side_vec2(enum circle_pairs of, vm is_a, vec2 first, vec2 other) {
+    return (vec2){choose_side(of, is_a, first.x, other.x), choose_side(of, is_a, first.y, other.y)};
+}
+
 INLINE vi choose_bit(vm m, int bit) { return vi_select(m, vi_set(bit), vi_set(0)); }
 
 INLINE vm is_form(const struct box_form *form, uint32_t kind) {
@@ -108,22 +124,24 @@ INLINE vm judge_two_circles(const struct call *call, const struct box_form *a, c
 
 /* Pairs with a circle, in the lanes `which`: returns those that are known, `*out_near` of which may have a contact. */
 INLINE vm judge_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
-                        const struct placement *placement, vm which, int32_t number, vm *out_near,
-                        struct circle_pair *out) {
+                        const struct placement *placement, vm which, int32_t number, enum circle_pairs of,
+                        vm *out_near, struct circle_pair *out) {
+    if (of == TWO_CIRCLES)
+        return judge_two_circles(call, a, b, placement, which, number, out_near, out);
     const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
     const struct pose *pose = &placement->pose;
     const vec2 t = pose->position, q = pose->rotation, t_b = v2_unrotate(q, t);
     const vf zero = v_set(0);
     const vm is_a = vm_and_not(is_form(a, NARC_IS_CIRCLE), is_form(b, NARC_IS_CIRCLE)); /* A is the circle, and B not */
-    const vi info = vi_select(is_a, b->info, a->info);
+    const vi info = choose_side_bits(of, is_a, b->info, a->info);
     const vm sides = vm_not(vi_lt(last, info));
     const vm capsule = vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)NARC_IS_CAPSULE)));
-    const vec2 half = v2_select(is_a, b->half, a->half);
-    const vf scale = v_select(is_a, pose->scale_b, pose->scale_a);
+    const vec2 half = choose_side_vec2(of, is_a, b->half, a->half);
+    const vf scale = choose_side(of, is_a, pose->scale_b, pose->scale_a);
     const vf radius_a = v_mul(a->radius, pose->scale_a), radius_b = v_mul(b->radius, pose->scale_b);
-    const vf radius = v_select(is_a, radius_b, radius_a), radius_circle = v_select(is_a, radius_a, radius_b);
+    const vf radius = choose_side(of, is_a, radius_b, radius_a), radius_circle = choose_side(of, is_a, radius_a, radius_b);
     const vf radii = v_add(radius_a, radius_b);
-    const vec2 size = v2_scale(half, scale), p = {v_select(is_a, v_neg(t_b.x), t.x), v_select(is_a, v_neg(t_b.y), t.y)};
+    const vec2 size = v2_scale(half, scale), p = choose_side_vec2(of, is_a, (vec2){v_neg(t_b.x), v_neg(t_b.y)}, t);
     const vf beyond_x = v_sub(v_abs(p.x), size.x), beyond_y = v_sub(v_abs(p.y), size.y);
     const vf size_other = v_add(v_add(size.x, size.y), radius);
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(t.x), v_abs(t.y)), v_add(size_other, radius_circle)));
@@ -133,7 +151,9 @@ INLINE vm judge_circles(const struct call *call, const struct box_form *a, const
              on_y = v_lt(beyond_y, inside);
     const vm at_x = vm_and(vm_and(on_y, v_lt(two, v_sub(beyond_x, beyond_y))), v_lt(two, v_abs(p.x)));
     const vm at_y = vm_and(vm_and(on_x, v_lt(two, v_sub(beyond_y, beyond_x))), v_lt(two, v_abs(p.y)));
-    const vm at_corner = vm_or(vm_and(off_x, vm_or(off_y, capsule)), vm_and_not(vm_or(off_x, off_y), sides));
+    vm at_corner = vm_and(off_x, vm_or(off_y, capsule));
+    if (of == ANY_CIRCLES)
+        at_corner = vm_or(at_corner, vm_and_not(vm_or(off_x, off_y), sides));
     const vec2 off = {v_max(beyond_x, zero), v_max(beyond_y, zero)};
     const vf square = v2_dot(off, off), limit = v_add(v_add(radii, placement->margin), slack);
     const vm apart = v_lt(v_mul(limit, limit), square);
@@ -156,9 +176,10 @@ INLINE vm judge_circles(const struct call *call, const struct box_form *a, const
     return taken;
 }
 
-INLINE void push_circles(const struct circle_pair *pair, vm near, int32_t number, bool two, struct box_queue *queue) {
+INLINE void push_circles(const struct circle_pair *pair, vm near, int32_t number, enum circle_pairs of,
+                         struct box_queue *queue) {
     vi code = vi_set(0);
-    if (!two) {
+    if (of != TWO_CIRCLES) {
         code = vi_add(pair->number, vi_add(choose_bit(pair->edge, TOUCHED_EDGE), vi_set(BESIDE_SIDES)));
         code = vi_select(pair->sides, code, vi_set(0));
         code = vi_add(code, vi_add(choose_bit(pair->is_a, CIRCLE_IS_A), choose_bit(pair->capsule, BESIDE_CAPSULE)));
@@ -182,17 +203,16 @@ INLINE void push_circles(const struct circle_pair *pair, vm near, int32_t number
 INLINE vm take_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
                        const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
     const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
-    const bool two = !vm_any(vm_and_not(which, vm_and(vi_lt(last, a->info), vi_lt(last, b->info))));
     struct circle_pair pair;
     vm near, taken;
-    if (two) {
-        taken = judge_two_circles(call, a, b, placement, which, number, &near, &pair);
+    if (!vm_any(vm_and_not(which, vm_and(vi_lt(last, a->info), vi_lt(last, b->info))))) {
+        taken = judge_circles(call, a, b, placement, which, number, TWO_CIRCLES, &near, &pair);
         if (vm_any(near))
-            push_circles(&pair, near, number, true, queue);
+            push_circles(&pair, near, number, TWO_CIRCLES, queue);
     } else {
-        taken = judge_circles(call, a, b, placement, which, number, &near, &pair);
+        taken = judge_circles(call, a, b, placement, which, number, ANY_CIRCLES, &near, &pair);
         if (vm_any(near))
-            push_circles(&pair, near, number, false, queue);
+            push_circles(&pair, near, number, ANY_CIRCLES, queue);
     }
     return taken;
 }
@@ -227,24 +247,24 @@ struct circle_contact {
 };
 
 /* Corner i of the shapes beside circles, placed, and the normal of edge i. */
-INLINE vec2 place_form_corner(const struct circle_pair *pair, vi i) {
+INLINE vec2 place_form_corner(const struct circle_pair *pair, enum circle_pairs of, vi i) {
     const vec2 half = pair->half, q = pair->rotation, t = pair->position;
     const vf zero = v_set(0);
     const vec2 corner = {v_mul(half.x, find_sign(vi_add(i, vi_set(1)))),
                          v_select(pair->capsule, zero, v_mul(half.y, find_sign(i)))};
     /* By what leaves it as it is, where it is A's. */
-    const struct pose pose = {.position = {v_select(pair->is_a, t.x, zero), v_select(pair->is_a, t.y, zero)},
-                              .rotation = {v_select(pair->is_a, q.x, v_set(1)), v_select(pair->is_a, q.y, zero)},
+    const struct pose pose = {.position = choose_side_vec2(of, pair->is_a, t, (vec2){zero, zero}),
+                              .rotation = choose_side_vec2(of, pair->is_a, q, (vec2){v_set(1), zero}),
                               .scale_b = pair->scale};
     return place_center_b(corner, &pose);
 }
 
-INLINE vec2 place_form_normal(const struct circle_pair *pair, vi i) {
+INLINE vec2 place_form_normal(const struct circle_pair *pair, enum circle_pairs of, vi i) {
     const vf sign = find_sign(i), zero = v_set(0);
     const vm odd = vi_lt(vi_set(0), vi_and(i, vi_set(1)));
     const vec2 n = {v_select(odd, v_select(pair->capsule, v_mul(pair->half.y, sign), zero), sign),
                     v_select(odd, sign, zero)};
-    return v2_select(pair->is_a, v2_rotate_opposite(pair->rotation, n), n);
+    return choose_side_vec2(of, pair->is_a, v2_rotate_opposite(pair->rotation, n), n);
 }
 
 /* The centre of B. Nothing but the signs of zeros: as if it had been turned. */
@@ -255,59 +275,53 @@ INLINE vec2 place_origin(const struct circle_pair *pair) {
     return v2_add(t, v2_rotate(pair->rotation, origin));
 }
 
-/* `two`: all are two circles. */
-INLINE struct circle_contact find_circle_contact(const struct circle_pair *pair, bool two) {
+INLINE struct circle_contact find_circle_contact(const struct circle_pair *pair, enum circle_pairs of) {
     const vec2 origin = {v_set(0), v_set(0)}, b = place_origin(pair);
     const vf radii = v_add(pair->radius, pair->radius_circle);
     struct circle_contact c = {.center = b, .corner = origin, .start = origin};
     vec2 u = b;
-    if (!two) {
-        c.center = v2_select(pair->is_a, origin, b);
-        c.corner = place_form_corner(pair, pair->number);
-        c.start = place_form_normal(pair, pair->number);
-        u = v2_sub(v2_select(pair->is_a, c.corner, c.center), v2_select(pair->is_a, c.center, c.corner));
+    if (of != TWO_CIRCLES) {
+        c.center = choose_side_vec2(of, pair->is_a, origin, b);
+        c.corner = place_form_corner(pair, of, pair->number);
+        c.start = place_form_normal(pair, of, pair->number);
+        u = v2_sub(choose_side_vec2(of, pair->is_a, c.corner, c.center),
+                   choose_side_vec2(of, pair->is_a, c.center, c.corner));
     }
     const vf length = v2_length(u);
-    c.separation = v_sub(two ? length : v_select(pair->edge, v2_dot(u, c.start), length), radii);
+    c.separation = v_sub(of == TWO_CIRCLES ? length : v_select(pair->edge, v2_dot(u, c.start), length), radii);
     c.normal = v2_divide(u, length);
-    if (!two)
+    if (of != TWO_CIRCLES)
         c.normal = v2_select(pair->edge, c.start, c.normal);
     return c;
 }
 
 /* How far normals may turn on the shape beside a circle. */
-INLINE vi find_form_reach(const struct circle_pair *pair, const struct circle_contact *c) {
+INLINE vi find_form_reach(const struct circle_pair *pair, enum circle_pairs of, const struct circle_contact *c) {
     const vi next = vi_add(pair->number, vi_select(pair->capsule, vi_set(2), vi_set(1)));
-    const struct feature arc = {.start = c->start, .end = place_form_normal(pair, next)};
+    const struct feature arc = {.start = c->start, .end = place_form_normal(pair, of, next)};
     return find_reach(&arc, c->normal, vi_set(0), pair->edge);
 }
 
 /* Writes rows to their places, all of one point. */
 INLINE void write_circles(const struct call *call, const struct circle_pair *pair, const struct circle_contact *c,
-                          vi pairs, bool two, char *const *to) {
+                          vi pairs, enum circle_pairs of, char *const *to) {
     const vec2 n = c->normal, to_world = pair->to_world;
     const vm is_a = pair->is_a;
     /* Outwards along n: of B, which is touched on its side -n, below 0. */
-    vf radius = pair->radius, radius_circle = v_neg(pair->radius_circle);
-    if (!two) {
-        radius = v_select(is_a, v_neg(radius), radius);
-        radius_circle = v_select(is_a, pair->radius_circle, radius_circle);
-    }
+    const vf radius = choose_side(of, is_a, v_neg(pair->radius), pair->radius),
+             radius_circle = choose_side(of, is_a, pair->radius_circle, v_neg(pair->radius_circle));
     const vec2 on_circle = v2_add(c->center, v2_scale(n, radius_circle)), step = v2_scale(n, radius),
                on_other = v2_add(c->corner, step);
     const vf half = v_set(0.5f), along = v2_cross(n, on_circle), touched = v2_cross(n, on_other);
-    vf min = touched, max = touched;
-    if (!two && vm_any(pair->edge)) { /* from the corner before the edge on */
-        const vec2 corner = place_form_corner(pair, vi_sub(pair->number, vi_set(1)));
-        const vf before = v_select(pair->edge, v2_cross(n, v2_add(corner, step)), touched);
-        min = v_min(touched, before);
-        max = v_max(touched, before);
+    vf before = touched;
+    if (of != TWO_CIRCLES && vm_any(pair->edge)) { /* from the corner before the edge on */
+        const vec2 corner = place_form_corner(pair, of, vi_sub(pair->number, vi_set(1)));
+        before = v_select(pair->edge, v2_cross(n, v2_add(corner, step)), touched);
     }
-    vf most = v_max(min, along), least = v_min(max, along);
-    if (!two) {
-        most = v_select(is_a, v_max(along, min), most);
-        least = v_select(is_a, v_min(along, max), least);
-    }
+    const vf min = of == TWO_CIRCLES ? touched : v_min(touched, before),
+             max = of == TWO_CIRCLES ? touched : v_max(touched, before);
+    const vf most = v_max(choose_side(of, is_a, along, min), choose_side(of, is_a, min, along)),
+             least = v_min(choose_side(of, is_a, along, max), choose_side(of, is_a, max, along));
     const vec2 place = {v_mul(half, v_add(v2_dot(n, on_circle), v2_dot(n, on_other))), v_mul(half, v_add(most, least))};
     const vi all_round = vi_set(-1); /* NARC_REACH_ONE twice */
     struct answer answer = {.separation = c->separation,
@@ -318,42 +332,46 @@ INLINE void write_circles(const struct call *call, const struct circle_pair *pai
                             .radius_b = pair->radius_circle,
                             .reach_a = all_round,
                             .reach_b = all_round};
-    if (!two) {
+    if (of != TWO_CIRCLES) {
         const vi number = pair->number, end = vi_and(vi_add(vi_shift_right(number, 1), pair->first), vi_set(1));
         const vi arc = vi_select(pair->capsule, end, vi_and(vi_add(number, pair->first), vi_set(3)));
-        const vi other = vi_select(pair->sides, vi_add(arc, choose_bit(pair->edge, NARC_FEATURE_EDGE)), vi_set(0));
+        vi other = vi_add(arc, choose_bit(pair->edge, NARC_FEATURE_EDGE));
+        if (of == ANY_CIRCLES)
+            other = vi_select(pair->sides, other, vi_set(0));
         const vf curved = v_select(pair->edge, v_set(INFINITY), pair->radius);
-        answer.feature = vi_select(is_a, vi_shift_left(other, 8), other);
-        answer.radius_a = v_select(is_a, pair->radius_circle, curved);
-        answer.radius_b = v_select(is_a, curved, pair->radius_circle);
-        if (call->question->kind == MANIFOLD_ROWS) {
-            const vi reach = vi_select(pair->sides, find_form_reach(pair, c), all_round);
-            answer.reach_a = vi_select(is_a, all_round, reach);
-            answer.reach_b = vi_select(is_a, reach, all_round);
-        }
+        answer.feature = choose_side_bits(of, is_a, vi_shift_left(other, 8), other);
+        answer.radius_a = choose_side(of, is_a, pair->radius_circle, curved);
+        answer.radius_b = choose_side(of, is_a, curved, pair->radius_circle);
+    }
+    if (of != TWO_CIRCLES && call->question->kind == MANIFOLD_ROWS) {
+        vi reach = find_form_reach(pair, of, c);
+        if (of == ANY_CIRCLES)
+            reach = vi_select(pair->sides, reach, all_round);
+        answer.reach_a = choose_side_bits(of, is_a, all_round, reach);
+        answer.reach_b = choose_side_bits(of, is_a, reach, all_round);
     }
     write_rows(call, to, find_numbers(call, pairs), &answer);
 }
 
 /* Answers the pairs k ... of a queue. */
 INLINE void answer_circle_pairs(const struct call *call, const struct box_queue *queue, int k, int live,
-                                const struct circle_pair *pair, bool two) {
+                                const struct circle_pair *pair, enum circle_pairs of) {
     const vi pairs = find_circle_numbers(queue, k);
-    const struct circle_contact c = find_circle_contact(pair, two);
+    const struct circle_contact c = find_circle_contact(pair, of);
     const vm keep = vm_and(vm_front(live), is_below(c.separation, find_margins(call, pairs)));
     char *to[V_WIDTH];
     if (!vm_any(keep))
         return;
     find_box_places(call, queue, k + live - 1, pairs, keep, to);
-    write_circles(call, pair, &c, pairs, two, to);
+    write_circles(call, pair, &c, pairs, of, to);
 }
 
 INLINE void answer_circles(const struct call *call, const struct box_queue *queue, int k, int live) {
     const struct circle_pair pair = load_circle_pairs(queue, k);
     if (vm_any(pair.sides))
-        answer_circle_pairs(call, queue, k, live, &pair, false);
+        answer_circle_pairs(call, queue, k, live, &pair, ANY_CIRCLES);
     else
-        answer_circle_pairs(call, queue, k, live, &pair, true);
+        answer_circle_pairs(call, queue, k, live, &pair, TWO_CIRCLES);
 }
 
 #endif

@@ -45,32 +45,22 @@ enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 
 static const struct question contacts = {.kind = CONTACT_ROWS}, manifolds = {.kind = MANIFOLD_ROWS};
 
-/* What is asked: the kernel's arguments. */
-struct asked {
-    const narc_batch *batch;
-    const narc_body *a, *b;
-    float margin;
-    uint32_t number;
-    bool manifold;
-    void *out;
-};
-
 /* The call of one pair. No initialiser: that would clear much that nobody reads. */
-INLINE void start_one(const struct asked *asked, struct call *call, struct rows *out_rows) {
+INLINE void start_one(const narc_one_pair *asked, struct call *call, struct rows *out_rows) {
     call->batch = asked->batch;
     call->first = asked->number;
     call->margin = asked->margin;
     call->question = asked->manifold ? &manifolds : &contacts;
     call->rows = out_rows;
     call->bits = NULL;
-    out_rows->out.base = asked->out;
+    out_rows->out.base = asked->out_row;
     out_rows->dense = false;
     out_rows->known[0] = 0;
 }
 
 INLINE int end_one(const struct rows *out_rows) { return out_rows->known[0] ? WITH_ROW : WITHOUT_ROW; }
 
-INLINE struct placement place_one(const struct asked *asked) {
+INLINE struct placement place_one(const narc_one_pair *asked) {
     const narc_body *const a = asked->a, *const b = asked->b;
     const struct body_pair bodies = {{v_set((float)(b->x - a->x)), v_set((float)(b->y - a->y))},
                                      {v_set(a->cosine), v_set(a->sine)},
@@ -80,7 +70,7 @@ INLINE struct placement place_one(const struct asked *asked) {
     return place_bodies(&bodies, v_set(asked->margin));
 }
 
-INLINE struct filter set_up_one(const struct call *call, const struct asked *asked, vf item[FIELDS]) {
+INLINE struct filter set_up_one(const struct call *call, const narc_one_pair *asked, vf item[FIELDS]) {
     const struct placement placement = place_one(asked);
     struct pair_indices in;
     in.shape_a[0] = (int32_t)asked->a->shape;
@@ -103,7 +93,7 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
 }
 
 /* Pairs of polygons and all that is searched for, in the order of rows.c's stages. */
-NOINLINE int search_one(const struct asked *asked) {
+NOINLINE int search_one(const narc_one_pair *asked) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
     struct call own;
@@ -141,7 +131,7 @@ NOINLINE int search_one(const struct asked *asked) {
 }
 
 /* Two boxes or two capsules. */
-INLINE int find_of_forms(const struct asked *asked, bool capsules) {
+INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
     struct box_queue queue = {.count = 0};
     struct call call;
     struct rows found;
@@ -159,12 +149,12 @@ INLINE int find_of_forms(const struct asked *asked, bool capsules) {
     return end_one(&found);
 }
 
-NOINLINE int find_of_boxes(const struct asked *asked) { return find_of_forms(asked, false); }
+NOINLINE int find_of_boxes(const narc_one_pair *asked) { return find_of_forms(asked, false); }
 
-NOINLINE int find_of_capsules(const struct asked *asked) { return find_of_forms(asked, true); }
+NOINLINE int find_of_capsules(const narc_one_pair *asked) { return find_of_forms(asked, true); }
 
 /* A circle, and any shape that has a form. */
-INLINE int find_with_circle(const struct asked *asked, bool two) {
+INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
     struct call call;
     struct rows found;
     struct circle_pair pair;
@@ -174,46 +164,44 @@ INLINE int find_with_circle(const struct asked *asked, bool two) {
     const struct placement placement = place_one(asked);
     vm near;
     start_one(asked, &call, &found);
-    const vm taken = two ? judge_two_circles(&call, &a, &b, &placement, placement.in_range, 0, &near, &pair)
-                         : judge_circles(&call, &a, &b, &placement, placement.in_range, 0, &near, &pair);
-    if (!vm_any(taken))
+    if (!vm_any(judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &near, &pair)))
         return search_one(asked);
     if (!vm_any(near))
         return WITHOUT_ROW;
-    const struct circle_contact c = find_circle_contact(&pair, two);
+    const struct circle_contact c = find_circle_contact(&pair, of);
     if (!vm_any(is_below(c.separation, v_set(asked->margin))))
         return WITHOUT_ROW;
-    write_circles(&call, &pair, &c, vi_set(0), two, &call.rows->out.base);
+    write_circles(&call, &pair, &c, vi_set(0), of, &found.out.base);
     return WITH_ROW;
 }
 
-NOINLINE int find_of_circles(const struct asked *asked) { return find_with_circle(asked, true); }
+NOINLINE int find_of_circles(const narc_one_pair *asked) { return find_with_circle(asked, TWO_CIRCLES); }
 
-NOINLINE int find_beside_circle(const struct asked *asked) { return find_with_circle(asked, false); }
+NOINLINE int find_beside_a(const narc_one_pair *asked) { return find_with_circle(asked, CIRCLE_IS_FIRST); }
 
-int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_body *a, const narc_body *b,
-                                               float margin, uint32_t number, bool manifold, void *out_row) {
-    const narc_shapes *const shapes = batch->shapes;
-    const struct asked asked = {batch, a, b, margin, number, manifold, out_row};
-    const uint32_t form_a = shapes->boxes[a->shape].info, form_b = shapes->boxes[b->shape].info;
+NOINLINE int find_beside_b(const narc_one_pair *asked) { return find_with_circle(asked, CIRCLE_IS_LAST); }
+
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
+    const narc_shapes *const shapes = asked->batch->shapes;
+    const uint32_t a = asked->a->shape, b = asked->b->shape;
+    const uint32_t form_a = shapes->boxes[a].info, form_b = shapes->boxes[b].info;
     if (form_a & form_b & NARC_IS_CIRCLE)
-        return find_of_circles(&asked);
+        return find_of_circles(asked);
     if (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE)
-        return find_beside_circle(&asked);
+        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & form_b & NARC_IS_BOX)
-        return find_of_boxes(&asked);
+        return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
-        return find_of_capsules(&asked);
-    if (narc_is_piece(&shapes->headers[a->shape]) || narc_is_piece(&shapes->headers[b->shape]))
+        return find_of_capsules(asked);
+    if (narc_is_piece(&shapes->headers[a]) || narc_is_piece(&shapes->headers[b]))
         return UNANSWERED;
-    return search_one(&asked);
+    return search_one(asked);
 }
 
 #else
 
-int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_body *a, const narc_body *b,
-                                               float margin, uint32_t number, bool manifold, void *out_row) {
-    (void)batch, (void)a, (void)b, (void)margin, (void)number, (void)manifold, (void)out_row;
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
+    (void)asked;
     return UNANSWERED;
 }
 

@@ -524,7 +524,8 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
         const narc_body at[2] = {{0, 0, casts->cosine_now[0][k], casts->sine_now[0][k], a->scale[k], a->shape[k]},
                                  {casts->x_now[k], casts->y_now[k], casts->cosine_now[1][k], casts->sine_now[1][k],
                                   b->scale[k], b->shape[k]}};
-        if (given->kernels->pair(&batch, &at[0], &at[1], INFINITY, (uint32_t)k, false, &casts->contact[k]) < 0)
+        const narc_one_pair asked = {&batch, &at[0], &at[1], &casts->contact[k], INFINITY, (uint32_t)k, false};
+        if (given->kernels->pair(&asked) < 0)
             ask_contacts(batch.shapes, casts, k, 1);
     }
 }
