@@ -115,7 +115,8 @@ NOINLINE narc_status ask_batch(const narc_one_pair *asked, narc_error *error) {
     if (!asked->a || !asked->b || !asked->out_row)
         return narc_fail_missing(error, !asked->a ? "a" : !asked->b ? "b" : "out_row");
     const narc_body two[] = {*asked->a, *asked->b};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const narc_pairs pair = {.count = 1};
     narc_query own = *asked->batch->query;
     size_t count;
