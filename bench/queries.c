@@ -246,15 +246,16 @@ static void prepare_nearest(struct row *row) {
 
 /* ------------------------------------------------------------------------------------------------ builds of an index */
 
-enum build { GOOD, FAST, REFIT };
+enum build { GOOD, FAST, UPDATE };
 
 static void run_build(struct row *row) {
     struct scene *scene = row->scene;
     const narc_index_options options = {.fast = row->question->what == FAST, .workers = &row->workers};
     narc_index *index = row->state;
     narc_error error;
-    if (row->question->what == REFIT)
-        must(narc_refit_index(index, scene->boxes, scene->body_count, &options, NULL, &error), &error);
+    if (row->question->what == UPDATE)
+        must(narc_update_index(index, scene->boxes, scene->body_count, (narc_index_column){0}, 0, &options, &error),
+             &error);
     else
         must(narc_build_index(index, scene->boxes, scene->body_count, &options, &error), &error);
 }
@@ -277,5 +278,5 @@ const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, R
                                            {"distance", prepare_nearest, run_nearest, DISTANCE, false},
                                            {"index-good", prepare_build, run_build, GOOD, false},
                                            {"index-fast", prepare_build, run_build, FAST, false},
-                                           {"index-refit", prepare_build, run_build, REFIT, false},
+                                           {"index-update", prepare_build, run_build, UPDATE, false},
                                            {.name = NULL}};

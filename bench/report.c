@@ -98,7 +98,7 @@ static const struct table tables[] = {
      1},
     {"ns a box of an index", SCENES, "",
      "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST;"
-     "refitted = index-refit/gons8/$1/BEST",
+     "updated = index-update/gons8/$1/BEST",
      1},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
