@@ -292,7 +292,7 @@ static void run_moves(struct row *row) {
         const narc_index_column moved = {m->moved, sizeof *m->moved};
         const narc_index_options options = {.workers = &row->workers};
         narc_error error;
-        must(narc_update_index(m->index, m->boxes, scene->body_count, moved, row->bench.count, &options, &error),
+        must(narc_update_index(m->index, m->boxes, scene->body_count, &moved, row->bench.count, &options, &error),
              &error);
     }
 }

@@ -584,11 +584,10 @@ class index : public detail::owner<narc_index, narc_create_index, narc_destroy_i
     result<void> update(span<const narc_box> boxes, span<const uint32_t> changed,
                         const narc_index_options &options = {}) {
         const narc_index_column list = {changed.data(), sizeof(uint32_t)};
-        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), list, changed.size(), &options);
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), &list, changed.size(), &options);
     }
     result<void> update(span<const narc_box> boxes, const narc_index_options &options = {}) {
-        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), narc_index_column{}, size_t{0},
-                                 &options);
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), nullptr, size_t{0}, &options);
     }
     result<narc_index_statistics> describe() const {
         return detail::ask<narc_index_statistics>(narc_describe_index, get());

@@ -89,13 +89,12 @@ NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, 
  *   boxes, count    all of them. Those with numbers from the last count on have come, if there were fewer, and those from
  *                   `count` on are gone, if there were more
  *   changed         the numbers of all other boxes that are not as they were, or whose category is not, `changed_count` of
- *                   them, in any order. Left out ({0}, base and stride): all may have changed. An empty list is one, as
- *                   NARC_ARRAY() makes it
+ *                   them, in any order. NULL: all may have changed
  *   options         as when building, the columns those of all boxes. With a category column where it was built without, or
  *                   the other way around, it is built anew
  * Errors: those of narc_build_index(), NARC_ERROR_INDEX (no such box); the index is as it was then. */
 NARC_API narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count,
-                                       narc_index_column changed, size_t changed_count,
+                                       const narc_index_column *changed, size_t changed_count,
                                        const narc_index_options *options, narc_error *error);
 
 /* How a tree is, for who tunes.

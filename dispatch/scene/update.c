@@ -261,18 +261,19 @@ static bool insert_all(updating *u) {
     return true;
 }
 
-narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count, narc_index_column changed,
+narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_column *changed,
                               size_t changed_count, const narc_index_options *options, narc_error *error) {
     static const narc_index_options defaults = {0};
     const narc_index_options *const o = options ? options : &defaults;
     narc_status status = narc_check_making(index, boxes, count, o, error);
     if (status != NARC_OK)
         return status;
-    if (changed_count > 0 && !changed.base)
+    const narc_index_column list = changed ? *changed : (narc_index_column){NULL, 0};
+    if (changed_count > 0 && !list.base)
         return narc_fail_missing(error, "changed");
-    const size_t bad = narc_find_bad_index(changed, 0, changed_count, count, NULL);
+    const size_t bad = narc_find_bad_index(list, 0, changed_count, count, NULL);
     if (bad < changed_count) {
-        const unsigned long body = narc_index_at(changed, bad);
+        const unsigned long body = narc_index_at(list, bad);
         return narc_fail(error, NARC_ERROR_INDEX, bad, (double)body, "changed[%zu] is %lu, but there are %zu boxes",
                          bad, body, count);
     }
@@ -291,8 +292,8 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     const size_t old_count = index->count;
     index->count = count;
     for (size_t k = 0; k < changed_count; k++)
-        look_at(&u, narc_index_at(changed, k));
-    if (changed.base || changed.stride)
+        look_at(&u, narc_index_at(list, k));
+    if (changed)
         for (size_t k = old_count; k < count; k++)
             look_at(&u, (uint32_t)k);
     else

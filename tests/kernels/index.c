@@ -112,7 +112,7 @@ TEST(holds_every_box_once) {
         }
         const narc_index_options other = {.category = {masks ? NULL : category, sizeof *category}};
         guarded = guard_copy(boxes, count * sizeof *boxes);
-        assert_int_equal(narc_update_index(index, guarded, count, (narc_index_column){0}, 0, &other, NULL), NARC_OK);
+        assert_int_equal(narc_update_index(index, guarded, count, NULL, 0, &other, NULL), NARC_OK);
         guard_release(guarded);
         check_index(index, boxes, count, masks ? NULL : category);
         free(boxes);
@@ -190,7 +190,7 @@ TEST(lives_as_its_boxes_do) {
             narc_box *const boxes = guard_copy(h->boxes, h->count * sizeof *h->boxes);
             uint32_t *const changed = guard_copy(h->changed, h->changed_count * sizeof *h->changed);
             const narc_index_column column = {changed, sizeof *changed};
-            assert_int_equal(narc_update_index(index, boxes, h->count, lists ? column : (narc_index_column){0},
+            assert_int_equal(narc_update_index(index, boxes, h->count, lists ? &column : NULL,
                                                lists ? h->changed_count : 0, &options, NULL),
                              NARC_OK);
             guard_release(boxes);
@@ -255,9 +255,8 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
             assert_int_equal(narc_build_index(index, boxes, count, &options, NULL), NARC_OK);
             expect_same_index(expected, index);
             for (size_t changes = 100; changes <= COUNT; changes *= 400) {
-                const narc_index_column list = {changes < COUNT ? changed : NULL,
-                                                changes < COUNT ? sizeof *changed : 0};
-                const size_t listed = list.base ? changes : 0;
+                const narc_index_column column = NARC_ARRAY(changed), *const list = changes < COUNT ? &column : NULL;
+                const size_t listed = list ? changes : 0;
                 for (size_t k = 0; k < listed; k++)
                     changed[k] = (uint32_t)(k * 7 % count);
                 assert_int_equal(narc_update_index(index, moved, count, list, listed, &options, NULL), NARC_OK);
@@ -356,7 +355,7 @@ TEST(has_tight_nodes) {
     assert_int_equal(narc_build_index(index, boxes, COUNT, NULL, NULL), NARC_OK);
     assert_true(describe(index).slack == 1);
     boxes[7].max_x = 2;
-    assert_int_equal(narc_update_index(index, boxes, COUNT, (narc_index_column){&seven, 4}, 1, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_update_index(index, boxes, COUNT, &(narc_index_column){&seven, 4}, 1, NULL, NULL), NARC_OK);
     assert_true(isinf(describe(index).slack));
     narc_destroy_index(index);
     free(boxes);
@@ -383,7 +382,7 @@ TEST(stays_tight) {
                 *box = creeps ? (narc_box){box->min_x + x, box->min_y + y, box->max_x + x, box->max_y + y}
                               : random_box(&random, SIDE, 1, 1);
             }
-            assert_int_equal(narc_update_index(index, boxes, COUNT, list, LISTED, NULL, NULL), NARC_OK);
+            assert_int_equal(narc_update_index(index, boxes, COUNT, &list, LISTED, NULL, NULL), NARC_OK);
         }
         assert_int_equal(narc_build_index(new, boxes, COUNT, NULL, NULL), NARC_OK);
         const narc_index_statistics worn = describe(index), fresh = describe(new);
@@ -421,7 +420,7 @@ TEST(has_no_slack_when_emptied) {
     const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};
     narc_index *const index = create_index(NULL);
     assert_int_equal(narc_build_index(index, boxes, 2, NULL, NULL), NARC_OK);
-    assert_int_equal(narc_update_index(index, NULL, 0, (narc_index_column){0}, 0, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_update_index(index, NULL, 0, NULL, 0, NULL, NULL), NARC_OK);
     const narc_index_statistics s = describe(index);
     assert_true(s.slack == 1 && s.boxes == 0 && s.bodies == 0 && s.nodes == 0 && s.depth == 0 && s.mean_perimeter == 0);
     narc_destroy_index(index);
@@ -464,12 +463,12 @@ TEST(survives_failing_allocations) {
         expect_same_index(same, index);
         const narc_index_options other = {.category = {category, 8}};
         const bool fits = index->mask_capacity >= steps[step];
-        status = narc_update_index(index, boxes, steps[step], (narc_index_column){0}, 0, &other, &error);
+        status = narc_update_index(index, boxes, steps[step], NULL, 0, &other, &error);
         assert_int_equal(status, fits ? NARC_OK : NARC_ERROR_MEMORY);
         if (fits)
             assert_int_equal(narc_build_index(index, boxes, steps[step], &options, NULL), NARC_OK);
         expect_same_index(same, index);
-        status = narc_update_index(index, boxes, 5000, (narc_index_column){0}, 0, &options, &error);
+        status = narc_update_index(index, boxes, 5000, NULL, 0, &options, &error);
         if (steps[step] < 3000)
             expect_error(status, NARC_ERROR_MEMORY, &error, "no memory");
         expect_same_index(same, index);

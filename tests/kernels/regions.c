@@ -81,8 +81,7 @@ static void check_question(narc_index *index, const struct question *q) {
         }
         assert_int_equal(narc_build_index(index, other ? other : q->boxes, q->box_count, &options, NULL), NARC_OK);
         if (other)
-            assert_int_equal(
-                narc_update_index(index, q->boxes, q->box_count, (narc_index_column){0}, 0, &options, NULL), NARC_OK);
+            assert_int_equal(narc_update_index(index, q->boxes, q->box_count, NULL, 0, &options, NULL), NARC_OK);
         free(other);
         for (unsigned w = 0; w < 4; w++) {
             narc_pairs pairs;

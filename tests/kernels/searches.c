@@ -236,9 +236,9 @@ static void build(struct test_random *random, struct search *s, size_t way, bool
     expect_ok(narc_build_index(s->room.index, boxes, count, &options, &error), &error);
     if (way == 2) /* the first ones by a list, then all */
         for (size_t k = 0; k < 2; k++) {
-            const narc_index_column changed = {k ? NULL : first, k ? 0 : sizeof *first};
-            expect_ok(narc_update_index(s->room.index, s->room.boxes, count, changed, k || count < 9 ? 0 : 9, &options,
-                                        &error),
+            const narc_index_column changed = NARC_ARRAY(first);
+            expect_ok(narc_update_index(s->room.index, s->room.boxes, count, k ? NULL : &changed,
+                                        k || count < 9 ? 0 : 9, &options, &error),
                       &error);
         }
     free(boxes);
