@@ -5,8 +5,8 @@
  *
  * The mental model
  *
- *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once for what stands
- *   still, and refitted or built anew for what moves. Questions go through it and answer in rows, exactly: boxes only
+ *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once, and
+ *   updated with what moves, comes and goes. Questions go through it and answer in rows, exactly: boxes only
  *   say which bodies need not be asked.
  *
  *       narc_query_index()    which boxes meet these boxes?            pairs (query, body)
@@ -87,14 +87,35 @@ typedef struct narc_index_options {
 NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, narc_error *error);
 
-/* Fits the index to bodies that have moved a little, as many boxes as it was built from: nodes keep their bodies.
- *   options     as when building; `fast` has no meaning
- *   out_slack   NULL: nobody asks. The mean perimeter of its nodes, as a multiple of what it was when it was built:
- *               questions take longer as it grows; above 1.5 it should be built anew
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one), and those for
- * NARC_ISA; the index is as it was then. */
-NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
-                                      const narc_index_options *options, float *out_slack, narc_error *error);
+/* Brings the index up to date with boxes of which some have changed, in proportion to how many: afterwards it answers as one
+ * that was built from these boxes. Where bodies go far, parts of the tree are built anew, now and then all of it, so that it
+ * stays good. Bodies keep their numbers; one that is gone has an empty box, one that comes a number of its own.
+ *   boxes, count    all of them. Those with numbers from the last count on have come, if there were fewer, and those from
+ *                   `count` on are gone, if there were more
+ *   changed         the numbers of all other boxes that are not as they were, or whose category is not, `changed_count` of
+ *                   them, in any order. NULL: all may have changed
+ *   options         as when building, the columns those of all boxes. With a category column where it was built without, or
+ *                   the other way around, it is built anew; with another origin all boxes have changed
+ * Errors: those of narc_build_index(), NARC_ERROR_INDEX (no such box); the index is as it was then. */
+NARC_API narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count,
+                                       const narc_index_column *changed, size_t changed_count,
+                                       const narc_index_options *options, narc_error *error);
+
+/* How a tree is, for who tunes.
+ *   boxes, bodies    numbers; those whose boxes are not empty
+ *   nodes, leaves    all nodes; those of the lowest level
+ *   depth            levels
+ *   bytes            of all memory that the index has
+ *   mean_perimeter   of the nodes' boxes
+ *   slack            their perimeters together, as a multiple of what they were when the whole tree was built */
+typedef struct narc_index_statistics {
+    size_t boxes, bodies, nodes, leaves, depth, bytes;
+    double mean_perimeter, slack;
+} narc_index_statistics;
+
+/* Looks at all nodes. Errors: NARC_ERROR_ARGUMENT (NULL). */
+NARC_API narc_status narc_describe_index(const narc_index *index, narc_index_statistics *out_statistics,
+                                         narc_error *error);
 
 /* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
  * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
