@@ -95,7 +95,7 @@ static uint32_t add_kind(world *w, int kind, double size) {
     else if (kind == 4)
         narc_build_polygon(hexagon, 6, 0, arcs, &count, &w->error);
     else if (kind == 5)
-        narc_build_four_arc(lens, arcs, &count, &w->error);
+        narc_build_four_arc(&lens, arcs, &count, &w->error);
     else
         memcpy(arcs, glyphs[kind - 6], sizeof glyphs[0]);
     for (size_t i = 0; i < count; i++)

@@ -226,8 +226,9 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
  * docs/questions.md has more.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (NULL, too many), NARC_ERROR_INDEX (`error` names
  * the part and the owner), and those for NARC_ISA. No parts: NARC_OK. Allocates nothing. Not in narc_small.wasm. */
-NARC_API narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts, narc_index_column owner,
-                                      const narc_workers *workers, narc_body *out_bodies, narc_error *error);
+NARC_API narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts,
+                                      const narc_index_column *owner, const narc_workers *workers,
+                                      narc_body *out_bodies, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ instruction sets */
 

@@ -343,8 +343,8 @@ typedef struct narc_distance {
 } narc_distance;
 
 /* The distance of each point to one body: of point k to body k of the column, or without one to body k itself.
- *   body       numbers of bodies, one for each point; with a stride of 0 all points ask of the same one; left out
- *              ({0}): point k and body k
+ *   body       numbers of bodies, one for each point; with a stride of 0 all points ask of the same one; NULL, or
+ *              without a base: point k and body k
  *   workers    threads to use; NULL: the calling one
  *   out_rows   room for points->count rows
  * With D the distance between point and position, E the body's extent: the separation is within
@@ -355,8 +355,8 @@ typedef struct narc_distance {
  * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 14. */
 NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies,
-                                         const narc_points *points, narc_index_column body, const narc_workers *workers,
-                                         narc_distance *out_rows, narc_error *error);
+                                         const narc_points *points, const narc_index_column *body,
+                                         const narc_workers *workers, narc_distance *out_rows, narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which

@@ -154,8 +154,8 @@ void dem_find_images(dem *d) {
         room = count;
         dem_grow(&d->near_a, room, sizeof *d->near_a);
         dem_grow(&d->near_b, room, sizeof *d->near_b);
-        status = narc_find_pairs(d->broad, d->boxes, d->image_count, &filter, &d->workers, d->near_a, d->near_b, room,
-                                 &count, &error);
+        status = narc_find_pairs(d->broad, d->boxes, d->image_count, &filter, &d->workers, d->near_a, d->near_b, 0,
+                                 room, &count, &error);
     }
     dem_demand(d, status, "pairs", &error);
     d->near_count = 0;

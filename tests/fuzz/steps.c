@@ -337,7 +337,8 @@ static bool is_large(const struct world *w, uint32_t k) {
 static void check_listed(const struct world *w, const narc_step_result *r, const narc_pairs *all,
                          const narc_query *query, const float *margins) {
     static narc_contact rows[4 * PAIRS];
-    const narc_bodies bodies = narc_view_bodies(w->body, count_all(w));
+    narc_bodies bodies;
+    narc_view_bodies(w->body, count_all(w), &bodies);
     bool there[ALL][ALL] = {{false}};
     size_t found;
     for (size_t k = 0; k < r->count; k++)
@@ -360,7 +361,8 @@ static void check_rows(const struct world *w, const narc_step_result *r, const n
         narc_manifold manifolds[PAIRS];
     } plain;
     static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
-    const narc_bodies bodies = narc_view_bodies(w->body, count_all(w));
+    narc_bodies bodies;
+    narc_view_bodies(w->body, count_all(w), &bodies);
     narc_query dense = *query;
     size_t found;
     dense.dense = 1;
@@ -474,7 +476,8 @@ static void check_marks(const struct world *w, struct object *o) {
 static bool step_object(struct bytes *from, struct world *w, struct object *o, bool listed, bool scarce_memory,
                         bool wrong) {
     static uint32_t moved[ALL];
-    const narc_bodies bodies = narc_view_bodies(w->body, count_all(w));
+    narc_bodies bodies;
+    narc_view_bodies(w->body, count_all(w), &bodies);
     const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind), .owner = NARC_ARRAY(w->owner)};
     const narc_pairs pairs = {.count = w->pair_count, .a = NARC_ARRAY(w->pair_a), .b = NARC_ARRAY(w->pair_b)};
     narc_step step = {.bodies = &bodies, .margin = w->margin, .skin = w->skin, .recycling = w->recycling};

@@ -465,9 +465,9 @@ TEST(test_thin_rods_that_turn) {
         struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
         struct shape rod = box_of(100, 1, 0);
         narc_error error;
-        expect_ok(thick[kind] > 0
-                      ? narc_build_box(100, thick[kind], 0, rod.arcs, &rod.count, &error)
-                      : narc_build_segment((narc_point){-50, 0}, (narc_point){50, 0}, 0, rod.arcs, &rod.count, &error),
+        expect_ok(thick[kind] > 0 ? narc_build_box(100, thick[kind], 0, rod.arcs, &rod.count, &error)
+                                  : narc_build_segment(&(narc_point){-50, 0}, &(narc_point){50, 0}, 0, rod.arcs,
+                                                       &rod.count, &error),
                   &error);
         scene_add_shape(&scene, &rod);
         scene_add_two(&scene, (struct body){.cosine = 1, .scale = 1},
@@ -503,7 +503,7 @@ TEST(test_named_tolerances) {
         narc_error error;
         if (k % 8 < 4)
             expect_ok(
-                narc_build_segment((narc_point){-half, 0}, (narc_point){half, 0}, 0, wall.arcs, &wall.count, &error),
+                narc_build_segment(&(narc_point){-half, 0}, &(narc_point){half, 0}, 0, wall.arcs, &wall.count, &error),
                 &error);
         if (k % 4 == 3)
             body.arcs[0].center_x = 0.05; /* else it is as if it did not turn */
@@ -686,7 +686,8 @@ TEST(test_sets_of_bodies) {
             narrow.cosine = NARC_COLUMN(rows, cosine);
             narrow.sine = NARC_COLUMN(rows, sine);
         }
-        const narc_bodies sets[] = {scene_bodies(&m.scene), narc_view_bodies(wide, body_count), narrow};
+        narc_bodies sets[] = {scene_bodies(&m.scene), {0}, narrow};
+        narc_view_bodies(wide, body_count, &sets[1]);
         const narc_motions motions = view_motions(m.motion);
         for (int way = 0; way < 2 * 3 * 3; way++) {
             const narc_bodies *const bodies = &sets[way % 3], *const others = &sets[(way + 1) % 3];

@@ -246,9 +246,9 @@ void check_pairs(const struct step_world *w, const narc_step *step, const narc_s
         .margin = step->margin / 2, .motion_x = step->motion_x, .motion_y = step->motion_y};
     expect_ok(narc_compute_boxes(w->store, step->bodies, &options, boxes, &error), &error);
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    expect_ok(
-        narc_find_pairs(broad, boxes, step->bodies->count, step->filter, NULL, near_a, near_b, PAIRS, &found, &error),
-        &error);
+    expect_ok(narc_find_pairs(broad, boxes, step->bodies->count, step->filter, NULL, near_a, near_b, 0, PAIRS, &found,
+                              &error),
+              &error);
     narc_destroy_broad_phase(broad);
     assert_true(r->count < PAIRS);
     for (size_t k = 0; k < r->count; k++) {
