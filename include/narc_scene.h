@@ -304,19 +304,20 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not; those with `parting` only if they come deeper. Without turning, such a cast is exact, too: separations are convex in time. With turning a body is clear where
- * the cast sees it so at one of the times at which it looks, so one that is clear for a short time and comes back hits at 0, or
- * does not hit if it comes no deeper than it was. Without turning, the time is exact up to
- * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
+ * no further than the target at the start hit at fraction 0, parting or not; with `parting` only if they come deeper.
+ * Without turning, the time is exact up to rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
  * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
  * counts for what it moves: a circle about its position is cast as if it did not turn, to the bit.
+ * Let go, what does not turn never comes back to a body, as separations are convex in time, but for concave arcs. There, and
+ * with turning, a body is clear where the cast sees it so at one of the times that it looks at: one that is clear for a
+ * short time only and comes back hits at 0, or not at all if it comes no deeper than it was.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target, tolerance, parting, or
- * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target,
+ * tolerance, parting, or one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                                      const narc_pairs *pairs, const narc_motions *other_motions,
