@@ -85,6 +85,11 @@ size_t narc_find_bad_pair(const narc_batch *batch);
 size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
                            const narc_workers *workers);
 
+/* Are there the bodies, and their shapes, that `count` items name in a column, or without one items themselves? `item` is what
+ * a message calls one. */
+narc_status narc_check_named(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column column,
+                             size_t count, const char *item, const narc_workers *workers, narc_error *error);
+
 /* Checks a set of bodies by itself: their number and columns. */
 narc_status narc_check_set(const narc_bodies *bodies, narc_error *error);
 

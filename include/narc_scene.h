@@ -14,10 +14,12 @@
  *       narc_cast_shapes()    what does each moving body hit first?    narc_impact
  *       narc_find_nearest()   which bodies are nearest to a point?     narc_distance
  *
- *   Two ask of pairs of bodies, and need no index:
+ *   Others ask of pairs, and need no index:
  *
+ *       narc_cast_ray_pairs() does a ray hit a body, and where?        narc_ray_hit
  *       narc_cast_pairs()     when do two moving bodies meet?          narc_impact
  *       narc_find_distances() how far is a point from a body?          narc_distance
+ *       narc_find_inside()    is a point within a body?                bits
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
@@ -233,6 +235,17 @@ NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *
                                     const narc_rays *rays, const narc_ray_options *options, narc_ray_hit *out_rows,
                                     size_t capacity, narc_error *error);
 
+/* Whether each ray hits one body, and where: row k is that of ray k and body k of the column, or without one of body k itself.
+ *   body       numbers of bodies, one for each ray; with a stride of 0 all rays ask of the same one; NULL: ray k and body k
+ *   options    NULL: defaults. What counts of it is inside, out_skipped and search.workers
+ *   out_rows   room for `capacity` rows, at least rays->count
+ * Rows are those of narc_cast_rays() with an index of that body alone, to the last bit, whatever the bodies' boxes.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
+ * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. Not in narc_small.wasm. */
+NARC_API narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
+                                         const narc_index_column *body, const narc_ray_options *options,
+                                         narc_ray_hit *out_rows, size_t capacity, narc_error *error);
+
 /* ------------------------------------------------------------------------------------------------ casts */
 
 /* How bodies move during a step, `count` as the bodies: from their place to their place + (x, y), while they turn at a
@@ -382,6 +395,16 @@ typedef struct narc_distance {
 NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies,
                                          const narc_points *points, const narc_index_column *body,
                                          const narc_workers *workers, narc_distance *out_rows, narc_error *error);
+
+/* Is each point within one body? Bit k % 64 of out_bits[k / 64] is that of point k; the bits behind the last are 0.
+ *   body       as in narc_find_distances(); NULL: point k and body k. Fastest where points of one body follow each other
+ *   workers    threads to use; NULL: the calling one
+ *   out_bits   NARC_BIT_WORDS(points->count) words
+ * The bit is set exactly if the separation that narc_find_distances() tells is below 0, so a point on the outline is not
+ * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. Not in narc_small.wasm. */
+NARC_API narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                                      const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
+                                      narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which

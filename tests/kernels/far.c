@@ -135,8 +135,7 @@ TEST(origins_are_finite) {
     narc_contacts *contacts;
     narc_index *index;
     narc_error error;
-    narc_bodies none;
-    narc_view_bodies(NULL, 0, &none);
+    const narc_bodies none = {.count = 0};
     const narc_step_result *r = NULL;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
