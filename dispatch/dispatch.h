@@ -5,6 +5,8 @@
 #ifndef NARC_DISPATCH_H
 #define NARC_DISPATCH_H
 
+#include <stdatomic.h>
+
 #include "kernels.h"
 #include "narc.h"
 
@@ -13,7 +15,12 @@ enum { NARC_CPU_AVX2 = 1, NARC_CPU_AVX512 = 2, NARC_CPU_NEON = 4, NARC_CPU_SSE41
 unsigned narc_detect_cpu(void);
 
 /* The table in use, chosen at the first call; NULL if NARC_ISA asks for what can't be had (`*out_status` says why). */
-const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error);
+extern _Atomic(const narc_kernel_table *) narc_active_kernels;
+const narc_kernel_table *narc_choose_kernels(narc_status *out_status, narc_error *error);
+static inline const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error) {
+    const narc_kernel_table *const table = atomic_load_explicit(&narc_active_kernels, memory_order_acquire);
+    return table ? table : narc_choose_kernels(out_status, error);
+}
 
 /* "`name` is NULL". */
 narc_status narc_fail_missing(narc_error *error, const char *name);

@@ -597,9 +597,17 @@ class index : public detail::owner<narc_index, narc_create_index, narc_destroy_i
     result<void> build(span<const narc_box> boxes, const narc_index_options &options = {}) {
         return detail::ask<void>(narc_build_index, get(), boxes.data(), boxes.size(), &options);
     }
-    // The slack.
-    result<float> refit(span<const narc_box> boxes, const narc_index_options &options = {}) {
-        return detail::ask<float>(narc_refit_index, get(), boxes.data(), boxes.size(), &options);
+    // Of all boxes those that are listed have changed; without a list all may have.
+    result<void> update(span<const narc_box> boxes, span<const uint32_t> changed,
+                        const narc_index_options &options = {}) {
+        const narc_index_column list = {changed.data(), sizeof(uint32_t)};
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), &list, changed.size(), &options);
+    }
+    result<void> update(span<const narc_box> boxes, const narc_index_options &options = {}) {
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), nullptr, size_t{0}, &options);
+    }
+    result<narc_index_statistics> describe() const {
+        return detail::ask<narc_index_statistics>(narc_describe_index, get());
     }
     // Its columns stay until the next query.
     result<narc_pairs> query(span<const narc_box> boxes, const narc_index_query &query = {}) {

@@ -5,8 +5,8 @@
  *
  * The mental model
  *
- *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once for what stands
- *   still, and refitted or built anew for what moves. Questions go through it and answer in rows, exactly: boxes only
+ *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once, and
+ *   updated with what moves, comes and goes. Questions go through it and answer in rows, exactly: boxes only
  *   say which bodies need not be asked.
  *
  *       narc_query_index()    which boxes meet these boxes?            pairs (query, body)
@@ -89,14 +89,35 @@ typedef struct narc_index_options {
 NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, narc_error *error);
 
-/* Fits the index to bodies that have moved a little, as many boxes as it was built from: nodes keep their bodies.
- *   options     as when building; `fast` has no meaning
- *   out_slack   NULL: nobody asks. The mean perimeter of its nodes, as a multiple of what it was when it was built:
- *               questions take longer as it grows; above 1.5 it should be built anew
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one), and those for
- * NARC_ISA; the index is as it was then. */
-NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
-                                      const narc_index_options *options, float *out_slack, narc_error *error);
+/* Brings the index up to date with boxes of which some have changed, in proportion to how many: afterwards it answers as one
+ * that was built from these boxes. Where bodies go far, parts of the tree are built anew, now and then all of it, so that it
+ * stays good. Bodies keep their numbers; one that is gone has an empty box, one that comes a number of its own.
+ *   boxes, count    all of them. Those with numbers from the last count on have come, if there were fewer, and those from
+ *                   `count` on are gone, if there were more
+ *   changed         the numbers of all other boxes that are not as they were, or whose category is not, `changed_count` of
+ *                   them, in any order. NULL: all may have changed
+ *   options         as when building, the columns those of all boxes. With a category column where it was built without, or
+ *                   the other way around, it is built anew; with another origin all boxes have changed
+ * Errors: those of narc_build_index(), NARC_ERROR_INDEX (no such box); the index is as it was then. */
+NARC_API narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count,
+                                       const narc_index_column *changed, size_t changed_count,
+                                       const narc_index_options *options, narc_error *error);
+
+/* How a tree is, for who tunes.
+ *   boxes, bodies    numbers; those whose boxes are not empty
+ *   nodes, leaves    all nodes; those of the lowest level
+ *   depth            levels
+ *   bytes            of all memory that the index has
+ *   mean_perimeter   of the nodes' boxes
+ *   slack            their perimeters together, as a multiple of what they were when the whole tree was built */
+typedef struct narc_index_statistics {
+    size_t boxes, bodies, nodes, leaves, depth, bytes;
+    double mean_perimeter, slack;
+} narc_index_statistics;
+
+/* Looks at all nodes. Errors: NARC_ERROR_ARGUMENT (NULL). */
+NARC_API narc_status narc_describe_index(const narc_index *index, narc_index_statistics *out_statistics,
+                                         narc_error *error);
 
 /* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
  * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
@@ -296,19 +317,20 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not; those with `parting` only if they come deeper. Without turning, such a cast is exact, too: separations are convex in time. With turning a body is clear where
- * the cast sees it so at one of the times at which it looks, so one that is clear for a short time and comes back hits at 0, or
- * does not hit if it comes no deeper than it was. Without turning, the time is exact up to
- * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
+ * no further than the target at the start hit at fraction 0, parting or not; with `parting` only if they come deeper.
+ * Without turning, the time is exact up to rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
  * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
  * counts for what it moves: a circle about its position is cast as if it did not turn, to the bit.
+ * Let go, what does not turn never comes back to a body, as separations are convex in time, but for concave arcs. There, and
+ * with turning, a body is clear where the cast sees it so at one of the times that it looks at: one that is clear for a
+ * short time only and comes back hits at 0, or not at all if it comes no deeper than it was.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target, tolerance, parting, or
- * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target,
+ * tolerance, parting, or one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                                      const narc_pairs *pairs, const narc_motions *other_motions,

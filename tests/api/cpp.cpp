@@ -568,8 +568,10 @@ void test_index() {
     CHECK(there[0].max_x < -0.99e9f && narc::index_options().origin(far).narc_index_options::origin == &far);
     CHECK(narc::step().origin(far).narc_step::origin == &far);
     CHECK(index.build(boxes, options));
-    CHECK(index.refit(boxes, options).value() == 1);
-    CHECK(status_of(index.refit(narc::span<const narc_box>(boxes.data(), 9))) == NARC_ERROR_ARGUMENT);
+    CHECK(index.update(boxes, options) && index.describe().value().bodies == 10);
+    const std::vector<uint32_t> changed = {9};
+    CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
+    CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
     const auto query = narc::index_query().mask(narc::column(mask)).ignored(narc::column(ignored)).workers(workers);
     CHECK(index.query({&boxes[3], 1}, query).value().count == 0);
