@@ -348,10 +348,10 @@ static double find_way_to_concave(const view *v, double margin) {
 }
 
 double narc_find_free_way(const narc_contact_side *piece, const narc_contact_side *body, double margin, double size) {
+    if (!narc_is_piece(piece->header) || narc_is_piece(body->header))
+        return 0;
     const view v = make_view(piece, body);
     const double own = margin / body->scale, need = NEED * size / body->scale;
-    if (narc_is_piece(body->header))
-        return 0;
     const double way = narc_is_concave(piece->header) ? find_way_to_concave(&v, own) : find_way_to_run(&v, own, need);
     return get_least(body->scale * way, size / 16) - 0x1p-17 * size;
 }
