@@ -122,7 +122,8 @@ static struct country make_country(const struct walk *walk, const struct outline
 enum way { NONE, AMONG, PAIRS };
 
 static const narc_step_result *step(struct country *c, int way) {
-    const narc_bodies bodies = narc_view_bodies(c->bodies, way == AMONG ? c->made + c->pieces : c->made);
+    narc_bodies bodies;
+    narc_view_bodies(c->bodies, way == AMONG ? c->made + c->pieces : c->made, &bodies);
     const narc_pair_filter filter = {.kind = {c->kinds, 1}};
     const narc_step asked = {.bodies = &bodies,
                              .margin = margin,
@@ -147,7 +148,8 @@ static void keep_pairs(struct country *c, const narc_step_result *result) {
 }
 
 static size_t find_rows(struct country *c) {
-    const narc_bodies bodies = narc_view_bodies(c->bodies, c->made + c->pieces);
+    narc_bodies bodies;
+    narc_view_bodies(c->bodies, c->made + c->pieces, &bodies);
     const narc_pairs pairs = {.count = c->pair_count, .a = NARC_COLUMN(c->pairs, a), .b = NARC_COLUMN(c->pairs, b)};
     size_t found;
     narc_error error;

@@ -68,7 +68,8 @@ static void make_flights(struct flights *f, double turning) {
 
 static void cast(const struct flights *f, size_t first, size_t count, narc_impact *out) {
     const struct motion *motion = f->motions + 2 * first;
-    const narc_bodies bodies = narc_view_bodies(f->bodies + 2 * first, 2 * count);
+    narc_bodies bodies;
+    narc_view_bodies(f->bodies + 2 * first, 2 * count, &bodies);
     narc_motions motions = {.x = NARC_COLUMN(motion, x), .y = NARC_COLUMN(motion, y)};
     const narc_pairs pairs = {.count = count};
     narc_error error;

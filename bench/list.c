@@ -167,7 +167,7 @@ static void add_row(const char *query, const char *family, const char *layout, c
     }
     if (row.peer && row.family)
         row.family = family_for(row.peer, row.family);
-    row.workers = narc_openmp_workers(threads);
+    narc_openmp_workers(threads, &row.workers);
     row.bench = (struct bench_row){.prepare = prepare,
                                    .run = run,
                                    .threaded = threads > 1,

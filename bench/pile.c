@@ -50,7 +50,7 @@ static void end_search(struct search *search) {
 static narc_pairs find_close(struct search *search, const struct scene *scene, double room) {
     narc_error error;
     find_boxes(scene, room, all_workers(), search->boxes);
-    must(narc_find_pairs(search->broad, search->boxes, scene->body_count, NULL, all_workers(), search->a, search->b,
+    must(narc_find_pairs(search->broad, search->boxes, scene->body_count, NULL, all_workers(), search->a, search->b, 0,
                          search->capacity, &search->found, &error),
          &error);
     return (narc_pairs){.count = search->found, .a = NARC_ARRAY(search->a), .b = NARC_ARRAY(search->b)};

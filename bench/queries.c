@@ -216,7 +216,7 @@ static void run_nearest(struct row *row) {
         const narc_index_column named = NARC_ARRAY(q->bodies);
         const narc_points points = points_from(q, 0, q->asked.count);
         narc_error error;
-        must(narc_find_distances(row->scene->shapes, &bodies, &points, named, NULL, q->distances, &error), &error);
+        must(narc_find_distances(row->scene->shapes, &bodies, &points, &named, NULL, q->distances, &error), &error);
     }
 }
 

@@ -53,7 +53,7 @@ static void run_plain(struct row *row) {
     if (row->question->what != STEP_PAIRS)
         find_boxes(scene, margin / 2 + skin, &row->workers, s->boxes);
     if (row->question->what != STEP_BOXES)
-        must(narc_find_pairs(s->broad, s->boxes, scene->body_count, NULL, &row->workers, s->a, s->b, s->capacity,
+        must(narc_find_pairs(s->broad, s->boxes, scene->body_count, NULL, &row->workers, s->a, s->b, 0, s->capacity,
                              &s->found, &error),
              &error);
     const narc_pairs pairs = {.count = s->found, .a = NARC_ARRAY(s->a), .b = NARC_ARRAY(s->b)};

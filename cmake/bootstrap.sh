@@ -35,7 +35,8 @@ Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and n
 EOF
 }
 
-say() { printf '\n== %s\n' "$*"; }
+begin=$(date +%s)
+say() { printf '\n== %s (after %d s)\n' "$*" $(($(date +%s) - begin)); }
 fail() {
     printf 'bootstrap: %s\n' "$*" >&2
     exit 1

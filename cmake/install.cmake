@@ -17,7 +17,7 @@ endfunction()
 
 narc_install(narc narc_runtime narcShared
   include/narc_export.h include/narc_columns.h include/narc_workers.h include/narc_shapes.h include/narc_pairs.h include/narc_scene.h include/narc_chains.h
-  include/narc.h include/narc_broad_phase.h include/narc_contacts.h include/narc.hpp)
+  include/narc.h include/narc_broad_phase.h include/narc_contacts.h include/narc_layouts.h include/narc.hpp)
 narc_install(narc_static narc_development narcStatic)
 # The others where they are built. The static library of shapes files needs cJSON of its users; what the fitting library
 # links itself, its users need not find.

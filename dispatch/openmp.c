@@ -195,7 +195,7 @@ static void run_in_team(void *context, unsigned task_count, void (*task)(void *a
 }
 #endif
 
-narc_workers narc_openmp_workers(unsigned count) {
+void narc_openmp_workers(unsigned count, narc_workers *out_workers) {
     narc_workers workers = {.count = 1};
 #ifdef _OPENMP
     workers.count = count ? count : (unsigned)omp_get_max_threads();
@@ -205,5 +205,6 @@ narc_workers narc_openmp_workers(unsigned count) {
 #else
     (void)count;
 #endif
-    return workers;
+    if (out_workers)
+        *out_workers = workers;
 }

@@ -112,7 +112,8 @@ static narc_status ask_batch(const narc_shapes *shapes, const narc_body *a, cons
     if (!a || !b || !out_row)
         return narc_fail_missing(error, !a ? "a" : !b ? "b" : "out_row");
     const narc_body two[] = {*a, *b};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const narc_pairs pair = {.count = 1};
     narc_query own = *query;
     size_t count;

@@ -42,7 +42,7 @@ static narc_status check_sets(const narc_bodies *owners, const narc_bodies *part
     return status == NARC_OK ? narc_check_reserved(parts->reserved, 2, "parts", error) : status;
 }
 
-narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts, narc_index_column owner,
+narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts, const narc_index_column *owner,
                              const narc_workers *workers, narc_body *out_bodies, narc_error *error) {
     narc_status status = check_sets(owners, parts, error);
     if (status != NARC_OK || parts->count == 0)
@@ -50,14 +50,14 @@ narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts
     status = check_columns(owners, parts, error);
     if (status != NARC_OK)
         return status;
-    if (!owner.base || !out_bodies)
-        return narc_fail_missing(error, owner.base ? "out_bodies" : "owner");
-    const size_t bad = narc_find_bad_index(owner, 0, parts->count, owners->count, workers);
+    if (!owner || !owner->base || !out_bodies)
+        return narc_fail_missing(error, owner && owner->base ? "out_bodies" : "owner");
+    const size_t bad = narc_find_bad_index(*owner, 0, parts->count, owners->count, workers);
     if (bad < parts->count)
-        return narc_fail(error, NARC_ERROR_INDEX, bad, narc_index_at(owner, bad),
+        return narc_fail(error, NARC_ERROR_INDEX, bad, narc_index_at(*owner, bad),
                          "part %zu: the owner is %lu, but there are %zu owners", bad,
-                         (unsigned long)narc_index_at(owner, bad), owners->count);
-    part_job job = {{*owners, *parts, owner, out_bodies}, narc_kernels(&status, error)};
+                         (unsigned long)narc_index_at(*owner, bad), owners->count);
+    part_job job = {{*owners, *parts, *owner, out_bodies}, narc_kernels(&status, error)};
     if (job.kernels)
         narc_run_ranges(workers, parts->count, PART, place_range, &job);
     return status;

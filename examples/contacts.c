@@ -10,7 +10,8 @@
 int main(void) {
     narc_body body[] = {{0, 0, 1, 0, 1, 0}, {4, 4, 0, 1, 1, 0}, {20, 0, 1, 0, 1, 0}}; /* x y cosine sine scale shape */
     uint32_t a[] = {0, 1}, b[] = {1, 2};
-    narc_bodies bodies = narc_view_bodies(body, 3);
+    narc_bodies bodies;
+    narc_view_bodies(body, 3, &bodies);
     narc_pairs pairs = {.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     narc_contact contact[2];
     narc_arc arcs[NARC_MAX_ARCS];

@@ -51,7 +51,8 @@ static narc_status build_room(room *r, narc_error *error) {
                                : (narc_body){(double)(x * cosf(y)), (double)(x * sinf(y)),    c, s,
                                              pick(0.4f, 1.2f),      (uint32_t)k % GLYPH_COUNT};
     }
-    const narc_bodies bodies = narc_view_bodies(r->body, BODIES);
+    narc_bodies bodies;
+    narc_view_bodies(r->body, BODIES, &bodies);
     if (status == NARC_OK)
         status = narc_compute_boxes(r->shapes, &bodies, NULL, box, error);
     if (status == NARC_OK)
@@ -71,7 +72,8 @@ static narc_status scan(const room *r, const robot *at, narc_ray_hit *hits, narc
         x[k] *= RANGE;
         y[k] *= RANGE;
     }
-    const narc_bodies bodies = narc_view_bodies(r->body, BODIES);
+    narc_bodies bodies;
+    narc_view_bodies(r->body, BODIES, &bodies);
     const narc_rays rays = {.count = RAYS,
                             .x = {&at->x, 0, NARC_FLOAT64}, /* all from one place */
                             .y = {&at->y, 0, NARC_FLOAT64},

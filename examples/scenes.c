@@ -95,7 +95,7 @@ static uint32_t add_kind(world *w, int kind, double size) {
     else if (kind == 4)
         narc_build_polygon(hexagon, 6, 0, arcs, &count, &w->error);
     else if (kind == 5)
-        narc_build_four_arc(lens, arcs, &count, &w->error);
+        narc_build_four_arc(&lens, arcs, &count, &w->error);
     else
         memcpy(arcs, glyphs[kind - 6], sizeof glyphs[0]);
     for (size_t i = 0; i < count; i++)
@@ -224,7 +224,7 @@ static void build_car(world *w, uint64_t seed) {
     for (int k = 0; k < 2; k++)
         add_ball(w, 0.4, (double)x + (k ? 0.85 : -0.85), 0.4, 1);
     for (int k = 0; k < 3; k++) {
-        w->bodies[k].group = 1;
+        w->bodies[k].owner = 0;
         w->bodies[k].velocity.x = 5;
     }
     for (int k = 1; k < 3 && w->error.status == NARC_OK; k++)

@@ -155,7 +155,7 @@ int main(int argc, char **argv) {
     settings.flat_angle =
         (float)(degree * find_number(&line, "--flat-angle", (double)settings.flat_angle / degree, -90, 90));
     settings.recycling = (float)find_number(&line, "--recycling", (double)settings.recycling, 0, 1e9);
-    settings.workers = narc_openmp_workers((unsigned)find_number(&line, "--threads", 1, 0, 256));
+    narc_openmp_workers((unsigned)find_number(&line, "--threads", 1, 0, 256), &settings.workers);
     if (line.wrong || line.used != argc)
         return print_usage(stderr);
     world w;

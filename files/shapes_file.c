@@ -208,7 +208,7 @@ static narc_status build_four_arc(reader *at, const cJSON *item, double radius, 
                                 .distance = get_number(at, item, "distance"),
                                 .radius_left = get_number_or_zero(at, item, "radius_left"),
                                 .radius_right = get_number_or_zero(at, item, "radius_right")};
-    return narc_build_four_arc(form, out_arcs, out_count, error);
+    return narc_build_four_arc(&form, out_arcs, out_count, error);
 }
 
 static const struct {

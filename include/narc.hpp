@@ -259,7 +259,11 @@ narc_bodies bodies_of(const Items &items, Position position, Rotation rotation, 
         [=](auto &item) -> auto & { return detail::cosine_of(detail::get(item, rotation)); },
         [=](auto &item) -> auto & { return detail::sine_of(detail::get(item, rotation)); }, shape);
 }
-inline narc_bodies bodies_of(span<const narc_body> rows) { return narc_view_bodies(rows.data(), rows.size()); }
+inline narc_bodies bodies_of(span<const narc_body> rows) {
+    narc_bodies bodies;
+    narc_view_bodies(rows.data(), rows.size(), &bodies);
+    return bodies;
+}
 
 inline narc_body body(double x, double y, uint32_t shape, float cosine = 1, float sine = 0, float scale = 1) {
     return {x, y, cosine, sine, scale, shape};
@@ -302,7 +306,7 @@ template <class Build, class... Arguments> result<outline> build(Build call, Arg
 inline auto circle(double radius) { return build(narc_build_circle, radius); }
 inline auto capsule(double length, double radius) { return build(narc_build_capsule, length, radius); }
 inline auto segment(narc_point from, narc_point to, double radius = 0) {
-    return build(narc_build_segment, from, to, radius);
+    return build(narc_build_segment, &from, &to, radius);
 }
 inline auto box(double width, double height, double radius = 0) { return build(narc_build_box, width, height, radius); }
 inline auto polygon(points corners, double radius = 0) {
@@ -319,7 +323,7 @@ inline auto ellipse(double half_x, double half_y, size_t arc_count) {
         return narc_build_ellipse(half_x, half_y, arc_count, out, count, nullptr, error);
     });
 }
-inline auto four_arc(const narc_four_arc &form) { return build(narc_build_four_arc, form); }
+inline auto four_arc(const narc_four_arc &form) { return build(narc_build_four_arc, &form); }
 inline auto through_points(points junctions, double radius = 0) {
     return build(narc_build_points, junctions.data(), junctions.size(), radius);
 }
@@ -457,7 +461,7 @@ class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_pha
     result<size_t> find_pairs(span<const narc_box> boxes, std::vector<uint32_t> &a, std::vector<uint32_t> &b,
                               const narc_pair_filter *filter = nullptr, const narc_workers *workers = nullptr) {
         const auto ask = [&](size_t *out_count, narc_error *error) {
-            return narc_find_pairs(get(), boxes.data(), boxes.size(), filter, workers, a.data(), b.data(),
+            return narc_find_pairs(get(), boxes.data(), boxes.size(), filter, workers, a.data(), b.data(), 0,
                                    a.size() < b.size() ? a.size() : b.size(), out_count, error);
         };
         size_t count = 0;
@@ -598,6 +602,7 @@ struct cast_options : detail::options<cast_options, narc_cast_options> {
     cast_options &target(float value) noexcept { return set(&narc_cast_options::target, value); }
     cast_options &targets(narc_float_column value) noexcept { return set(&narc_cast_options::targets, value); }
     cast_options &front_only() noexcept { return set(&narc_cast_options::front_only, 1u); }
+    cast_options &parting(float value) noexcept { return set(&narc_cast_options::parting, value); }
     cast_options &tolerance(float value) noexcept { return set(&narc_cast_options::tolerance, value); }
     cast_options &skipped(size_t &out) noexcept { return set(&narc_cast_options::out_skipped, &out); }
 };
@@ -653,7 +658,7 @@ auto find_distances(const narc_shapes *shapes, const narc_bodies &bodies, const 
     return detail::fill_rows<narc_distance>(
         rows, at.count,
         [&](narc_distance *out, size_t, narc_error *error) {
-            return narc_find_distances(shapes, &bodies, &at, body, workers, out, error);
+            return narc_find_distances(shapes, &bodies, &at, &body, workers, out, error);
         });
 }
 
@@ -682,7 +687,7 @@ auto place_parts(const narc_bodies &owners, const narc_bodies &parts, narc_index
     return detail::fill_rows<narc_body>(
         rows, parts.count,
         [&](narc_body *out, size_t, narc_error *error) {
-            return narc_place_parts(&owners, &parts, owner, workers, out, error);
+            return narc_place_parts(&owners, &parts, &owner, workers, out, error);
         });
 }
 

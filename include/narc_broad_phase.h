@@ -12,7 +12,7 @@
  * Example
  *
  *     narc_compute_boxes(shapes, &bodies, &(narc_box_options){.margin = margin / 2}, boxes, &error);
- *     narc_find_pairs(broad, boxes, bodies.count, &filter, NULL, a, b, capacity, &count, &error);
+ *     narc_find_pairs(broad, boxes, bodies.count, &filter, NULL, a, b, 0, capacity, &count, &error);
  *     narc_pairs pairs = {.count = count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
  *     narc_find_contacts(shapes, &bodies, &pairs, ...);
  */
@@ -64,8 +64,10 @@ NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bo
  *   boxes      `count` of them, at most 2^32 - 2; box k is that of body k
  *   filter     see narc_pair_filter; its columns have `count` items
  *   workers    threads to use; NULL: the calling one
- *   out_a      `capacity` items each, overlapping nothing else
+ *   out_a      `capacity` items each, overlapping nothing else but each other's gaps
  *   out_b
+ *   stride     bytes from an item to the next, of both: so out_a, out_b of an array of pairs are &pair[0].a, &pair[0].b and
+ *              the size of a pair, or its columns; 0: no gaps
  *   out_count  how many there are. If that is more than `capacity`, nothing else is written and NARC_ERROR_CAPACITY is
  *              returned; make room and call again.
  * Time grows with n log n, n the number of boxes, and with the pairs of boxes that would overlap if each were 16 times
@@ -73,12 +75,13 @@ NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bo
  * of 4 and widths within 16, and each box is searched for in every level that has boxes. So the bound is L n log n for
  * L levels, and the pairs; sizes that differ by 1 : 10,000 in height and in width make at most 32 levels. Boxes that
  * all lie in one row are sorted and swept by one thread.
- * Errors: NARC_ERROR_ARGUMENT (NULL, too many boxes), NARC_ERROR_COUNT (2^32 pairs or more, after the filter; counting
+ * Errors: NARC_ERROR_ARGUMENT (NULL, too many boxes, a stride that is no multiple of 4), NARC_ERROR_COUNT (2^32 pairs or more, after the filter; counting
  * stops there), NARC_ERROR_MEMORY, NARC_ERROR_CAPACITY.
  * Source: sweep and prune (Baraff 1992; Cohen and others 1995) in strips, by levels of size. */
 NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                                      const narc_pair_filter *filter, const narc_workers *workers, uint32_t *out_a,
-                                     uint32_t *out_b, size_t capacity, size_t *out_count, narc_error *error);
+                                     uint32_t *out_b, ptrdiff_t stride, size_t capacity, size_t *out_count,
+                                     narc_error *error);
 
 #ifdef __cplusplus
 }

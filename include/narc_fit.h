@@ -63,13 +63,14 @@ NARC_API narc_status narc_create_path(narc_path **out_path);
 NARC_API void narc_destroy_path(narc_path *path);
 
 /* The pen: move_to begins a contour, the others draw a line or a Bezier curve from where the pen is. A contour closes
- * by itself with a line to its start. Errors: NARC_ERROR_ARGUMENT (no contour was begun), NARC_ERROR_NOT_FINITE,
+ * by itself with a line to its start. Errors: NARC_ERROR_ARGUMENT (NULL, no contour was begun), NARC_ERROR_NOT_FINITE,
  * NARC_ERROR_SIZE (beyond NARC_MAX_COORDINATE), NARC_ERROR_MEMORY. */
-NARC_API narc_status narc_move_to(narc_path *path, narc_point point, narc_error *error);
-NARC_API narc_status narc_line_to(narc_path *path, narc_point point, narc_error *error);
-NARC_API narc_status narc_quadratic_to(narc_path *path, narc_point control, narc_point point, narc_error *error);
-NARC_API narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_point control_2, narc_point point,
-                                   narc_error *error);
+NARC_API narc_status narc_move_to(narc_path *path, const narc_point *point, narc_error *error);
+NARC_API narc_status narc_line_to(narc_path *path, const narc_point *point, narc_error *error);
+NARC_API narc_status narc_quadratic_to(narc_path *path, const narc_point *control, const narc_point *point,
+                                       narc_error *error);
+NARC_API narc_status narc_cubic_to(narc_path *path, const narc_point *control_1, const narc_point *control_2,
+                                   const narc_point *point, narc_error *error);
 
 /* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
  * repeated at the end. No curve is further than `flatness` from its chords, and no drawing from contours that were

@@ -48,8 +48,8 @@ typedef struct narc_body {
     uint32_t shape;
 } narc_body;
 
-/* Columns of such rows, whose memory the caller keeps. */
-NARC_API narc_bodies narc_view_bodies(const narc_body *rows, size_t count);
+/* Columns of such rows, whose memory the caller keeps; without rows (NULL) all is 0. `out_bodies` NULL: nothing happens. */
+NARC_API void narc_view_bodies(const narc_body *rows, size_t count, narc_bodies *out_bodies);
 
 /* Are all bodies what the kernels expect? Batch calls check indices only; this checks every number: shapes that exist,
  * no NaN or infinity, rotations within NARC_ROTATION_TOLERANCE, and sizes in range. The message names the body
@@ -72,6 +72,16 @@ typedef struct narc_pairs {
     narc_float_column shift_x, shift_y;
     void *reserved[2]; /* NULL */
 } narc_pairs;
+
+/* Copies the bodies of pairs to the caller's arrays, of lists above all that belong to the library: those of
+ * narc_query_index(), and narc_step_result.pairs by its `order`, `touching` and the like.
+ *   selection     which pairs, `count` indices of them, in this order; NULL: the first `count`
+ *   out_a, out_b  `count` items each, overlapping none of the inputs; out_b may be NULL: nobody asks
+ *   stride        bytes from an item to the next, of both, as in narc_find_pairs(); 0: no gaps
+ * Errors, found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer or column is NULL, a stride that is no
+ * multiple of 4), NARC_ERROR_INDEX (an index, or `count`, beyond the pairs). */
+NARC_API narc_status narc_copy_pairs(const narc_pairs *pairs, const uint32_t *selection, size_t count, uint32_t *out_a,
+                                     uint32_t *out_b, ptrdiff_t stride, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ queries */
 
@@ -222,12 +232,13 @@ enum { NARC_STATIC = 1, NARC_ASLEEP = 2, NARC_SENSOR = 4 };
  *   kind             see the table above; left out: all move
  *   category, mask   a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
  *                    out: all bits set.
- *   group            two boxes of the same group other than 0 form no pair (the parts of one machine; of a compound:
- *                    narc_place_parts()). */
+ *   owner            two boxes of one owner form no pair: they are one thing, such as a machine, or a body of several
+ *                    parts (narc_place_parts()). UINT32_MAX: a thing by itself; left out: all are. The same column tells
+ *                    other questions what one thing is (narc_owners) */
 typedef struct narc_pair_filter {
     narc_byte_column kind;
     narc_word_column category, mask;
-    narc_index_column group;
+    narc_index_column owner;
     void *reserved[2]; /* NULL */
 } narc_pair_filter;
 

@@ -32,7 +32,7 @@
  *     size_t arc_count;
  *     uint32_t lens;
  *     narc_create_shapes(NULL, &shapes);
- *     narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &arc_count, NULL);
+ *     narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &arc_count, NULL);
  *     narc_add_shape(shapes, arcs, arc_count, &lens, NULL);
  *     ...                                                          (see narc.h for collision queries)
  *     narc_destroy_shapes(shapes);
@@ -157,7 +157,7 @@ NARC_API narc_status narc_build_capsule(double length, double radius, narc_arc *
 /* All points within `radius` of the segment between two points: with radius 0 the segment itself, a shape without area
  * (two arcs of radius 0, each half a turn, and two edges); else a capsule between the points, which may be one. Arc 0
  * is at `to`, arc 1 at `from`. NARC_ERROR_SIZE: radius 0, and the points are one (or too near, NARC_MIN_SIZE). */
-NARC_API narc_status narc_build_segment(narc_point from, narc_point to, double radius, narc_arc *out_arcs,
+NARC_API narc_status narc_build_segment(const narc_point *from, const narc_point *to, double radius, narc_arc *out_arcs,
                                         size_t *out_count, narc_error *error);
 
 /* A box around the origin, `width` by `height` outside measure, its corners rounded with `radius` >= 0 inside that box.
@@ -217,7 +217,8 @@ typedef struct narc_four_arc {
     double distance;
     double radius_left, radius_right;
 } narc_four_arc;
-NARC_API narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs, size_t *out_count, narc_error *error);
+NARC_API narc_status narc_build_four_arc(const narc_four_arc *form, narc_arc *out_arcs, size_t *out_count,
+                                         narc_error *error);
 
 /* The n-arc whose junctions are `points[0 .. count-1]`, counter-clockwise; arc i runs from point i to point i + 1.
  * Joining all chords with a common tangent asks that the half central angles satisfy alpha[i-1] + alpha[i] = the
@@ -313,10 +314,10 @@ NARC_API bool narc_find_support(const narc_arc *arcs, size_t count, double direc
                                 narc_point *out_point, size_t *out_arc);
 
 /* Signed distance from a point to the outline: negative inside. */
-NARC_API bool narc_compute_distance(const narc_arc *arcs, size_t count, narc_point point, double *out_distance);
+NARC_API bool narc_compute_distance(const narc_arc *arcs, size_t count, const narc_point *point, double *out_distance);
 
 /* Is the point inside the shape or on its outline? */
-NARC_API bool narc_contains_point(const narc_arc *arcs, size_t count, narc_point point);
+NARC_API bool narc_contains_point(const narc_arc *arcs, size_t count, const narc_point *point);
 
 /* Memory: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. */
 typedef struct narc_allocator {

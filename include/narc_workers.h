@@ -37,8 +37,9 @@ typedef struct narc_workers {
 /* OpenMP's threads, `count` of them at most, the caller's among them; 0: as many as OpenMP would use. Never more than 256.
  * In a build without OpenMP, and within a parallel region of it, the calling thread. The others begin with the first call
  * that wants them, help all callers, sleep between calls, and end with the process. A caller does itself what nobody has
- * taken, and waits for none but those that are within a task. The child of a fork has threads of its own. Thread-safe. */
-NARC_API narc_workers narc_openmp_workers(unsigned count);
+ * taken, and waits for none but those that are within a task. The child of a fork has threads of its own. Thread-safe.
+ * `out_workers` NULL: nothing happens. */
+NARC_API void narc_openmp_workers(unsigned count, narc_workers *out_workers);
 
 #ifdef __cplusplus
 }

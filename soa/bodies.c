@@ -49,13 +49,46 @@ narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *b
     return status;
 }
 
-narc_bodies narc_view_bodies(const narc_body *rows, size_t count) {
-    return rows ? (narc_bodies){.count = count,
-                                .x = NARC_POSITION_COLUMN(rows, x),
-                                .y = NARC_POSITION_COLUMN(rows, y),
-                                .cosine = NARC_COLUMN(rows, cosine),
-                                .sine = NARC_COLUMN(rows, sine),
-                                .scale = NARC_COLUMN(rows, scale),
-                                .shape = NARC_COLUMN(rows, shape)}
-                : (narc_bodies){0};
+void narc_view_bodies(const narc_body *rows, size_t count, narc_bodies *out_bodies) {
+    if (out_bodies)
+        *out_bodies = rows ? (narc_bodies){.count = count,
+                                           .x = NARC_POSITION_COLUMN(rows, x),
+                                           .y = NARC_POSITION_COLUMN(rows, y),
+                                           .cosine = NARC_COLUMN(rows, cosine),
+                                           .sine = NARC_COLUMN(rows, sine),
+                                           .scale = NARC_COLUMN(rows, scale),
+                                           .shape = NARC_COLUMN(rows, shape)}
+                           : (narc_bodies){0};
+}
+
+/* ------------------------------------------------------------------------------------------------ pairs */
+
+narc_status narc_copy_pairs(const narc_pairs *pairs, const uint32_t *selection, size_t count, uint32_t *out_a,
+                            uint32_t *out_b, ptrdiff_t stride, narc_error *error) {
+    if (!pairs)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "pairs is NULL");
+    if (stride % 4 != 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride, "stride is %td, no multiple of 4", stride);
+    if (!selection && count > pairs->count)
+        return narc_fail(error, NARC_ERROR_INDEX, count, (double)count, "%zu pairs to copy, but there are %zu", count,
+                         pairs->count);
+    if (count == 0)
+        return NARC_OK;
+    if (!pairs->a.base || !pairs->b.base || !out_a)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL",
+                         !pairs->a.base   ? "pairs.a"
+                         : !pairs->b.base ? "pairs.b"
+                                          : "out_a");
+    for (size_t k = 0; selection && k < count; k++)
+        if (selection[k] >= pairs->count)
+            return narc_fail(error, NARC_ERROR_INDEX, k, selection[k], "item %zu: pair %lu, but there are %zu pairs", k,
+                             (unsigned long)selection[k], pairs->count);
+    const ptrdiff_t step = stride ? stride / 4 : 1;
+    for (size_t k = 0; k < count; k++) {
+        const size_t pair = selection ? selection[k] : k;
+        out_a[(ptrdiff_t)k * step] = narc_index_at(pairs->a, pair);
+        if (out_b)
+            out_b[(ptrdiff_t)k * step] = narc_index_at(pairs->b, pair);
+    }
+    return NARC_OK;
 }

@@ -69,21 +69,23 @@ narc_status narc_build_capsule(double length, double radius, narc_arc *out_arcs,
     return finish(arcs, 2, out_arcs, out_count, error);
 }
 
-narc_status narc_build_segment(narc_point from, narc_point to, double radius, narc_arc *out_arcs, size_t *out_count,
-                               narc_error *error) {
+narc_status narc_build_segment(const narc_point *from, const narc_point *to, double radius, narc_arc *out_arcs,
+                               size_t *out_count, narc_error *error) {
     const quantity length = {"radius", radius, RADIUS};
     narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK && (!from || !to))
+        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", from ? "to" : "from");
     if (status == NARC_OK)
-        status = narc_check_points((const narc_point[]){from, to}, 2, error);
+        status = narc_check_points((const narc_point[]){*from, *to}, 2, error);
     if (status == NARC_OK)
         status = check_lengths(&length, 1, error);
     if (status != NARC_OK)
         return status;
-    double x = to.x - from.x, y = to.y - from.y;
+    double x = to->x - from->x, y = to->y - from->y;
     if (x == 0 && y == 0)
         x = 1;
     const double right = narc_atan2(-x, y), left = narc_atan2(x, -y);
-    const narc_arc arcs[2] = {{to.x, to.y, radius, right, left}, {from.x, from.y, radius, left, right}};
+    const narc_arc arcs[2] = {{to->x, to->y, radius, right, left}, {from->x, from->y, radius, left, right}};
     return finish(arcs, 2, out_arcs, out_count, error);
 }
 
@@ -271,44 +273,48 @@ narc_status narc_build_regular_polygon(size_t corners, double circumradius, doub
 
 /* The centre of a circle of `radius` that touches both large circles from inside: `low` and `high` are its distances
  * from their centres. Of the two such points the one with x > 0. */
-static narc_point find_tip(narc_four_arc form, double radius) {
-    double low = form.radius_low - radius, high = form.radius_high - radius, y = form.distance / 2;
-    double tip_y = (high - low) * (high + low) / (2 * form.distance);
+static narc_point find_tip(const narc_four_arc *form, double radius) {
+    double low = form->radius_low - radius, high = form->radius_high - radius, y = form->distance / 2;
+    double tip_y = (high - low) * (high + low) / (2 * form->distance);
     return (narc_point){sqrt(fmax(0, (low - (tip_y - y)) * (low + (tip_y - y)))), tip_y};
 }
 
-narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs, size_t *out_count, narc_error *error) {
-    const quantity lengths[] = {{"radius_low", form.radius_low, POSITIVE},
-                                {"radius_high", form.radius_high, POSITIVE},
-                                {"distance", form.distance, POSITIVE},
-                                {"radius_left", form.radius_left, RADIUS},
-                                {"radius_right", form.radius_right, RADIUS}};
+narc_status narc_build_four_arc(const narc_four_arc *form, narc_arc *out_arcs, size_t *out_count, narc_error *error) {
     narc_status status = check_outputs(out_arcs, out_count, error);
-    if (status == NARC_OK)
-        status = check_lengths(lengths, 5, error);
+    if (status == NARC_OK && !form)
+        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "form is NULL");
     if (status != NARC_OK)
         return status;
-    double sum = form.radius_low + form.radius_high, difference = fabs(form.radius_low - form.radius_high);
-    if (form.distance >= sum)
-        return narc_fail(error, NARC_ERROR_SIZE, 0, form.distance,
-                         "distance is %.9g, the large circles overlap only below %.9g", form.distance, sum);
-    if (form.distance <= difference)
-        return narc_fail(error, NARC_ERROR_SIZE, 0, form.distance,
-                         "distance is %.9g, one large circle contains the other up to %.9g", form.distance, difference);
+    const quantity lengths[] = {{"radius_low", form->radius_low, POSITIVE},
+                                {"radius_high", form->radius_high, POSITIVE},
+                                {"distance", form->distance, POSITIVE},
+                                {"radius_left", form->radius_left, RADIUS},
+                                {"radius_right", form->radius_right, RADIUS}};
+    status = check_lengths(lengths, 5, error);
+    if (status != NARC_OK)
+        return status;
+    double sum = form->radius_low + form->radius_high, difference = fabs(form->radius_low - form->radius_high);
+    if (form->distance >= sum)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, form->distance,
+                         "distance is %.9g, the large circles overlap only below %.9g", form->distance, sum);
+    if (form->distance <= difference)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, form->distance,
+                         "distance is %.9g, one large circle contains the other up to %.9g", form->distance,
+                         difference);
     /* A small circle that reaches from side to side at the thickest place is the largest one that fits. */
-    double most = (sum - form.distance) / 2;
+    double most = (sum - form->distance) / 2;
     for (size_t i = 3; i < 5; i++)
         if (lengths[i].value >= most)
             return narc_fail(error, NARC_ERROR_RADIUS, i == 3 ? 2 : 0, lengths[i].value,
                              "%s is %.9g, it must be below %.9g to fit between the large circles", lengths[i].name,
                              lengths[i].value, most);
-    narc_point right = find_tip(form, form.radius_right), left = find_tip(form, form.radius_left);
-    double y = form.distance / 2;
+    narc_point right = find_tip(form, form->radius_right), left = find_tip(form, form->radius_left);
+    double y = form->distance / 2;
     double right_low = narc_atan2(right.y - y, right.x), right_high = narc_atan2(right.y + y, right.x);
     double left_low = narc_atan2(left.y - y, -left.x), left_high = narc_atan2(left.y + y, -left.x);
-    const narc_arc arcs[4] = {{right.x, right.y, form.radius_right, right_low, right_high},
-                              {0, -y, form.radius_high, right_high, left_high},
-                              {-left.x, left.y, form.radius_left, left_high, left_low},
-                              {0, y, form.radius_low, left_low, right_low}};
+    const narc_arc arcs[4] = {{right.x, right.y, form->radius_right, right_low, right_high},
+                              {0, -y, form->radius_high, right_high, left_high},
+                              {-left.x, left.y, form->radius_left, left_high, left_low},
+                              {0, y, form->radius_low, left_low, right_low}};
     return finish(arcs, 4, out_arcs, out_count, error);
 }

@@ -137,15 +137,15 @@ bool narc_find_support(const narc_arc *arcs, size_t count, double direction_x, d
 
 /* ------------------------------------------------------------------------------------------------ distance */
 
-bool narc_compute_distance(const narc_arc *arcs, size_t count, narc_point point, double *out_distance) {
+bool narc_compute_distance(const narc_arc *arcs, size_t count, const narc_point *point, double *out_distance) {
     narc_outline o;
-    if (!read_list(arcs, count, out_distance, &o))
+    if (!point || !read_list(arcs, count, out_distance, &o))
         return false;
-    *out_distance = narc_find_point_separation(&o, point.x - o.origin_x, point.y - o.origin_y, NULL);
+    *out_distance = narc_find_point_separation(&o, point->x - o.origin_x, point->y - o.origin_y, NULL);
     return true;
 }
 
-bool narc_contains_point(const narc_arc *arcs, size_t count, narc_point point) {
+bool narc_contains_point(const narc_arc *arcs, size_t count, const narc_point *point) {
     double distance;
     return narc_compute_distance(arcs, count, point, &distance) && distance <= 0;
 }

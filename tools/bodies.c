@@ -25,7 +25,8 @@ static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle
  * have one. */
 static float read_scale(table *rows, const narc_shapes *store, uint32_t shape) {
     const narc_body sized = {.cosine = 1, .scale = (float)row_number(rows, SCALE), .shape = shape};
-    const narc_bodies one = narc_view_bodies(&sized, 1);
+    narc_bodies one;
+    narc_view_bodies(&sized, 1, &one);
     narc_error error;
     if (!(row_number(rows, SCALE) > 0))
         fail_field(rows, SCALE, "must be more than 0");

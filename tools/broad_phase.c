@@ -85,7 +85,7 @@ void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uin
         narc_error error;
         a = allocate(capacity, 2 * sizeof *a);
         const narc_status status =
-            narc_find_pairs(broad, rounded, count, NULL, workers, a, a + capacity, capacity, &found, &error);
+            narc_find_pairs(broad, rounded, count, NULL, workers, a, a + capacity, 0, capacity, &found, &error);
         if (status == NARC_ERROR_COUNT)
             refuse(path, "more than ", UINT32_MAX, most);
         if (status != NARC_OK && status != NARC_ERROR_CAPACITY)

@@ -23,5 +23,7 @@ void choose_isa(const char *name) {
 }
 
 narc_workers choose_workers(const option *threads) {
-    return narc_openmp_workers(threads->value ? (unsigned)whole_option(threads, 1, LARGEST_THREADS) : 0);
+    narc_workers workers;
+    narc_openmp_workers(threads->value ? (unsigned)whole_option(threads, 1, LARGEST_THREADS) : 0, &workers);
+    return workers;
 }

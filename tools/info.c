@@ -38,7 +38,9 @@ static void run(int argc, char **argv) {
     printf("%-20s %s\n", "in use", chosen);
     for (size_t i = 0; narc_kernel_name(i); i++)
         printf("%-20s %s\n", i ? "" : "kernels", narc_kernel_name(i));
-    printf("%-20s %u\n", "threads", narc_openmp_workers(0).count);
+    narc_workers workers;
+    narc_openmp_workers(0, &workers);
+    printf("%-20s %u\n", "threads", workers.count);
 }
 
 const command info_command = {"info", "version, processor features, instruction sets, threads", HELP, run};

@@ -105,7 +105,9 @@ narc_bodies dem_make_poses(dem *d, bool last) {
         const vec turn = last ? b->last_turn : b->turn;
         d->poses[i] = (narc_body){at.x, at.y, (float)turn.x, (float)turn.y, b->scale, part->outline};
     }
-    return narc_view_bodies(d->poses, d->image_count);
+    narc_bodies bodies;
+    narc_view_bodies(d->poses, d->image_count, &bodies);
+    return bodies;
 }
 
 dem_region dem_bound(const dem *d, bool with_walls) {

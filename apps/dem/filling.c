@@ -64,7 +64,8 @@ static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double g
         narc_body two[2] = {grain, other};
         two[0].shape = own->first_outline + i / its->outline_count;
         two[1].shape = its->first_outline + i % its->outline_count;
-        const narc_bodies bodies = narc_view_bodies(two, 2);
+        narc_bodies bodies;
+        narc_view_bodies(two, 2, &bodies);
         const narc_pairs pair = {.count = 1};
         const narc_query query = {.margin = INFINITY};
         narc_contact contact;

@@ -239,7 +239,9 @@ narc_bodies FixNarcShapes::bodies() {
     for (size_t row = 0, i = 0; row < rows.size(); i++)
         for (size_t part = 0; part < form(static_cast<int>(i)).parts.size(); part++)
             rows[row++] = body(static_cast<int>(i), part);
-    return narc_view_bodies(rows.data(), rows.size());
+    narc_bodies bodies;
+    narc_view_bodies(rows.data(), rows.size(), &bodies);
+    return bodies;
 }
 
 /* ---------------------------------------------------------------------------- memory of contacts */

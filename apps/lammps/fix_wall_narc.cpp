@@ -212,7 +212,8 @@ void FixWallNarc::find_box_contacts() {
             bodies.push_back(box);
         }
     }
-    const narc_bodies view = narc_view_bodies(bodies.data(), bodies.size());
+    narc_bodies view;
+    narc_view_bodies(bodies.data(), bodies.size(), &view);
     narc_pairs pairs = {};
     pairs.count = grains.size();
     std::vector<narc_contact> found_rows(grains.size());

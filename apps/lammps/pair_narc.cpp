@@ -227,7 +227,8 @@ void PairNarc::find_contacts() {
     pairs.count = contacts.size();
     pairs.a = {&first[disc_pairs], sizeof first[0]};
     pairs.b = {&second[disc_pairs], sizeof second[0]};
-    const narc_workers workers = narc_openmp_workers(static_cast<unsigned>(comm->nthreads));
+    narc_workers workers;
+    narc_openmp_workers(static_cast<unsigned>(comm->nthreads), &workers);
     size_t skipped = 0;
     narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
     query.margin = static_cast<float>(4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));

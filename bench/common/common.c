@@ -71,7 +71,7 @@ void close_result(FILE *file) {
 
 const narc_workers *all_workers(void) {
     static narc_workers workers;
-    workers = narc_openmp_workers(0);
+    narc_openmp_workers(0, &workers);
     return &workers;
 }
 

@@ -23,7 +23,7 @@ static narc_path *turn_subject(const subject *of, double degrees, bool mirror) {
         const narc_point turned = {c * x - s * p.y, s * x + c * p.y};
         const bool first = k == 0 || k == of->contours.ends[contour];
         contour += first && k > 0;
-        if ((first ? narc_move_to : narc_line_to)(path, turned, NULL) != NARC_OK)
+        if ((first ? narc_move_to : narc_line_to)(path, &turned, NULL) != NARC_OK)
             fail("%s: a point that can't be turned", of->name);
     }
     return path;

@@ -157,7 +157,7 @@ static size_t make_lens(uint64_t *random, narc_arc *out) {
         const narc_four_arc form = {low, high, low + high - thickness, thickness / 2 * random_scale(random, 0.01, 0.1),
                                     thickness / 2 * random_scale(random, 0.01, 0.1)};
         size_t count;
-        if (narc_build_four_arc(form, out, &count, NULL) == NARC_OK) {
+        if (narc_build_four_arc(&form, out, &count, NULL) == NARC_OK) {
             center(out, count);
             return count;
         }

@@ -278,7 +278,7 @@ bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t cou
 /* ------------------------------------------------------------------------------------------------ the call */
 
 static narc_status check_arguments(const narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                                   const uint32_t *out_a, const uint32_t *out_b, size_t capacity,
+                                   const uint32_t *out_a, const uint32_t *out_b, ptrdiff_t stride, size_t capacity,
                                    const size_t *out_count, narc_error *error) {
     if (!broad || !out_count)
         return narc_fail_missing(error, !broad ? "broad" : "out_count");
@@ -286,6 +286,8 @@ static narc_status check_arguments(const narc_broad_phase *broad, const narc_box
         return narc_fail_missing(error, "boxes");
     if (capacity > 0 && (!out_a || !out_b))
         return narc_fail_missing(error, !out_a ? "out_a" : "out_b");
+    if (stride % 4 != 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride, "stride is %td, no multiple of 4", stride);
     if (count > UINT32_MAX - 1)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu boxes, at most %lu", count,
                          (unsigned long)(UINT32_MAX - 1));
@@ -363,9 +365,9 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
 
 narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                             const narc_pair_filter *filter, const narc_workers *workers, uint32_t *out_a,
-                            uint32_t *out_b, size_t capacity, size_t *out_count, narc_error *error) {
+                            uint32_t *out_b, ptrdiff_t stride, size_t capacity, size_t *out_count, narc_error *error) {
     size_t found = 0;
-    narc_status status = check_arguments(broad, boxes, count, out_a, out_b, capacity, out_count, error);
+    narc_status status = check_arguments(broad, boxes, count, out_a, out_b, stride, capacity, out_count, error);
     if (status == NARC_OK && filter)
         status = narc_check_reserved(filter->reserved, 2, "filter", error);
     if (status == NARC_OK)
@@ -377,7 +379,20 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu", found,
                          capacity);
     }
-    status = narc_list_found_pairs(broad, count, filter, workers, found, out_a, out_b, error);
+    /* Lists are sorted where they lie, without gaps. */
+    uint32_t *a = out_a, *b = out_b;
+    const bool has_gaps = stride != 0 && stride != sizeof *a && found > 0;
+    if (has_gaps) {
+        if (narc_reserve_matches(broad, found, found) != NARC_OK)
+            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)found, "not enough memory for %zu pairs", found);
+        a = broad->match_memory;
+        b = a + found;
+    }
+    status = narc_list_found_pairs(broad, count, filter, workers, found, a, b, error);
+    if (status == NARC_OK && has_gaps) {
+        const narc_pairs listed = {.count = found, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+        status = narc_copy_pairs(&listed, NULL, found, out_a, out_b, stride, error);
+    }
     if (status == NARC_OK)
         *out_count = found;
     return status;

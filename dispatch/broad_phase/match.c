@@ -167,7 +167,7 @@ void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pair
 narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
                              const narc_workers *workers, uint32_t *out_match) {
     matching m = {{.pairs = old_pairs}, new_pairs, out_match};
-    if ((!is_in_order(old_pairs, workers) || !is_in_order(new_pairs, workers)) &&
+    if ((!is_in_order(new_pairs, workers) || !is_in_order(old_pairs, workers)) &&
         make_buckets(broad, old_pairs, &m.old) != NARC_OK)
         return NARC_ERROR_MEMORY;
     narc_run_ranges(workers, new_pairs->count, PART, match_part, &m);

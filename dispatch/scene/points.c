@@ -76,7 +76,7 @@ static narc_status describe_bad_point(const narc_point_batch *batch, size_t poin
 }
 
 narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
-                                narc_index_column body, const narc_workers *workers, narc_distance *out_rows,
+                                const narc_index_column *body, const narc_workers *workers, narc_distance *out_rows,
                                 narc_error *error) {
     narc_status status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
@@ -88,8 +88,10 @@ narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bo
     const narc_kernel_table *const kernels = find_kernels(points->count, &status, error);
     if (!kernels)
         return status;
-    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points, .body = body, .out = out_rows},
+    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points, .out = out_rows},
                      .kernel = kernels->distance};
+    if (body)
+        job.batch.body = *body;
     atomic_init(&job.bad, points->count);
     narc_run_ranges(workers, points->count, CHECK_PART, check_part, &job);
     const size_t bad = atomic_load(&job.bad);

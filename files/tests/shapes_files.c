@@ -77,7 +77,7 @@ TEST(reads_every_form) {
     expect_arcs(&list->items[3], "back\\slash", arcs, count);
     assert_int_equal(narc_build_points(square, 4, 2.5, arcs, &count, NULL), NARC_OK);
     expect_arcs(&list->items[4], "p", arcs, count);
-    assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0}, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0.25, 0}, arcs, &count, NULL), NARC_OK);
     expect_arcs(&list->items[5], "f", arcs, count);
     const narc_arc halves[] = {{0, 0, 1, 0, 3.141592653589793}, {0, -1, 1, 3.141592653589793, 6.283185307179586}};
     expect_arcs(&list->items[6], "half", halves, 2);

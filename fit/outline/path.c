@@ -95,12 +95,18 @@ static bool make_room(narc_path *path, size_t count) {
     return true;
 }
 
-static narc_status add_move(narc_path *path, unsigned degree, const narc_point *points, narc_error *error) {
+static narc_status add_move(narc_path *path, unsigned degree, const narc_point *const *given, narc_error *error) {
+    const size_t count = narc_count_move_points(degree);
+    narc_point points[3];
     if (!path)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "path is NULL");
+    for (size_t i = 0; i < count; i++) {
+        if (!given[i])
+            return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "a point is NULL");
+        points[i] = *given[i];
+    }
     if (degree > 0 && path->move_count == 0)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "no contour was begun: narc_move_to() comes first");
-    const size_t count = narc_count_move_points(degree);
     const narc_status status = check_points(points, count, error);
     if (status)
         return status;
@@ -114,19 +120,19 @@ static narc_status add_move(narc_path *path, unsigned degree, const narc_point *
     return NARC_OK;
 }
 
-narc_status narc_move_to(narc_path *path, narc_point point, narc_error *error) {
-    return add_move(path, 0, &point, error);
+narc_status narc_move_to(narc_path *path, const narc_point *point, narc_error *error) {
+    return add_move(path, 0, (const narc_point *const[]){point}, error);
 }
 
-narc_status narc_line_to(narc_path *path, narc_point point, narc_error *error) {
-    return add_move(path, 1, &point, error);
+narc_status narc_line_to(narc_path *path, const narc_point *point, narc_error *error) {
+    return add_move(path, 1, (const narc_point *const[]){point}, error);
 }
 
-narc_status narc_quadratic_to(narc_path *path, narc_point control, narc_point point, narc_error *error) {
-    return add_move(path, 2, (narc_point[]){control, point}, error);
+narc_status narc_quadratic_to(narc_path *path, const narc_point *control, const narc_point *point, narc_error *error) {
+    return add_move(path, 2, (const narc_point *const[]){control, point}, error);
 }
 
-narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_point control_2, narc_point point,
-                          narc_error *error) {
-    return add_move(path, 3, (narc_point[]){control_1, control_2, point}, error);
+narc_status narc_cubic_to(narc_path *path, const narc_point *control_1, const narc_point *control_2,
+                          const narc_point *point, narc_error *error) {
+    return add_move(path, 3, (const narc_point *const[]){control_1, control_2, point}, error);
 }

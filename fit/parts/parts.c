@@ -148,7 +148,7 @@ static narc_status draw_piece(const narc_piece *piece, double flatness, narc_pat
     narc_path *path = NULL;
     narc_status status = narc_create_path(&path);
     for (size_t k = 0; k < piece->count && !status; k++)
-        status = k ? narc_line_to(path, piece->corners[k], NULL) : narc_move_to(path, piece->corners[k], NULL);
+        status = k ? narc_line_to(path, &piece->corners[k], NULL) : narc_move_to(path, &piece->corners[k], NULL);
     if (status) {
         narc_destroy_path(path);
         return status;

@@ -100,27 +100,31 @@ static void end_contour(struct glyph_pen *pen) {
 
 static int begin_contour(const FT_Vector *point, void *context) {
     struct glyph_pen *pen = context;
+    const narc_point to = to_em(pen, point);
     end_contour(pen);
     pen->contour = narc_mark_path(pen->path);
-    pen->status = narc_move_to(pen->path, to_em(pen, point), pen->error);
+    pen->status = narc_move_to(pen->path, &to, pen->error);
     return pen->status != NARC_OK;
 }
 
 static int draw_line(const FT_Vector *point, void *context) {
     struct glyph_pen *pen = context;
-    pen->status = narc_line_to(pen->path, to_em(pen, point), pen->error);
+    const narc_point to = to_em(pen, point);
+    pen->status = narc_line_to(pen->path, &to, pen->error);
     return pen->status != NARC_OK;
 }
 
 static int draw_quadratic(const FT_Vector *control, const FT_Vector *point, void *context) {
     struct glyph_pen *pen = context;
-    pen->status = narc_quadratic_to(pen->path, to_em(pen, control), to_em(pen, point), pen->error);
+    const narc_point by = to_em(pen, control), to = to_em(pen, point);
+    pen->status = narc_quadratic_to(pen->path, &by, &to, pen->error);
     return pen->status != NARC_OK;
 }
 
 static int draw_cubic(const FT_Vector *control_1, const FT_Vector *control_2, const FT_Vector *point, void *context) {
     struct glyph_pen *pen = context;
-    pen->status = narc_cubic_to(pen->path, to_em(pen, control_1), to_em(pen, control_2), to_em(pen, point), pen->error);
+    const narc_point by_1 = to_em(pen, control_1), by_2 = to_em(pen, control_2), to = to_em(pen, point);
+    pen->status = narc_cubic_to(pen->path, &by_1, &by_2, &to, pen->error);
     return pen->status != NARC_OK;
 }
 

@@ -141,10 +141,10 @@ static unsigned find_least(const narc_image *image) {
 
 /* An image that is full throughout. A contour of the samples would cut its corners. */
 static narc_status draw_rectangle(double width, double height, narc_path *path, narc_error *error) {
-    narc_status status = narc_move_to(path, (narc_point){0, 0}, error);
-    status = status ? status : narc_line_to(path, (narc_point){width, 0}, error);
-    status = status ? status : narc_line_to(path, (narc_point){width, height}, error);
-    return status ? status : narc_line_to(path, (narc_point){0, height}, error);
+    narc_status status = narc_move_to(path, &(narc_point){0, 0}, error);
+    status = status ? status : narc_line_to(path, &(narc_point){width, 0}, error);
+    status = status ? status : narc_line_to(path, &(narc_point){width, height}, error);
+    return status ? status : narc_line_to(path, &(narc_point){0, height}, error);
 }
 
 narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,

@@ -21,7 +21,7 @@ struct pen {
 };
 
 static narc_status add_point(struct pen *pen, narc_point p, narc_error *error) {
-    const narc_status status = pen->count ? narc_line_to(pen->path, p, error) : narc_move_to(pen->path, p, error);
+    const narc_status status = pen->count ? narc_line_to(pen->path, &p, error) : narc_move_to(pen->path, &p, error);
     pen->count += !status;
     pen->last = p;
     return status;
@@ -29,7 +29,7 @@ static narc_status add_point(struct pen *pen, narc_point p, narc_error *error) {
 
 /* A contour of one point has a line of no length, so that it counts as drawn. */
 static narc_status end_contour(struct pen *pen, narc_error *error) {
-    const narc_status status = pen->count == 1 ? narc_line_to(pen->path, pen->last, error) : NARC_OK;
+    const narc_status status = pen->count == 1 ? narc_line_to(pen->path, &pen->last, error) : NARC_OK;
     pen->count = 0;
     return status;
 }

@@ -71,7 +71,8 @@ static size_t bit_of(const struct tracer *t, struct crossing crossing) {
 
 static narc_status follow(const struct tracer *t, struct crossing start, narc_path *path, narc_error *error) {
     struct crossing crossing = start;
-    narc_status status = narc_move_to(path, locate(t, start), error);
+    narc_point place = locate(t, start);
+    narc_status status = narc_move_to(path, &place, error);
     while (!status) {
         if (crossing.side == WEST) {
             const size_t bit = bit_of(t, crossing);
@@ -80,7 +81,8 @@ static narc_status follow(const struct tracer *t, struct crossing start, narc_pa
         crossing = advance(t, crossing);
         if (crossing.column == start.column && crossing.row == start.row && crossing.side == start.side)
             return NARC_OK;
-        status = narc_line_to(path, locate(t, crossing), error);
+        place = locate(t, crossing);
+        status = narc_line_to(path, &place, error);
     }
     return status;
 }

@@ -19,7 +19,7 @@ static bool bounds_scaled(const narc_arc *arcs, size_t count, const narc_hull *h
         const narc_point p = hull->corners[k];
         const narc_point back = {center.x + (p.x - center.x) / factor, center.y + (p.y - center.y) / factor};
         double distance;
-        if (!narc_compute_distance(arcs, count, back, &distance) || distance * factor > -hull->inflation)
+        if (!narc_compute_distance(arcs, count, &back, &distance) || distance * factor > -hull->inflation)
             return false;
     }
     return true;

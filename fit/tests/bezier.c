@@ -647,10 +647,10 @@ TEST(test_chains) {
     narc_error error;
     narc_arc_chains chains;
     assert_int_equal(narc_fit_chains(path, 1e-3, false, &chains, &error), NARC_ERROR_COUNT);
-    narc_move_to(path, bend[0], NULL);
-    narc_cubic_to(path, bend[1], bend[2], bend[3], NULL);
-    narc_line_to(path, (point){4, 4}, NULL);
-    narc_line_to(path, (point){0, 4}, NULL);
+    narc_move_to(path, &bend[0], NULL);
+    narc_cubic_to(path, &bend[1], &bend[2], &bend[3], NULL);
+    narc_line_to(path, &(point){4, 4}, NULL);
+    narc_line_to(path, &(point){0, 4}, NULL);
     draw_polygon(path, (point[]){{7, 7}, {7, 7}}, 2);
     draw_polygon(path, (point[]){{9, 0}, {10, 0}, {9, 1}, {9, 0}}, 4);
     assert_int_equal(narc_fit_chains(path, 1e-3, false, &chains, &error), NARC_OK);

@@ -44,9 +44,9 @@ narc_path *make_path(void) {
 
 void draw_polygon(narc_path *path, const narc_point *points, size_t count) {
     narc_error error;
-    expect_ok(narc_move_to(path, points[0], &error), &error);
+    expect_ok(narc_move_to(path, &points[0], &error), &error);
     for (size_t i = 1; i < count; i++)
-        expect_ok(narc_line_to(path, points[i], &error), &error);
+        expect_ok(narc_line_to(path, &points[i], &error), &error);
 }
 
 narc_contours flatten(const narc_path *path) {

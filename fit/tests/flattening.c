@@ -88,9 +88,9 @@ static narc_path *draw_curve(const struct curve *c) {
     narc_path *path = make_path();
     narc_error error;
     const narc_point *p = c->controls;
-    expect_ok(narc_move_to(path, p[0], &error), &error);
-    expect_ok(c->degree == 2 ? narc_quadratic_to(path, p[1], p[2], &error)
-                             : narc_cubic_to(path, p[1], p[2], p[3], &error),
+    expect_ok(narc_move_to(path, &p[0], &error), &error);
+    expect_ok(c->degree == 2 ? narc_quadratic_to(path, &p[1], &p[2], &error)
+                             : narc_cubic_to(path, &p[1], &p[2], &p[3], &error),
               &error);
     return path;
 }
@@ -257,8 +257,8 @@ TEST(flattens_mixed_contours) {
     narc_path *path = make_path();
     narc_error error;
     draw_polygon(path, (narc_point[]){{10, 0}, {10, 5}}, 2);
-    expect_ok(narc_cubic_to(path, (narc_point){10, 8}, (narc_point){7, 9}, (narc_point){5, 9}, &error), &error);
-    expect_ok(narc_quadratic_to(path, (narc_point){0, 9}, (narc_point){10, 0}, &error), &error);
+    expect_ok(narc_cubic_to(path, &(narc_point){10, 8}, &(narc_point){7, 9}, &(narc_point){5, 9}, &error), &error);
+    expect_ok(narc_quadratic_to(path, &(narc_point){0, 9}, &(narc_point){10, 0}, &error), &error);
     draw_polygon(path, (narc_point[]){{1, 1}, {2, 1}, {1, 2}}, 3);
     narc_contours flat = flatten(path);
     assert_int_equal(flat.count, 2);

@@ -56,9 +56,9 @@ static narc_path *draw_type1_glyph(void) {
         const bool anchor = letter - operators >= 5 && letter - operators < 8;
         narc_status status = NARC_OK;
         if (!anchor && *letter != 'z') {
-            status = *letter == 'm'   ? narc_move_to(path, p[0], &error)
-                     : *letter == 'l' ? narc_line_to(path, p[0], &error)
-                                      : narc_cubic_to(path, p[0], p[1], p[2], &error);
+            status = *letter == 'm'   ? narc_move_to(path, &p[0], &error)
+                     : *letter == 'l' ? narc_line_to(path, &p[0], &error)
+                                      : narc_cubic_to(path, &p[0], &p[1], &p[2], &error);
         }
         expect_ok(status, &error);
     }
@@ -183,18 +183,19 @@ static void draw_contour(const narc_point *p, const bool *on, size_t count, narc
         left -= 1;
     }
     narc_error error;
-    narc_status status = narc_move_to(path, begin, &error);
+    narc_status status = narc_move_to(path, &begin, &error);
     for (size_t k = 0; k < left && !status; k++) {
         const size_t i = start + k;
         if (on[i]) {
-            status = narc_line_to(path, p[i], &error);
+            status = narc_line_to(path, &p[i], &error);
         } else if (k + 1 == left) {
-            status = narc_quadratic_to(path, p[i], begin, &error);
+            status = narc_quadratic_to(path, &p[i], &begin, &error);
         } else if (on[i + 1]) {
-            status = narc_quadratic_to(path, p[i], p[i + 1], &error);
+            status = narc_quadratic_to(path, &p[i], &p[i + 1], &error);
             k++;
         } else {
-            status = narc_quadratic_to(path, p[i], middle(p[i], p[i + 1]), &error);
+            const narc_point next = middle(p[i], p[i + 1]);
+            status = narc_quadratic_to(path, &p[i], &next, &error);
         }
     }
     expect_ok(status, &error);

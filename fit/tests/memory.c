@@ -179,9 +179,9 @@ static void draw_path(const void *input, struct outcome *out) {
         strcpy(out->error.message, "no memory");
     for (int k = 0; k < 200 && !out->status; k++) {
         const narc_point p = {k % 20, k * k % 17}, c = {k % 7, k % 11};
-        out->status = k % 50 == 0  ? narc_move_to(path, p, &out->error)
-                      : k % 3 == 0 ? narc_cubic_to(path, c, p, p, &out->error)
-                                   : narc_line_to(path, p, &out->error);
+        out->status = k % 50 == 0  ? narc_move_to(path, &p, &out->error)
+                      : k % 3 == 0 ? narc_cubic_to(path, &c, &p, &p, &out->error)
+                                   : narc_line_to(path, &p, &out->error);
     }
     watch_all(false);
     out->path = path;

@@ -41,10 +41,10 @@ void add_cubic(struct outline *to, const narc_point c[4]) {
     narc_error error;
     const narc_point *last = to->count ? &to->points[to->count - 1] : NULL;
     if (!last || last->x != c[0].x || last->y != c[0].y) {
-        expect_ok(narc_move_to(to->path, c[0], &error), &error);
+        expect_ok(narc_move_to(to->path, &c[0], &error), &error);
         remember(to, c[0]);
     }
-    expect_ok(narc_cubic_to(to->path, c[1], c[2], c[3], &error), &error);
+    expect_ok(narc_cubic_to(to->path, &c[1], &c[2], &c[3], &error), &error);
     for (int k = 1; k < SAMPLES; k++) {
         const double t = (double)k / SAMPLES, s = 1 - t;
         const double a = s * s * s, b = 3 * s * s * t, d = 3 * s * t * t, e = t * t * t;

@@ -13,13 +13,13 @@
 static narc_status draw(narc_path *path, unsigned degree, const narc_point *points, narc_error *error) {
     switch (degree) {
     case 0:
-        return narc_move_to(path, points[0], error);
+        return narc_move_to(path, &points[0], error);
     case 1:
-        return narc_line_to(path, points[0], error);
+        return narc_line_to(path, &points[0], error);
     case 2:
-        return narc_quadratic_to(path, points[0], points[1], error);
+        return narc_quadratic_to(path, &points[0], &points[1], error);
     default:
-        return narc_cubic_to(path, points[0], points[1], points[2], error);
+        return narc_cubic_to(path, &points[0], &points[1], &points[2], error);
     }
 }
 
@@ -112,7 +112,7 @@ TEST(closes_contours) {
     assert_null(contours.ends);
 
     /* The pen goes on from the last contour. */
-    expect_ok(narc_line_to(path, (narc_point){1, 1}, &error), &error);
+    expect_ok(narc_line_to(path, &(narc_point){1, 1}, &error), &error);
     contours = flatten(path);
     assert_int_equal(contours.count, 4);
     assert_int_equal(contours.point_count, 9);

@@ -357,7 +357,8 @@ TEST(test_simplexes_of_a_batch) {
     struct test_random random = test_random_named("gjk simplexes");
     const struct scene *const scene = &corpora[0].scene;
     const size_t count = scene->pair_count, first = 64, size = count * sizeof(uint32_t);
-    const narc_workers three = narc_openmp_workers(3);
+    narc_workers three;
+    narc_openmp_workers(3, &three);
     uint32_t *const right = create_simplexes(count), *const start = create_simplexes(count),
                     *selection = make_junk(size);
     for (uint32_t k = 0; k < count; k++) {

@@ -21,7 +21,7 @@ static void set_up(struct fixture *f) {
     store_shape(f->shapes, circle_of(2));
     for (int k = 0; k < COUNT; k++)
         f->body[k] = (narc_body){k, -k, 0.6f, 0.8f, 1, 0};
-    f->bodies = narc_view_bodies(f->body, COUNT);
+    narc_view_bodies(f->body, COUNT, &f->bodies);
 }
 
 static void expect(struct fixture *f, narc_status status, const char *words) {
@@ -101,7 +101,8 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
         {(double)x, (double)y, cosine, sine, 1, 0}, {0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
     float separation[2];
     for (int k = 0; k < 2; k++) { /* both orders of a rotated body and one that is not */
-        const narc_bodies bodies = narc_view_bodies(&body[k], 2);
+        narc_bodies bodies;
+        narc_view_bodies(&body[k], 2, &bodies);
         const narc_query query = {.margin = INFINITY};
         narc_contact contact;
         size_t count;

@@ -39,7 +39,7 @@ set(bad_cpp "bodies.cosine = narc::column(body, &Body::x)" "bodies.x = narc::col
   "(void)narc::find_manifolds(shapes, bodies, pairs, query, contacts)"
   "(void)narc::find_overlaps(shapes, bodies, pairs, query, words)"
   "bodies = narc::bodies_of(body, &Body::x, &Body::x, &Body::x, &Body::c, &Body::shape)"
-  "query = narc::query().workers(narc_openmp_workers(0))" "narc::shapes copy = *static_cast<const narc::shapes *>(nullptr)")
+  "query = narc::query().workers(narc_workers{})" "narc::shapes copy = *static_cast<const narc::shapes *>(nullptr)")
 
 function(compiles out_result language statement)
   set(command ${C_COMPILER} -std=c17)

@@ -34,7 +34,7 @@ static struct few *make_few(struct shape shape, size_t count, const narc_allocat
         few->body[k] = (narc_body){.x = (double)(k / 2) * 10 + 0.9 * (double)(k % 2), .cosine = 1, .scale = 1};
         few->id[k] = k + 1;
     }
-    few->bodies = narc_view_bodies(few->body, count);
+    narc_view_bodies(few->body, count, &few->bodies);
     few->filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind)};
     few->step = (narc_step){
         .bodies = &few->bodies, .margin = 0.02f, .skin = 1, .id = NARC_ARRAY(few->id), .filter = &few->filter};
@@ -276,7 +276,8 @@ static void check_separations(const struct few *few, const narc_step_result *r) 
 TEST(workers_share_a_step) {
     struct few *const few = make_few(circle_of(0.5), 600, NULL);
     struct test_random random = test_random_named("shared steps");
-    const narc_workers workers = narc_openmp_workers(3);
+    narc_workers workers;
+    narc_openmp_workers(3, &workers);
     narc_contacts *const alone = few->contacts, *const shared = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     const uint32_t box = store_shape(few->store, box_of(0.9, 0.9, 0));
     size_t pairs = 0;

@@ -79,7 +79,8 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
     static struct memory memory;
     static struct given given;
     struct step_world *const w = make_step_world(random, ground);
-    const narc_workers workers = narc_openmp_workers(3);
+    narc_workers workers;
+    narc_openmp_workers(3, &workers);
     narc_contacts *const all = make_contacts(NARC_MANIFOLD_ROWS, NULL), *const listed = make_contacts(0, NULL),
                          *const shared = make_contacts(0, NULL), *const own = make_contacts(0, NULL),
                          *const loaded = make_contacts(0, NULL), *const within = make_within(),
@@ -89,11 +90,12 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
     narc_error error;
     memory.now_count = given.pairs.count = 0;
     for (size_t k = 0; k < steps; k++) {
-        const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground);
+        narc_bodies bodies;
+        narc_view_bodies(w->body, w->count + w->ground, &bodies);
         const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind),
                                          .category = NARC_ARRAY(w->category),
                                          .mask = NARC_ARRAY(w->mask),
-                                         .group = NARC_ARRAY(w->group)};
+                                         .owner = NARC_ARRAY(w->owner)};
         narc_step step = make_step(w, &bodies, &filter);
         expect_ok(narc_update_contacts(all, w->store, &step, &r, &error), &error);
         check_pairs(w, &step, r);
@@ -227,7 +229,8 @@ TEST(rows_follow_their_bodies) {
     w->has_filter = w->has_ahead = w->has_motion = false;
     w->body[3].x = 0;
     for (size_t k = 0; k < 100; k++) {
-        const narc_bodies bodies = narc_view_bodies(w->body, w->count);
+        narc_bodies bodies;
+        narc_view_bodies(w->body, w->count, &bodies);
         narc_step step = make_step(w, &bodies, NULL);
         step.recycling = 0.01f;
         expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
@@ -275,7 +278,8 @@ TEST(goes_on_without_memory) {
         allowed = SIZE_MAX;
         contacts = make_contacts(NARC_MANIFOLD_ROWS, &watched);
         for (size_t k = 0; k < 12; k++) {
-            const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground);
+            narc_bodies bodies;
+            narc_view_bodies(w->body, w->count + w->ground, &bodies);
             const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind)};
             const narc_step step = make_step(w, &bodies, &filter);
             const uint64_t before = r ? hash_result(r) : 0;
@@ -293,7 +297,8 @@ TEST(goes_on_without_memory) {
                     expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
             }
             if (status == NARC_OK || allowed == SIZE_MAX) {
-                const narc_bodies now = narc_view_bodies(w->body, w->count + w->ground);
+                narc_bodies now;
+                narc_view_bodies(w->body, w->count + w->ground, &now);
                 const narc_step again = make_step(w, &now, &filter);
                 allowed = SIZE_MAX;
                 expect_ok(narc_update_contacts(contacts, w->store, &again, &r, &error), &error);
@@ -320,7 +325,8 @@ static void expect_refused(narc_contacts *contacts, const narc_shapes *store, co
 TEST(says_what_is_wrong) {
     struct step_world *const w = make_step_world(test_random_named("wrong"), false);
     narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
-    const narc_bodies bodies = narc_view_bodies(w->body, w->count);
+    narc_bodies bodies;
+    narc_view_bodies(w->body, w->count, &bodies);
     const uint32_t moved[] = {1, BODIES};
     const narc_step_result *r;
     narc_contacts *none;
@@ -386,7 +392,8 @@ TEST(saves_the_same_bytes_everywhere) {
         struct step_world *const w = make_step_world(test_random_named("saved everywhere"), true);
         narc_contacts *const contacts = make_contacts(0, NULL);
         for (size_t k = 0; k < 12; k++) {
-            const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground);
+            narc_bodies bodies;
+            narc_view_bodies(w->body, w->count + w->ground, &bodies);
             const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind)};
             narc_step step = make_step(w, &bodies, &filter);
             const narc_step_result *r;
@@ -409,7 +416,9 @@ TEST(loads_what_was_saved_alone) {
     struct step_world *const w = make_step_world(test_random_named("damage"), true);
     allowed = SIZE_MAX;
     narc_contacts *const contacts = make_contacts(0, &watched), *const other = make_contacts(NARC_CONTACT_ROWS, NULL);
-    const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground), few = narc_view_bodies(w->body, 4);
+    narc_bodies bodies, few;
+    narc_view_bodies(w->body, w->count + w->ground, &bodies);
+    narc_view_bodies(w->body, 4, &few);
     narc_step step = make_step(w, &bodies, NULL);
     const narc_step_result *r;
     struct bytes saved = {0};

@@ -191,7 +191,8 @@ void test_bodies() {
     const narc_body rows[] = {narc::body(1, 2, 3), narc::body(4, 5, 6, 0, 1, 2)};
     CHECK(rows[0].cosine == 1 && rows[0].sine == 0 && rows[0].scale == 1 && rows[0].shape == 3 && rows[0].y == 2);
     CHECK(rows[1].cosine == 0 && rows[1].sine == 1 && rows[1].scale == 2);
-    CHECK(same(narc::bodies_of(rows), narc_view_bodies(rows, 2)));
+    narc_view_bodies(rows, 2, &bodies);
+    CHECK(same(narc::bodies_of(rows), bodies));
     CHECK(narc::bodies_of(std::vector<narc_body>()).count == 0 && narc::pairs_of(7).count == 7);
 }
 
@@ -208,14 +209,14 @@ void test_builders() {
     const narc_point *p = square.data();
     CHECK(!narc_build_circle(2, a, &n, nullptr) && same_arcs(narc::circle(2), a, n));
     CHECK(!narc_build_capsule(3, 2, a, &n, nullptr) && same_arcs(narc::capsule(3, 2), a, n));
-    CHECK(!narc_build_segment(p[0], p[2], 0, a, &n, nullptr) && same_arcs(narc::segment(p[0], p[2]), a, n));
+    CHECK(!narc_build_segment(&p[0], &p[2], 0, a, &n, nullptr) && same_arcs(narc::segment(p[0], p[2]), a, n));
     CHECK(!narc_build_box(3, 2, 0.5, a, &n, nullptr) && same_arcs(narc::box(3, 2, 0.5), a, n));
     CHECK(!narc_build_polygon(p, 4, 0.1, a, &n, nullptr) && same_arcs(narc::polygon(square, 0.1), a, n));
     CHECK(!narc_build_skin_polygon(p, 4, 0.1, a, &n, nullptr) && same_arcs(narc::skin_polygon(square, 0.1), a, n));
     CHECK(!narc_build_regular_polygon(5, 2, 0.1, a, &n, nullptr) && same_arcs(narc::regular_polygon(5, 2, 0.1), a, n));
     CHECK(!narc_build_ellipse(2, 1, 8, a, &n, nullptr, nullptr) && same_arcs(narc::ellipse(2, 1, 8), a, n));
     const narc_four_arc lens = {5, 5, 8, 0.25, 0.25};
-    CHECK(!narc_build_four_arc(lens, a, &n, nullptr) && same_arcs(narc::four_arc(lens), a, n));
+    CHECK(!narc_build_four_arc(&lens, a, &n, nullptr) && same_arcs(narc::four_arc(lens), a, n));
     CHECK(!narc_build_points(p, 4, 0, a, &n, nullptr) && same_arcs(narc::through_points(square), a, n));
     CHECK(!narc_build_ring(p, 4, a, &n, nullptr) && same_arcs(narc::ring(square), a, n));
     CHECK(same_arcs(narc::build(narc_build_ring, p, 4u), a, n));
@@ -274,7 +275,8 @@ void test_shapes() {
 
 void test_query() {
     size_t skipped = 0;
-    const narc_workers workers = narc_openmp_workers(2);
+    narc_workers workers;
+    narc_openmp_workers(2, &workers);
     const float margins[] = {1, 2};
     const uint32_t selection[] = {0, 1};
     const narc::query q = narc::query()
@@ -466,7 +468,8 @@ void test_workers() {
 void test_broad_phase() {
     Scene scene = make_scene(10);
     narc::broad_phase broad;
-    const narc_workers workers = narc_openmp_workers(1);
+    narc_workers workers;
+    narc_openmp_workers(1, &workers);
     narc_pair_filter filter = {};
     filter.kind = narc::column(scene.entities, &Entity::is_static);
     std::vector<narc_box> boxes(10);
@@ -492,7 +495,8 @@ void test_contacts_that_stay() {
     Scene scene = make_scene(10);
     narc_pair_filter filter = {};
     filter.kind = narc::column(scene.entities, &Entity::is_static);
-    const narc_workers workers = narc_openmp_workers(1);
+    narc_workers workers;
+    narc_openmp_workers(1, &workers);
     const std::vector<uint64_t> ids = {9, 8, 7, 6, 5, 4, 3, 2, 1, 0};
     const std::vector<uint32_t> run(10, NARC_NO_RUN), none;
     const narc_float_column motion = narc::column(scene.entities, &Entity::motion);
@@ -552,7 +556,8 @@ void test_index() {
     CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes));
     const std::vector<uint64_t> category = {1, 2, 1, 2, 1, 2, 1, 2, 1, 2}, mask = {2};
     const std::vector<uint32_t> ignored = {3};
-    const narc_workers workers = narc_openmp_workers(1);
+    narc_workers workers;
+    narc_openmp_workers(1, &workers);
     narc::index index;
     const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
     const narc_index_options &c = options;

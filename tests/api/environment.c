@@ -55,10 +55,10 @@ struct tiny_batch {
 static struct tiny_batch make_batch(void) {
     static const narc_body body = {.cosine = 1, .scale = 1};
     static const uint32_t first = 0;
-    struct tiny_batch batch = {.bodies = narc_view_bodies(&body, 1),
-                               .pairs = {.count = 1, .a = {&first, 0}, .b = {&first, 0}}};
+    struct tiny_batch batch = {.pairs = {.count = 1, .a = {&first, 0}, .b = {&first, 0}}};
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
+    narc_view_bodies(&body, 1, &batch.bodies);
     REQUIRE(narc_create_shapes(NULL, &batch.shapes) == NARC_OK);
     REQUIRE(narc_build_circle(1, arcs, &count, NULL) == NARC_OK);
     REQUIRE(narc_add_shape(batch.shapes, arcs, count, NULL, NULL) == NARC_OK);
@@ -131,13 +131,13 @@ static void all_calls_unknown(void) {
     REQUIRE(narc_find_manifolds(shapes, bodies, &batch.pairs, NULL, &manifold, 1, &count, NULL) == unknown);
     REQUIRE(narc_compute_poses(&angle, 1, &cosine, &sine, NULL) == unknown);
     REQUIRE(narc_compute_boxes(shapes, bodies, NULL, &box, NULL) == unknown);
-    REQUIRE(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, &count, NULL) == unknown);
+    REQUIRE(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 0, 1, &count, NULL) == unknown);
     REQUIRE(narc_update_contacts(contacts, shapes, &step, &r, NULL) == unknown);
     REQUIRE(narc_build_index(index, &box, 1, NULL, NULL) == unknown);
     REQUIRE(narc_refit_index(index, &box, 0, NULL, NULL, NULL) == unknown); /* it has no bodies yet */
     REQUIRE(narc_query_index(index, &box, 1, NULL, &pairs, NULL) == unknown);
     REQUIRE(narc_cast_pairs(shapes, bodies, &motions, &batch.pairs, NULL, NULL, &impact, 1, NULL) == unknown);
-    REQUIRE(narc_find_distances(shapes, bodies, &points, (narc_index_column){0}, NULL, &distance, NULL) == unknown);
+    REQUIRE(narc_find_distances(shapes, bodies, &points, NULL, NULL, &distance, NULL) == unknown);
     const narc_bodies none = {.count = 0}; /* as many as the index has */
     REQUIRE(narc_cast_rays(index, shapes, &none, &rays, NULL, &hit, 1, NULL) == unknown);
     REQUIRE(narc_cast_shapes(index, shapes, &none, bodies, &motions, NULL, NULL, &impact, 1, NULL) == unknown);
@@ -263,7 +263,9 @@ TEST(test_names) {
         assert_string_equal(narc_kernel_name(k), kernels[k]);
     assert_null(narc_kernel_name(kernel_count));
     assert_null(narc_kernel_name(SIZE_MAX));
-    assert_true(narc_openmp_workers(0).count >= 1);
+    narc_workers workers;
+    narc_openmp_workers(0, &workers);
+    assert_true(workers.count >= 1);
     assert_string_equal(narc_status_name(NARC_OK), "NARC_OK");
     assert_string_equal(narc_status_name(NARC_ERROR_ISA_UNSUPPORTED), "NARC_ERROR_ISA_UNSUPPORTED");
     assert_string_equal(narc_status_name((narc_status)999), "unknown status");

@@ -45,7 +45,8 @@ static void check_call(const struct question *question, struct call call, narc_s
                        const char *const texts[], size_t text_count) {
     struct outputs *out = make_junk(sizeof *out);
     for (unsigned threads = 0; threads < 3; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
+        narc_workers workers;
+        narc_openmp_workers(threads, &workers);
         call.query.workers = &workers;
         narc_error error = {0};
         const narc_status status = run(question, &call, out, &error);
@@ -217,7 +218,8 @@ TEST(test_first_wrong_pair) {
     uint8_t *outcomes = make_junk(MANY);
     scene.pairs[8111].a = scene.pairs[4055].b = scene.pairs[4056].a = 5005;
     for (size_t k = 0; k < 6 * question_count; k++) {
-        const narc_workers workers = narc_openmp_workers((unsigned)(k % 6));
+        narc_workers workers;
+        narc_openmp_workers((unsigned)(k % 6), &workers);
         const narc_query query = {.workers = &workers};
         size_t found;
         const struct asked asked = {shapes, &bodies, &pairs, &query, rows, MANY, &found, outcomes};
@@ -391,7 +393,8 @@ TEST(test_no_pairs) {
     f.pairs = (narc_pairs){0};
     for (size_t k = 0; k < 6 * question_count; k++) {
         const struct question *question = &questions[k / 6];
-        const narc_workers workers = narc_openmp_workers((unsigned)(k % 3));
+        narc_workers workers;
+        narc_openmp_workers((unsigned)(k % 3), &workers);
         f.call.query = (narc_query){.dense = k % 2, .workers = &workers};
         f.bodies.count = k % 6 < 3 ? 0 : BODIES;
         out->skipped = 12345;
@@ -425,7 +428,8 @@ TEST(test_capacity) {
         const size_t fixed[] = {0, 1, 63, 64, 65, all.count - 1, all.count};
         assert_true(all.count > 100);
         for (size_t trial = 0; trial < 24; trial++) {
-            const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
+            narc_workers workers;
+            narc_openmp_workers((unsigned)(trial % 4), &workers);
             const size_t capacity = trial < 7 ? fixed[trial] : random_below(&random, all.count);
             void *shorter = guard_allocate(answer_size(question, capacity));
             size_t skipped = 12345, needed;
@@ -497,7 +501,7 @@ static void set_up_discs(struct row_of_discs *d) {
     store_shape(d->store, circle_of(0.5));
     for (size_t k = 0; k < 5; k++)
         d->body[k] = (narc_body){.x = 0.9 * (double)k, .cosine = 1, .scale = 1};
-    d->bodies = narc_view_bodies(d->body, 5);
+    narc_view_bodies(d->body, 5, &d->bodies);
     expect_ok(narc_create_contacts(&(narc_contacts_settings){.user_size = 4}, &d->contacts, &error), &error);
     const narc_step step = {.bodies = &d->bodies};
     expect_ok(narc_update_contacts(d->contacts, d->store, &step, &d->r, &error), &error);

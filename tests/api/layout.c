@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
  * layout.c - where the fields of public structures lie: what programs that were compiled with another version of the
- * headers of the same SONAME count on, and what other languages read rows by. There is nothing to run.
+ * headers of the same SONAME count on, and what other languages read rows by. The library's own table says the same, and has
+ * no structure that is not here.
  */
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "narc.h"
 #include "narc_broad_phase.h"
@@ -11,6 +14,7 @@
 #include "narc_contacts.h"
 #include "narc_files.h"
 #include "narc_fit.h"
+#include "narc_layouts.h"
 #include "narc_methods.h"
 #include "narc_scene.h"
 
@@ -19,7 +23,25 @@
     do {                                                                                                               \
         typedef structure type;                                                                                        \
         _Static_assert(sizeof(type) == (size) && (fields), #structure);                                                \
+        check_table(#structure, size, #fields);                                                                        \
     } while (0)
+
+static size_t checked;
+
+/* The library's table has the fields that stand here, "AT(x, 0) && AT(y, 8)", each of them and in this order. */
+static void check_table(const char *structure, size_t size, const char *fields) {
+    const narc_layout *const layout = narc_find_layout(structure);
+    char text[4096] = "";
+    for (size_t k = 0, end = 0; layout && k < layout->member_count; k++)
+        end += (size_t)snprintf(text + end, sizeof text - end, "%sAT(%s, %zu)", k ? " && " : "",
+                                layout->members[k].name, layout->members[k].offset);
+    if (!layout || layout->size != size || strcmp(text, fields) != 0) {
+        printf("%s: the table has %zu bytes, %s; here stand %zu, %s\n", structure, layout ? layout->size : 0, text,
+               size, fields);
+        exit(1);
+    }
+    checked++;
+}
 
 /* On every platform: rows, and what is made of numbers alone. */
 static void check_numbers(void) {
@@ -62,6 +84,9 @@ static void check_numbers(void) {
  * stays. */
 static void check_pointers(void) {
 #if UINTPTR_MAX == UINT64_MAX && SIZE_MAX == UINT64_MAX
+    LAYOUT(narc_member, 40, AT(name, 0) && AT(type, 8) && AT(offset, 16) && AT(size, 24) && AT(count, 32));
+    LAYOUT(narc_layout, 40, AT(name, 0) && AT(size, 8) && AT(alignment, 16) && AT(members, 24) && AT(member_count, 32));
+    LAYOUT(narc_constant, 16, AT(name, 0) && AT(value, 8));
     LAYOUT(narc_float_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_index_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_word_column, 16, AT(base, 0) && AT(stride, 8));
@@ -70,7 +95,7 @@ static void check_pointers(void) {
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
            AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
-               AT(front_only, 40) && AT(reserved, 48));
+               AT(front_only, 40) && AT(parting, 44) && AT(reserved, 48));
     LAYOUT(narc_chain_options, 56,
            AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(thickness, 24) &&
                AT(both_sides, 28) && AT(reserved, 32));
@@ -83,7 +108,7 @@ static void check_pointers(void) {
     LAYOUT(narc_pairs, 96,
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
-    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48) && AT(reserved, 64));
+    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(reserved, 64));
     LAYOUT(narc_contacts_settings, 64,
            AT(rows, 0) && AT(user_size, 8) && AT(row_offset, 16) && AT(allocator, 24) && AT(reserved, 32));
     LAYOUT(narc_step, 216,
@@ -122,12 +147,14 @@ static void check_pointers(void) {
     LAYOUT(narc_method_options, 56,
            AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(simplexes, 24) &&
                AT(reserved, 32));
-    LAYOUT(narc_named_shape, 48, AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40));
+    LAYOUT(narc_named_shape, 48,
+           AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40) && AT(form, 44));
     LAYOUT(narc_shape_list, 16, AT(count, 0) && AT(items, 8));
     LAYOUT(narc_contours, 40, AT(points, 0) && AT(point_count, 8) && AT(ends, 16) && AT(count, 24) && AT(flatness, 32));
-    LAYOUT(narc_image_request, 32, AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24));
-    LAYOUT(narc_parts_request, 48, AT(tolerance, 8) && AT(lap, 16) && AT(flatness, 24));
-    LAYOUT(narc_parts, 32, AT(count, 8) && AT(distance, 16) && AT(area, 24));
+    LAYOUT(narc_image_request, 32, AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24));
+    LAYOUT(narc_parts_request, 48,
+           AT(most, 0) && AT(tolerance, 8) && AT(lap, 16) && AT(flatness, 24) && AT(reserved, 32));
+    LAYOUT(narc_parts, 32, AT(paths, 0) && AT(count, 8) && AT(distance, 16) && AT(area, 24));
     LAYOUT(narc_fit_request, 64,
            AT(arc_count, 0) && AT(tolerance, 8) && AT(family, 16) && AT(goal, 20) && AT(flatness, 24) &&
                AT(min_radius, 32) && AT(keep_origin, 40) && AT(starts, 44) && AT(progress, 48) && AT(context, 56));
@@ -140,8 +167,33 @@ static void check_pointers(void) {
 #endif
 }
 
-int main(void) {
+/* As another program is to read it, into as much room as it asks for; what has no room is not written. */
+static char *make_json(void) {
+    const size_t size = narc_write_layouts(NULL, 0);
+    char *const text = malloc(size + 1), end = 'x';
+    memset(text, end, size + 1);
+    if (narc_write_layouts(text, size / 2) != size || text[size / 2 - 1] != 0 || text[size / 2] != end ||
+        narc_write_layouts(text, size + 1) != size || strlen(text) != size)
+        exit(1);
+    return text;
+}
+
+int main(int argc, char **argv) {
+    char *const json = make_json();
+    if (argc > 1 && strcmp(argv[1], "json") == 0) {
+        fputs(json, stdout);
+        free(json);
+        return 0;
+    }
+    free(json);
     check_numbers();
     check_pointers();
+    size_t structures = 0;
+    for (size_t k = 0; narc_get_layout(k); k++)
+        structures += narc_get_layout(k)->member_count > 0;
+    if (sizeof(void *) == 8 && checked != structures) {
+        printf("%zu structures stand here, %zu in the table\n", checked, structures);
+        return 1;
+    }
     puts("structures are where they were");
 }

@@ -92,7 +92,7 @@ int narc_find_overlaps(const void *shapes, const struct bodies *, const struct p
 int narc_compute_boxes(const void *shapes, const struct bodies *, const void *options, struct box *out_boxes,
                        struct error *);
 int narc_find_pairs(void *broad, const struct box *, size_t count, const struct filter *, const struct workers *,
-                    uint32_t *out_a, uint32_t *out_b, size_t capacity, size_t *out_count, struct error *);
+                    uint32_t *out_a, uint32_t *out_b, ptrdiff_t, size_t capacity, size_t *out_count, struct error *);
 
 /* ------------------------------------------------------------------------------------------------ the client */
 
@@ -197,10 +197,11 @@ static void ask_pairs(void) {
     void *broad = NULL;
     assert(!narc_create_broad_phase(NULL, &broad));
     assert(!narc_compute_boxes(shapes, &bodies, NULL, box, &error) && near(box[0].max_x, 1));
-    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, PAIRS, &found, &error) && found == PAIRS - 1);
+    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, 0, PAIRS, &found, &error) &&
+           found == PAIRS - 1);
     box[4].min_x -= 0.2f;
-    assert(narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, 1, &found, &error) == ERROR_CAPACITY);
-    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, found, &found, &error) && found == PAIRS);
+    assert(narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, 0, 1, &found, &error) == ERROR_CAPACITY);
+    assert(!narc_find_pairs(broad, box, BODIES, &filter, &workers, a, b, 0, found, &found, &error) && found == PAIRS);
     ask_manifolds(&(struct pairs){PAIRS, {a, sizeof *a}, {b, sizeof *b}, .other_bodies = NULL});
     narc_destroy_broad_phase(broad);
 }

@@ -34,7 +34,8 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
     static const uint32_t selection[] = {7, PAIRS - 1, 0, 300, 64, 63, 1};
     const narc_bodies right_bodies = scene_bodies(scene);
     const narc_pairs right_pairs = scene_pairs(scene);
-    const narc_workers workers = narc_openmp_workers(2);
+    narc_workers workers;
+    narc_openmp_workers(2, &workers);
     const narc_query queries[] = {
         {.margin = INFINITY},
         {.margin = 0.1f, .workers = &workers},
@@ -66,7 +67,8 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
 
 /* Two bodies asked directly have the dense row of a batch, whatever is asked. */
 static void check_two(const narc_shapes *store, const narc_body two[2]) {
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const float reach = fmaxf(two[0].scale, two[1].scale);
     const narc_query asked[] = {{.margin = INFINITY},
                                 {.margin = 0},
@@ -103,7 +105,8 @@ static void check_each(const struct scene *scene, const narc_body *rows) {
     uint64_t *bits = scene_overlaps(scene);
     const narc_pairs one = {.count = 1};
     for (size_t k = 0; k < PAIRS; k++) {
-        const narc_bodies two = narc_view_bodies(&rows[2 * k], 2);
+        narc_bodies two;
+        narc_view_bodies(&rows[2 * k], 2, &two);
         const narc_query query = {.margin = INFINITY, .flat_angle = k % 4 ? 0 : NARC_FLAT_ANGLE};
         narc_contact contact;
         narc_manifold manifold;
@@ -130,7 +133,9 @@ TEST(own_poses) {
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_random_scene(&random, precision ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
         narc_body *rows = find_rows(&scene);
-        const narc_bodies bodies = narc_view_bodies(rows, 2 * PAIRS), few = narc_view_bodies(rows, 2 * PAIRS - 1);
+        narc_bodies bodies, few;
+        narc_view_bodies(rows, 2 * PAIRS, &bodies);
+        narc_view_bodies(rows, 2 * PAIRS - 1, &few);
         const narc_pairs pairs = {.count = PAIRS};
         for (size_t isa = 0; narc_isa_name(isa); isa++) {
             if (!narc_isa_supported(narc_isa_name(isa)))
@@ -159,7 +164,8 @@ TEST(one_pair_is_right) {
     for (size_t k = 0; k < PAIRS; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a);
         const struct reference_body b = scene_reference(&scene, scene.pairs[k].b);
-        const narc_bodies two = narc_view_bodies(&rows[2 * k], 2);
+        narc_bodies two;
+        narc_view_bodies(&rows[2 * k], 2, &two);
         struct contacts one =
             find_contacts(scene.store, &two, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY});
         const char *wrong = check_contact(&a, &b, reference_find_gap(&a, &b).gap, one.rows, &worst);
@@ -188,9 +194,14 @@ TEST(two_sets) {
         of_a[k] = find_body(&scene, scene.pairs[k].a);
         of_b[k] = find_body(&scene, scene.pairs[k].b);
     }
-    const narc_bodies bodies = scene_bodies(&scene), other_bodies = narc_view_bodies(others, BODIES);
-    const narc_bodies all_a = narc_view_bodies(of_a, PAIRS), all_b = narc_view_bodies(of_b, PAIRS);
-    const narc_bodies fewer = narc_view_bodies(of_b, PAIRS - 1);
+    const narc_bodies bodies = scene_bodies(&scene);
+    narc_bodies other_bodies;
+    narc_view_bodies(others, BODIES, &other_bodies);
+    narc_bodies all_a, all_b;
+    narc_view_bodies(of_a, PAIRS, &all_a);
+    narc_view_bodies(of_b, PAIRS, &all_b);
+    narc_bodies fewer;
+    narc_view_bodies(of_b, PAIRS - 1, &fewer);
     narc_pairs pairs = {
         .count = PAIRS, .a = NARC_COLUMN(scene.pairs, a), .b = NARC_ARRAY(b), .other_bodies = &other_bodies};
     check_same_answers(&scene, &bodies, &pairs);
@@ -305,7 +316,8 @@ TEST(boxes) {
     assert_int_equal(narc_build_box(2, 2, 0, arcs, &arc_count, NULL), NARC_OK);
     assert_int_equal(narc_add_shape(shapes, arcs, arc_count, &box, NULL), NARC_OK);
     narc_body two[] = {{.cosine = 1, .scale = 1, .shape = box}, {.x = 2.5, .cosine = 1, .scale = 1, .shape = box}};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const narc_pairs pairs = {.count = 1};
     const narc_query query = {.margin = INFINITY};
     narc_contact c;

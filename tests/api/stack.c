@@ -56,6 +56,12 @@ static size_t arc_count, count, skipped;
 
 #define TRUE(expression) ((expression) ? NARC_OK : NARC_ERROR_ARGUMENT)
 
+static narc_status count_workers(void) {
+    narc_workers workers;
+    narc_openmp_workers(0, &workers);
+    return TRUE(workers.count);
+}
+
 static narc_status keep_shapes(narc_error *error) {
     narc_shapes *shapes = NULL, *loaded = NULL;
     narc_broad_phase *other = NULL;
@@ -146,9 +152,9 @@ static narc_status ask_index(narc_error *error) {
         narc_query_index(index, boxes, BODIES, &three.search, &met, error) == NARC_OK &&
         narc_find_nearest(index, store, &bodies, &at, &three, distances, 3 * BODIES, error) == NARC_OK &&
         narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&
-        narc_find_distances(store, &bodies, &at, NARC_ARRAY(selection), query.workers, distances, error) ==
+        narc_find_distances(store, &bodies, &at, &NARC_ARRAY(selection), query.workers, distances, error) ==
             NARC_ERROR_INDEX &&
-        narc_find_distances(store, &bodies, &at, (narc_index_column){0}, query.workers, distances, error) == NARC_OK;
+        narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK;
     narc_destroy_index(index);
     return TRUE(fine);
 }
@@ -179,12 +185,13 @@ static narc_status ask_index(narc_error *error) {
          narc_cast_shapes(scenery, store, &bodies, &bodies, &motions, &search, &cast_options, impacts, PAIRS, error))  \
     CALL(index, ask_index(error))                                                                                      \
     CALL(poses, narc_compute_poses(margins, PAIRS, cosines, sines, error))                                             \
-    CALL(parts, narc_place_parts(&bodies, &bodies, pairs.a, query.workers, placed, error))                             \
+    CALL(parts, narc_place_parts(&bodies, &bodies, &pairs.a, query.workers, placed, error))                            \
     CALL(names, TRUE(narc_set_isa(test_isa(), error) == NARC_OK && narc_get_isa() && narc_isa_name(0) &&               \
-                     narc_isa_supported("scalar") && !narc_cpu_feature(SIZE_MAX) && narc_version() &&                  \
-                     narc_openmp_workers(0).count))                                                                    \
+                     narc_isa_supported("scalar") && !narc_cpu_feature(SIZE_MAX) && narc_version()))                   \
+    CALL(workers, count_workers())                                                                                     \
+    CALL(copy_pairs, narc_copy_pairs(&pairs, NULL, PAIRS, indices[0], indices[1], 0, error))                           \
     CALL(boxes, narc_compute_boxes(store, &bodies, &box_options, boxes, error))                                        \
-    CALL(find_pairs, narc_find_pairs(broad, spread, BODIES, NULL, query.workers, indices[0], indices[1], PAIRS * 2,    \
+    CALL(find_pairs, narc_find_pairs(broad, spread, BODIES, NULL, query.workers, indices[0], indices[1], 0, PAIRS * 2, \
                                      &count, error))                                                                   \
     CALL(keep_contacts, keep_contacts(error))                                                                          \
     CALL(validate_bodies, narc_validate_bodies(store, &bodies, error))                                                 \
@@ -192,14 +199,14 @@ static narc_status ask_index(narc_error *error) {
     CALL(refuse_box, TRUE(narc_build_box(1e300, 1, 0, arcs, &arc_count, error) != NARC_OK))                            \
     CALL(circles, narc_build_circle(1, arcs, &arc_count, error))                                                       \
     CALL(capsule, narc_build_capsule(2, 1, arcs, &arc_count, error))                                                   \
-    CALL(segment, narc_build_segment(ring[0], ring[1], 0, arcs, &arc_count, error))                                    \
+    CALL(segment, narc_build_segment(&ring[0], &ring[1], 0, arcs, &arc_count, error))                                  \
     CALL(box, narc_build_box(4, 3, 0.5, arcs, &arc_count, error))                                                      \
     CALL(polygon, narc_build_polygon(ring, RING, 0.25, arcs, &arc_count, error))                                       \
     CALL(skin_polygon, narc_build_skin_polygon(ring, RING, 0.25, arcs, &arc_count, error))                             \
     CALL(weld, narc_weld_polygon(ring, RING, 1e-3, points, &count, error))                                             \
     CALL(regular, narc_build_regular_polygon(NARC_MAX_ARCS, 1, 0.01, arcs, &arc_count, error))                         \
     CALL(ellipse, narc_build_ellipse(3, 1, NARC_MAX_ARCS, arcs, &arc_count, NULL, error))                              \
-    CALL(four_arc, narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &arc_count, error))                 \
+    CALL(four_arc, narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &arc_count, error))                \
     CALL(build_points, narc_build_points(ring, RING, 0, arcs, &arc_count, error))                                      \
     CALL(build_ring, narc_build_ring(ring, RING, arcs, &arc_count, error))                                             \
     CALL(radius_range, narc_find_radius_range(ring, RING, &number[0], &number[1], &number[2], error))                  \
@@ -214,8 +221,8 @@ static narc_status ask_index(narc_error *error) {
               narc_compute_inscribed_circle(arcs, arc_count, &circle) &&                                               \
               narc_compute_aabb(arcs, arc_count, 1, &aabb) && narc_compute_perimeter(arcs, arc_count, number) &&       \
               narc_find_support(arcs, arc_count, 1, 2, points, &count) &&                                              \
-              narc_compute_distance(arcs, arc_count, ring[0], number) &&                                               \
-              narc_contains_point(arcs, arc_count, (narc_point){0, 0})))                                               \
+              narc_compute_distance(arcs, arc_count, &ring[0], number) &&                                              \
+              narc_contains_point(arcs, arc_count, &(narc_point){0, 0})))                                              \
     CALL(chain, add_chain(error))                                                                                      \
     CALL(keep, keep_shapes(error))
 
@@ -245,8 +252,8 @@ TEST(test_calls) {
     }
     store = scene.store;
     bodies = scene_bodies(&scene);
-    own = narc_view_bodies(two, 2);
-    broken = narc_view_bodies(bad, 1);
+    narc_view_bodies(two, 2, &own);
+    narc_view_bodies(bad, 1, &broken);
     pairs = scene_pairs(&scene);
     pairs.shift_x = pairs.shift_y = NARC_ARRAY(shifts);
     query = (narc_query){.margins = NARC_ARRAY(margins), .out_skipped = &skipped};

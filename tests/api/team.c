@@ -26,8 +26,10 @@ static narc_contact expected[PAIRS];
 static size_t expected_count;
 
 static size_t ask(unsigned threads, narc_contact *rows) {
-    const narc_workers workers = narc_openmp_workers(threads);
-    const narc_bodies bodies = narc_view_bodies(body, BODIES);
+    narc_workers workers;
+    narc_openmp_workers(threads, &workers);
+    narc_bodies bodies;
+    narc_view_bodies(body, BODIES, &bodies);
     const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     size_t found = 0;
     narc_find_contacts(shapes, &bodies, &pairs, &(narc_query){.workers = &workers}, rows, PAIRS, &found, NULL);
@@ -87,7 +89,8 @@ static void count_task(void *argument, unsigned index) {
 }
 
 TEST(runs_each_task_once) {
-    const narc_workers workers = narc_openmp_workers(4);
+    narc_workers workers;
+    narc_openmp_workers(4, &workers);
     for (unsigned count = 0; count <= 300 && workers.run; count++) {
         counts c = {0};
         workers.run(workers.context, count, count_task, &c);
@@ -121,7 +124,8 @@ static void stop(int number) {
 }
 
 TEST(waits_for_nobody_who_has_not_begun) {
-    const narc_workers workers = narc_openmp_workers(2);
+    narc_workers workers;
+    narc_openmp_workers(2, &workers);
     meeting m = {.begun = 0};
     char byte = 0;
     if (!workers.run || getenv("OMP_THREAD_LIMIT"))

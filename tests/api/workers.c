@@ -148,7 +148,8 @@ static uint64_t hash_step(const narc_step_result *r) {
 
 /* Three steps: all is new; little moves; a third of the bodies move, and two change their numbers. */
 static void ask_steps(size_t count, const narc_workers *workers, answers *out) {
-    const narc_bodies bodies = narc_view_bodies(rows, count);
+    narc_bodies bodies;
+    narc_view_bodies(rows, count, &bodies);
     const narc_step step = {
         .bodies = &bodies, .margin = 0.0625f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = workers};
     narc_contacts *slots = NULL;
@@ -171,7 +172,8 @@ static void ask_steps(size_t count, const narc_workers *workers, answers *out) {
 /* From each body through its neighbours; those of the broken one have no answer. */
 static void ask_rays(size_t count, const narc_workers *workers, answers *out) {
     static const float motion[] = {3, -1, 0, 2, -4};
-    const narc_bodies bodies = narc_view_bodies(rows, count);
+    narc_bodies bodies;
+    narc_view_bodies(rows, count, &bodies);
     size_t skipped = 0, found = 0;
     float motions[BODIES + 2];
     for (size_t k = 0; k < count + 2; k++)
@@ -201,7 +203,8 @@ static answers ask(size_t count, const narc_workers *workers) {
     narc_broad_phase *broad = NULL;
     place_bodies(count);
     rows[9].x = NAN;
-    const narc_bodies bodies = narc_view_bodies(rows, count);
+    narc_bodies bodies;
+    narc_view_bodies(rows, count, &bodies);
     const narc_box_options box_options = {.margin = 0.03125f, .workers = workers, .out_skipped = &skipped};
     OK(narc_compute_boxes(shapes, &bodies, &box_options, boxes, NULL));
     assert_int_equal(skipped, 1);
@@ -209,7 +212,7 @@ static answers ask(size_t count, const narc_workers *workers) {
     ask_rays(count, workers, &out);
 
     OK(narc_create_broad_phase(NULL, &broad));
-    OK(narc_find_pairs(broad, boxes, count, NULL, workers, a, b, PAIRS, &found, NULL));
+    OK(narc_find_pairs(broad, boxes, count, NULL, workers, a, b, 0, PAIRS, &found, NULL));
     assert_true(found > 2 * count);
     note(&out, test_hash(test_hash(TEST_HASH_START, a, found * sizeof *a), b, found * sizeof *b));
 
@@ -270,7 +273,8 @@ TEST(gives_the_same_bytes_whoever_works) {
                 fail_msg("answer %zu is that of one thread, of %u workers", answer, count);
         assert_false(watched.wrong);
     }
-    const narc_workers built_in = narc_openmp_workers(3);
+    narc_workers built_in;
+    narc_openmp_workers(3, &built_in);
     const answers found = ask(BODIES, &built_in);
     assert_memory_equal(&found, &expected, sizeof found);
 }
@@ -300,7 +304,7 @@ TEST(takes_any_number_of_workers) {
     for (size_t k = 0; k < 2 * HALF; k++) /* two at each place, with half of the boxes between them */
         row[k] = (narc_box){2 * (float)(k % HALF), 0, 2 * (float)(k % HALF) + 1, 1};
     OK(narc_create_broad_phase(NULL, &broad));
-    OK(narc_find_pairs(broad, row, 2 * HALF, NULL, &workers, one, other, HALF, &found, NULL));
+    OK(narc_find_pairs(broad, row, 2 * HALF, NULL, &workers, one, other, 0, HALF, &found, NULL));
     assert_int_equal(found, HALF);
     for (uint32_t k = 0; k < HALF; k++)
         assert_true(one[k] == k && other[k] == k + HALF);

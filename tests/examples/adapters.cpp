@@ -86,7 +86,8 @@ std::vector<narc_contact> find_contacts(const narc_shapes *shapes, const narc_wo
         a.push_back(k % body_count);
         b.push_back((k % body_count + 1 + k / body_count) % body_count);
     }
-    const narc_bodies bodies = narc_view_bodies(body.data(), body.size());
+    narc_bodies bodies;
+    narc_view_bodies(body.data(), body.size(), &bodies);
     narc_pairs pairs = {};
     pairs.count = a.size();
     pairs.a = NARC_ARRAY(a);

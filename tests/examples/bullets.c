@@ -126,7 +126,7 @@ static world create_line(double thickness, vec gravity) {
     if (thickness > 0)
         assert_int_equal(narc_build_box(4000, thickness, 0, arcs, &count, NULL), NARC_OK);
     else
-        assert_int_equal(narc_build_segment((narc_point){-2000, 0}, (narc_point){2000, 0}, 0, arcs, &count, NULL),
+        assert_int_equal(narc_build_segment(&(narc_point){-2000, 0}, &(narc_point){2000, 0}, 0, arcs, &count, NULL),
                          NARC_OK);
     assert_int_equal(world_add_shape(&w, arcs, count, &line.shape), NARC_OK);
     assert_int_equal(world_add_body(&w, line), NARC_OK);

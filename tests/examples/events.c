@@ -38,7 +38,8 @@ static void take_events(record *seen, const world *w) {
 static float separate(const world *w, const world_body *a, const world_body *b) {
     const narc_body two[] = {{(double)a->position.x, (double)a->position.y, a->cosine, a->sine, 1, a->shape},
                              {(double)b->position.x, (double)b->position.y, b->cosine, b->sine, 1, b->shape}};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const narc_query query = {.margin = INFINITY};
     narc_contact row;
     size_t found;

@@ -259,7 +259,7 @@ TEST(test_segment) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     world_body body = {.cosine = 1};
-    assert_int_equal(narc_build_segment((narc_point){-5, 1}, (narc_point){5, 1}, 0, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_build_segment(&(narc_point){-5, 1}, &(narc_point){5, 1}, 0, arcs, &count, NULL), NARC_OK);
     assert_int_equal(world_add_shape(&w, arcs, count, &body.shape), NARC_OK);
     assert_int_equal(world_add_body(&w, body), NARC_ERROR_SIZE);
     body.kind = NARC_STATIC;

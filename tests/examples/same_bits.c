@@ -12,7 +12,7 @@
 static uint64_t run_scene(const char *name, float margin, const char *isa, unsigned threads) {
     test_use_isa(isa);
     world_settings settings = world_defaults;
-    settings.workers = narc_openmp_workers(threads);
+    narc_openmp_workers(threads, &settings.workers);
     settings.margin = margin;
     if (margin > 0.1f) { /* all are asked */
         settings.recycling = 0;

@@ -70,9 +70,9 @@ static void ask_pairs(const void *question, const narc_workers *workers, void *o
     narc_broad_phase *broad = NULL;
     memset(list, 0, sizeof *list);
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    assert_int_equal(
-        narc_find_pairs(broad, w->boxes, w->count, &filter, workers, list->a, list->b, MOST * MOST, &list->count, NULL),
-        NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, w->boxes, w->count, &filter, workers, list->a, list->b, 0, MOST * MOST,
+                                     &list->count, NULL),
+                     NARC_OK);
     narc_destroy_broad_phase(broad);
 }
 

@@ -59,9 +59,7 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     assert_int_equal(
         narc_cast_shapes(q->index, store, &bodies, &bodies, &motions, &search, &cast, answer->first, BODIES, NULL),
         NARC_OK);
-    assert_int_equal(
-        narc_find_distances(store, &bodies, &points, (narc_index_column){NULL, 0}, workers, answer->distances, NULL),
-        NARC_OK);
+    assert_int_equal(narc_find_distances(store, &bodies, &points, NULL, workers, answer->distances, NULL), NARC_OK);
     assert_int_equal(narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest, 2 * RAYS, NULL),
                      NARC_OK);
     const narc_owners owners = {.owner = NARC_ARRAY(q->owner)};
@@ -93,8 +91,7 @@ static void check_nearest(const struct question *q, size_t point, const narc_dis
     narc_distance all[BODIES], best[2] = {{.point = (uint32_t)point}, {.point = (uint32_t)point}};
     one.x.stride = one.y.stride = 0;
     const narc_points points = {.count = BODIES, .x = one.x, .y = one.y};
-    assert_int_equal(
-        narc_find_distances(q->scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, all, NULL), NARC_OK);
+    assert_int_equal(narc_find_distances(q->scene.store, &bodies, &points, NULL, NULL, all, NULL), NARC_OK);
     for (size_t k = 0; k < BODIES; k++) {
         narc_distance *const row = &all[k];
         row->point = (uint32_t)point;

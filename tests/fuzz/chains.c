@@ -45,7 +45,9 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     const struct question *const q = question;
     struct answer *const answer = out_answer;
     const narc_shapes *const store = q->scene.store;
-    const narc_bodies bodies = scene_bodies(&q->scene), ground = narc_view_bodies(q->ground, q->entries);
+    const narc_bodies bodies = scene_bodies(&q->scene);
+    narc_bodies ground;
+    narc_view_bodies(q->ground, q->entries, &ground);
     const narc_pairs pairs = {
         .count = PAIRS, .a = NARC_COLUMN(q->pairs, a), .b = NARC_COLUMN(q->pairs, b), .other_bodies = &ground};
     const narc_motions motions = {NARC_ARRAY(q->motion_x), NARC_ARRAY(q->motion_y), NARC_ARRAY(q->angle), {NULL}};
@@ -84,7 +86,7 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast, answer->impacts, PAIRS, NULL),
                      NARC_OK);
     for (size_t k = 0; k < PAIRS; k += BODIES) /* of one body of the ground after the other */
-        assert_int_equal(narc_find_distances(store, &ground, &points, (narc_index_column){&q->pairs[k].b, 0}, workers,
+        assert_int_equal(narc_find_distances(store, &ground, &points, &(narc_index_column){&q->pairs[k].b, 0}, workers,
                                              &answer->distances[k], NULL),
                          NARC_OK);
 }

@@ -61,14 +61,14 @@ static narc_status build_shape(struct bytes *from, struct shape *shape) {
     case 0:
         return narc_build_capsule(a, b, arcs, count, NULL);
     case 1:
-        return narc_build_segment((narc_point){a, b}, (narc_point){-b, a}, radius, arcs, count, NULL);
+        return narc_build_segment(&(narc_point){a, b}, &(narc_point){-b, a}, radius, arcs, count, NULL);
     case 2:
     case 3:
         return narc_build_box(a, b, kind == 2 ? 0 : radius, arcs, count, NULL);
     case 4:
         return narc_build_ellipse(a, b, 4 + 4 * (size_t)take_below(from, 4), arcs, count, NULL, NULL);
     case 5:
-        return narc_build_four_arc((narc_four_arc){4 * a, 4 * b, 2 * (a + b), radius, radius / 2}, arcs, count, NULL);
+        return narc_build_four_arc(&(narc_four_arc){4 * a, 4 * b, 2 * (a + b), radius, radius / 2}, arcs, count, NULL);
     case 6:
         return narc_build_regular_polygon(3 + take_below(from, 62), a, radius, arcs, count, NULL);
     case 7:

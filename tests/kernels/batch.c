@@ -194,7 +194,8 @@ static void check_places(const struct place *places, const unsigned char *right,
  * with one margin and with margins of the pairs. */
 static void check_rows(struct test_random *random, const struct batch *batch, float margin, unsigned threads) {
     const size_t count = batch->scene->pair_count, size = batch->question->row_size;
-    const narc_workers workers = narc_openmp_workers(threads);
+    narc_workers workers;
+    narc_openmp_workers(threads, &workers);
     const narc_query plain = {.margin = margin};
     unsigned char *listed = make_junk(count * size);
     uint32_t *selection = make_junk(count * sizeof *selection);
@@ -330,7 +331,8 @@ TEST(test_selected_bits) {
     for (size_t round = 0; round < test_trials(20); round++) {
         const size_t count = 1 + random_below(&random, 5000);
         struct scene scene = make_scene("selected bits", count);
-        const narc_workers workers = narc_openmp_workers((unsigned)(round % 4));
+        narc_workers workers;
+        narc_openmp_workers((unsigned)(round % 4), &workers);
         uint32_t *selection = make_junk(count * sizeof *selection);
         const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
         uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);

@@ -101,7 +101,8 @@ static void check_answer(const struct expected *expected, const struct part *par
 
 static void check_part(const struct scene *scene, const void *shapes, const struct expected *expected,
                        enum layout layout, size_t first, size_t count, unsigned threads) {
-    struct part part = {shapes, create_columns(scene, layout, first, count), first, narc_openmp_workers(threads)};
+    struct part part = {shapes, create_columns(scene, layout, first, count), first, {0}};
+    narc_openmp_workers(threads, &part.workers);
     for (size_t m = 0; m < margins_of(expected->question); m++)
         check_answer(expected, &part, m);
     destroy_columns(&part.columns);
@@ -200,7 +201,8 @@ TEST(test_hard_places) {
 TEST(test_margins_of_pairs) {
     enum { PAIRS = 2000 };
     struct test_random random = test_random_named("margins");
-    const narc_workers workers = narc_openmp_workers(2); /* so that chunks meet */
+    narc_workers workers;
+    narc_openmp_workers(2, &workers); /* so that chunks meet */
     for (size_t q = 0; q < question_count; q++) {
         const struct question *question = &questions[q];
         if (!question->row_size)
@@ -274,7 +276,8 @@ static bool has_none(const struct question *question, const struct answer *answe
 
 static void check_skipped(const struct scene *scene, const struct question *question, const bool *broken,
                           size_t expected, unsigned threads) {
-    const narc_workers workers = narc_openmp_workers(threads);
+    narc_workers workers;
+    narc_openmp_workers(threads, &workers);
     for (size_t m = 0; m < margins_of(question); m++) {
         struct answer answer = ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers});
         assert_int_equal(answer.skipped, expected);

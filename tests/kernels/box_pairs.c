@@ -30,7 +30,7 @@ static struct shape make_capsule(struct test_random *random, double length, doub
     if (x > 0 && radius > 0 && random_below(random, 2))
         return capsule_of(length, radius);
     assert_int_equal(
-        narc_build_segment((narc_point){-x, 0}, (narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL), NARC_OK);
+        narc_build_segment(&(narc_point){-x, 0}, &(narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL), NARC_OK);
     return shape;
 }
 

@@ -74,7 +74,8 @@ static void check_box(const struct reference_body *body, const struct question *
 
 static narc_box *compute(const struct scene *scene, const narc_box_options *options, unsigned threads) {
     const narc_bodies bodies = scene_bodies(scene);
-    const narc_workers workers = narc_openmp_workers(threads);
+    narc_workers workers;
+    narc_openmp_workers(threads, &workers);
     narc_box_options all = options ? *options : (narc_box_options){0};
     narc_box *boxes = guard_allocate(bodies.count * sizeof *boxes);
     narc_error error;
@@ -281,7 +282,8 @@ TEST(holds_fronts_of_chains) {
             rows[k].cosine = (float)cos(angle);
             rows[k].sine = (float)sin(angle);
         }
-        const narc_bodies bodies = narc_view_bodies(rows, BODIES);
+        narc_bodies bodies;
+        narc_view_bodies(rows, BODIES, &bodies);
         assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, without, NULL), NARC_OK);
         assert_int_equal(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ENTRIES, &count, NULL), NARC_OK);
         for (size_t k = 0; k < BODIES; k++)
@@ -346,7 +348,8 @@ TEST(reads_no_further_than_the_store) {
         assert_int_equal(shapes->record_count, shapes->record_capacity);
         for (size_t k = 0; k < 32; k++)
             rows[k] = (narc_body){0, 0, 1, 0, 1, k % 2 ? last : 0};
-        const narc_bodies bodies = narc_view_bodies(rows, 32);
+        narc_bodies bodies;
+        narc_view_bodies(rows, 32, &bodies);
         assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
         narc_destroy_shapes(shapes);
     }
@@ -367,7 +370,8 @@ TEST(same_bits_whatever_the_split) {
         for (size_t count = 1; count <= MOST; count += count < 70 ? 1 : 71) {
             narc_box *const boxes = guard_allocate(count * sizeof *boxes);
             const size_t first = random_below(&random, count), rest = count - first;
-            const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
+            narc_workers workers;
+            narc_openmp_workers((unsigned)random_below(&random, 5), &workers);
             size_t skipped = 99;
             const narc_box_options options = {.margin = 0.01f,
                                               .out_skipped = &skipped,

@@ -31,7 +31,7 @@ static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
     if (kind &&
         (kind[(ptrdiff_t)a * f->kind.stride] & kind[(ptrdiff_t)b * f->kind.stride] & (NARC_STATIC | NARC_SENSOR)) != 0)
         return false;
-    if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
+    if (word(f->owner, a, UINT32_MAX) != UINT32_MAX && word(f->owner, a, 0) == word(f->owner, b, 0))
         return false;
     return (long_word(f->category, a) & long_word(f->mask, b)) && (long_word(f->category, b) & long_word(f->mask, a));
 }
@@ -51,12 +51,13 @@ static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t c
     struct pair_list expected = all_pairs(boxes, count, filter);
     narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
     for (size_t t = 0; t < sizeof counts / sizeof counts[0]; t++) {
-        const narc_workers workers = narc_openmp_workers(counts[t]);
+        narc_workers workers;
+        narc_openmp_workers(counts[t], &workers);
         uint32_t *a = guard_allocate(expected.count * sizeof *a), *b = guard_allocate(expected.count * sizeof *b);
         size_t found = 12345;
         narc_error error;
-        assert_int_equal(narc_find_pairs(broad, guarded, count, filter, &workers, a, b, expected.count, &found, &error),
-                         NARC_OK);
+        assert_int_equal(
+            narc_find_pairs(broad, guarded, count, filter, &workers, a, b, 0, expected.count, &found, &error), NARC_OK);
         assert_int_equal(found, expected.count);
         assert_memory_equal(a, expected.a, found * sizeof *a);
         assert_memory_equal(b, expected.b, found * sizeof *b);
@@ -118,7 +119,7 @@ TEST(filters_pairs) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
         uint64_t category, mask;
-        uint32_t group;
+        uint32_t owner;
         uint8_t kind;
     };
     for (size_t trial = 0; trial < test_trials(30); trial++) {
@@ -128,16 +129,16 @@ TEST(filters_pairs) {
             boxes[k] = spread_box(&random, 10, 0.5, 2);
             bodies[k] =
                 (struct body){(uint64_t)random_below(&random, 8) << 31, (uint64_t)random_below(&random, 8) << 31,
-                              (uint32_t)random_below(&random, 4), (uint8_t)random_below(&random, 256)};
+                              (uint32_t)random_below(&random, 4) - 1, (uint8_t)random_below(&random, 256)};
         }
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
-        const narc_index_column group = NARC_COLUMN(bodies, group);
-        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .group = group},
+        const narc_index_column owner = NARC_COLUMN(bodies, owner);
+        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .owner = owner},
                                             {.kind = kind},
                                             {.category = category},
                                             {.mask = mask},
-                                            {.group = group},
+                                            {.owner = owner},
                                             {.kind = {0}}};
         for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
             check_pairs(broad, boxes, 200, &filters[f]);
@@ -152,7 +153,7 @@ TEST(filters_pairs) {
 static void check_steps(const char *name, narc_box *boxes, size_t count, double for_box, double for_pair) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     size_t found = 0;
-    const narc_status status = narc_find_pairs(broad, boxes, count, NULL, NULL, NULL, NULL, 0, &found, NULL);
+    const narc_status status = narc_find_pairs(broad, boxes, count, NULL, NULL, NULL, NULL, 0, 0, &found, NULL);
     const double most = for_box * (double)count + for_pair * (double)found;
     assert_int_equal(status, found > 0 ? NARC_ERROR_CAPACITY : NARC_OK);
     printf("  %s: %.2f steps a box, %.2f pairs\n", name, (double)broad->steps / (double)count,
@@ -218,7 +219,8 @@ TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
     struct ledger ledger = {0};
     narc_broad_phase *broad = create_broad_phase(&ledger);
-    const narc_workers workers = narc_openmp_workers(2);
+    narc_workers workers;
+    narc_openmp_workers(2, &workers);
     enum { COUNT = 5000, CAPACITY = 100000 };
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
     uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b);
@@ -227,7 +229,8 @@ TEST(allocates_nothing_once_it_has_grown) {
         for (size_t k = 0; k < COUNT; k++)
             boxes[k] = spread_box(&random, 60, 0.5, 1);
         size_t found;
-        assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, &workers, a, b, CAPACITY, &found, NULL), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, &workers, a, b, 0, CAPACITY, &found, NULL),
+                         NARC_OK);
         assert_true(found > 1000);
         if (step == 0)
             after_first = ledger.allocations;
@@ -248,7 +251,7 @@ TEST(takes_memory_for_pairs_alone) {
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
-    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, NULL, NULL, 0, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
     assert_true(ledger.most < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
     narc_destroy_broad_phase(broad);
@@ -265,13 +268,52 @@ TEST(survives_failing_allocations) {
         narc_broad_phase *broad = create_broad_phase(&ledger);
         if (broad) {
             size_t found = 77;
-            const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, NULL, a, b, 45000, &found, NULL);
+            const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, NULL, a, b, 0, 45000, &found, NULL);
             succeeded = status == NARC_OK;
             assert_true(succeeded || status == NARC_ERROR_MEMORY);
             assert_int_equal(found, succeeded ? 300 * 299 / 2 : 77);
         }
         narc_destroy_broad_phase(broad);
     }
+}
+
+/* Into an array of pairs, backwards, and from a list of the library's: what lies between is untouched. */
+TEST(writes_pairs_with_gaps) {
+    enum { COUNT = 60, MOST = COUNT * COUNT / 2 };
+    narc_box boxes[COUNT];
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    fill_one_place(boxes, COUNT);
+    uint32_t a[MOST], b[MOST], order[MOST];
+    struct {
+        uint32_t b, gap, a;
+    } rows[MOST];
+    size_t count = 0, found = 0;
+    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, a, b, sizeof *a, MOST, &count, NULL), NARC_OK);
+    assert_int_equal(count, COUNT * (COUNT - 1) / 2);
+    for (int way = 0; way < 4; way++) { /* found, copied; forwards, backwards */
+        memset(rows, 0x55, sizeof rows);
+        const ptrdiff_t size = sizeof *rows, stride = way % 2 ? -size : size;
+        const size_t start = way % 2 ? count - 1 : 0;
+        const narc_pairs listed = {.count = count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+        assert_int_equal(way < 2 ? narc_find_pairs(broad, boxes, COUNT, NULL, NULL, &rows[start].a, &rows[start].b,
+                                                   stride, count, &found, NULL)
+                                 : narc_copy_pairs(&listed, NULL, count, &rows[start].a, &rows[start].b, stride, NULL),
+                         NARC_OK);
+        assert_int_equal(found, count);
+        for (size_t k = 0; k < count; k++) {
+            const size_t row = way % 2 ? count - 1 - k : k;
+            assert_true(rows[row].a == a[k] && rows[row].b == b[k] && rows[row].gap == 0x55555555);
+        }
+        assert_int_equal(rows[count].a, 0x55555555);
+    }
+    const narc_pairs listed = {.count = count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    for (size_t k = 0; k < count; k++)
+        order[k] = (uint32_t)(count - 1 - k);
+    uint32_t chosen[MOST] = {0}, other[MOST];
+    assert_int_equal(narc_copy_pairs(&listed, order, count, chosen, other, 0, NULL), NARC_OK);
+    for (size_t k = 0; k < count; k++)
+        assert_true(chosen[k] == a[count - 1 - k] && other[k] == b[count - 1 - k]);
+    narc_destroy_broad_phase(broad);
 }
 
 TEST(tells_how_much_room_is_needed) {
@@ -281,10 +323,11 @@ TEST(tells_how_much_room_is_needed) {
     narc_error error;
     narc_broad_phase *broad = create_broad_phase(NULL);
     fill_one_place(boxes, 100);
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 0, 10, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     assert_int_equal(a[0], 7);
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, 0, &found, NULL),
+                     NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     narc_destroy_broad_phase(broad);
 }

@@ -83,7 +83,8 @@ static void ask_pairs(struct trial *t) {
     static uint64_t bits[NARC_BIT_WORDS(MOST)];
     static uint32_t odd[MOST], even[MOST];
     const size_t count = t->count;
-    const narc_bodies both = narc_view_bodies(t->both, 2 * count);
+    narc_bodies both;
+    narc_view_bodies(t->both, 2 * count, &both);
     const narc_pairs pairs = {.count = count}, swapped = {.count = count, .a = NARC_ARRAY(odd), .b = NARC_ARRAY(even)};
     const float turn = 0.5f;
     const narc_motions turning = {.angle = {&turn, 0}};
@@ -106,7 +107,8 @@ static void ask_pairs(struct trial *t) {
         t->fine[OVERLAP][k] = bit_is_set(bits, k);
         t->fine[SEPARATION][k] = separations[k] < INFINITY;
         t->fine[CAST_OF_A][k] = impacts[k].count == NARC_CAST_HIT;
-        const narc_bodies own = narc_view_bodies(t->both + 2 * k, 2);
+        narc_bodies own;
+        narc_view_bodies(t->both + 2 * k, 2, &own);
         assert_int_equal(narc_find_contacts(t->store, &own, &(narc_pairs){.count = 1}, NULL, contacts, 1, &found, NULL),
                          NARC_OK);
         t->fine[ONE_CONTACT][k] = found == 1;
@@ -125,21 +127,23 @@ static void ask_poses(struct trial *t) {
     static narc_distance distances[MOST];
     static narc_body placed[MOST];
     static uint32_t numbers[MOST];
-    const narc_bodies tried = narc_view_bodies(t->tried, t->count);
+    narc_bodies tried;
+    narc_view_bodies(t->tried, t->count, &tried);
     const narc_body plain = {.cosine = 1, .scale = 1};
     const narc_points points = {.count = t->count, .x = tried.x, .y = tried.y};
-    narc_bodies plains = narc_view_bodies(&plain, t->count);
+    narc_bodies plains;
+    narc_view_bodies(&plain, t->count, &plains);
     const narc_index_column owner = NARC_ARRAY(numbers);
     plains.x.stride = plains.y.stride = plains.cosine.stride = plains.sine.stride = plains.scale.stride = 0;
     plains.shape.stride = 0;
     for (size_t k = 0; k < t->count; k++) {
-        const narc_bodies own = narc_view_bodies(&t->tried[k], 1);
+        narc_bodies own;
+        narc_view_bodies(&t->tried[k], 1, &own);
         t->fine[VALIDATE][k] = narc_validate_bodies(t->store, &own, NULL) == NARC_OK;
         numbers[k] = (uint32_t)k;
     }
-    assert_int_equal(
-        narc_find_distances(t->store, &tried, &points, (narc_index_column){NULL, 0}, NULL, distances, NULL), NARC_OK);
-    assert_int_equal(narc_place_parts(&tried, &plains, owner, NULL, placed, NULL), NARC_OK);
+    assert_int_equal(narc_find_distances(t->store, &tried, &points, NULL, NULL, distances, NULL), NARC_OK);
+    assert_int_equal(narc_place_parts(&tried, &plains, &owner, NULL, placed, NULL), NARC_OK);
     for (size_t k = 0; k < t->count; k++) {
         const narc_body *const own = &t->tried[k];
         t->fine[DISTANCE][k] = distances[k].count != 0;
@@ -147,7 +151,7 @@ static void ask_poses(struct trial *t) {
         if (t->fine[OWNER][k]) /* the part is its owner */
             assert_memory_equal(&placed[k].cosine, &own->cosine, 3 * sizeof own->cosine);
     }
-    assert_int_equal(narc_place_parts(&plains, &tried, owner, NULL, placed, NULL), NARC_OK);
+    assert_int_equal(narc_place_parts(&plains, &tried, &owner, NULL, placed, NULL), NARC_OK);
     for (size_t k = 0; k < t->count; k++)
         t->fine[PART][k] = placed[k].scale > 0;
 }
@@ -163,8 +167,10 @@ static void ask_scene(struct trial *t) {
     static narc_distance nearest[MOST];
     static narc_impact impacts[MOST];
     const size_t count = t->count;
-    const narc_bodies tried = narc_view_bodies(t->tried, count), mates = narc_view_bodies(t->mate, count),
-                      both = narc_view_bodies(t->both, 2 * count);
+    narc_bodies tried, mates, both;
+    narc_view_bodies(t->tried, count, &tried);
+    narc_view_bodies(t->mate, count, &mates);
+    narc_view_bodies(t->both, 2 * count, &both);
     const narc_step step = {.bodies = &both};
     const narc_step_result *r = NULL;
     narc_contacts *contacts = NULL;
@@ -324,7 +330,8 @@ static float find_last_scale(const struct trial *t, uint32_t shape, float from, 
     for (;;) {
         const float middle = from + (to - from) / 2;
         const narc_body body = {.cosine = 1, .scale = middle, .shape = shape};
-        const narc_bodies bodies = narc_view_bodies(&body, 1);
+        narc_bodies bodies;
+        narc_view_bodies(&body, 1, &bodies);
         if (middle == from || middle == to)
             return from;
         *(narc_validate_bodies(t->store, &bodies, NULL) == NARC_OK ? &from : &to) = middle;

@@ -170,7 +170,7 @@ TEST(test_just_beyond_a_junction) {
     struct test_random random = test_random_named("just beyond a junction");
     struct shape lens, circle = circle_of(1);
     narc_four_arc form = {25, 25, 49.96, 0.002, 0.002};
-    assert_int_equal(narc_build_four_arc(form, lens.arcs, &lens.count, NULL), NARC_OK);
+    assert_int_equal(narc_build_four_arc(&form, lens.arcs, &lens.count, NULL), NARC_OK);
     for (size_t trial = 0; trial < test_trials(10000); trial++) {
         const narc_arc *arc = &lens.arcs[trial % 4];
         double turn = random_between(&random, -PI, PI), c = cos(turn), s = sin(turn);

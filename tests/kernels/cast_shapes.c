@@ -92,7 +92,8 @@ static narc_impact cast_boxes(struct body a, struct body b, struct test_motion m
     const narc_body rows[2] = {{a.x, a.y, a.cosine, a.sine, a.scale, a.shape},
                                {b.x, b.y, b.cosine, b.sine, b.scale, b.shape}};
     const float motions[2][3] = {{motion.x, motion.y, motion.angle}};
-    const narc_bodies bodies = narc_view_bodies(rows, 2);
+    narc_bodies bodies;
+    narc_view_bodies(rows, 2, &bodies);
     const narc_motions moving = {{&motions[0][0], sizeof motions[0]},
                                  {&motions[0][1], sizeof motions[0]},
                                  {&motions[0][2], sizeof motions[0]},
@@ -135,7 +136,9 @@ TEST(test_loose_boxes) {
     narc_shapes *const store = empty_store();
     store_shape(store, box_of(1, 1, 0));
     const narc_body body = {0, 0, 1, 0, 1, 0}, mover = {-5, 1.3, 1, 0, 1, 0};
-    const narc_bodies bodies = narc_view_bodies(&body, 1), movers = narc_view_bodies(&mover, 1);
+    narc_bodies bodies, movers;
+    narc_view_bodies(&body, 1, &bodies);
+    narc_view_bodies(&mover, 1, &movers);
     const float x = 10, angle = 0.001f;
     const narc_motions motions = {.x = {&x, 0}, .angle = {&angle, 0}};
     const narc_cast_options options = {.tolerance = 0.5f};

@@ -159,7 +159,7 @@ static narc_distance *find_distances(const struct point_scene *scene) {
     const narc_bodies bodies = scene_bodies(&scene->scene);
     const narc_points points = points_of(scene->points, scene->count, scene->scene.precision);
     narc_error error;
-    if (narc_find_distances(scene->scene.store, &bodies, &points, NARC_COLUMN(scene->points, body), NULL, rows,
+    if (narc_find_distances(scene->scene.store, &bodies, &points, &NARC_COLUMN(scene->points, body), NULL, rows,
                             &error) != NARC_OK)
         fail_msg("%s", error.message);
     return rows;
@@ -294,8 +294,7 @@ TEST(test_no_answer) {
     const narc_points points = {.count = count, .x = {x, 0, NARC_FLOAT32}, .y = {y, 0, NARC_FLOAT32}};
     const narc_bodies bodies = scene_bodies(&scene);
     narc_distance *rows = make_junk(count * sizeof *rows);
-    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, rows, NULL),
-                     NARC_OK);
+    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NULL, NULL, rows, NULL), NARC_OK);
     size_t answers = 0;
     for (size_t k = 0; k < count; k++) {
         const narc_distance none = {.point = (uint32_t)k};
@@ -311,15 +310,13 @@ TEST(test_no_answer) {
     const double nothing = 0;
     for (size_t k = 0; k < sizeof far / sizeof far[0]; k++) {
         const narc_points one = {.count = 1, .x = {&far[k], 0, NARC_FLOAT64}, .y = {&nothing, 0, NARC_FLOAT64}};
-        assert_int_equal(
-            narc_find_distances(scene.store, &bodies, &one, (narc_index_column){NULL, 0}, NULL, rows, NULL), NARC_OK);
+        assert_int_equal(narc_find_distances(scene.store, &bodies, &one, NULL, NULL, rows, NULL), NARC_OK);
         assert_int_equal(rows[0].count, k < 2);
         if (k == 1)
             assert_true(fabs((double)rows[0].separation - far[k]) < 1e-6 * far[k] && rows[0].normal_x > 0.999999f);
     }
     assert_int_equal(narc_remove_shape(scene.store, 0, NULL), NARC_OK);
-    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, rows, NULL),
-                     NARC_OK);
+    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NULL, NULL, rows, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_int_equal(rows[k].count, 0);
     free(rows);

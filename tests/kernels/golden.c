@@ -211,7 +211,8 @@ static uint64_t hash_points(const struct scene *scene, int way) {
     }
     const narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
     narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
-    assert_int_equal(narc_find_distances(scene->store, &bodies, &points, NARC_ARRAY(other), NULL, rows, NULL), NARC_OK);
+    assert_int_equal(narc_find_distances(scene->store, &bodies, &points, &NARC_ARRAY(other), NULL, rows, NULL),
+                     NARC_OK);
     assert_int_equal(
         narc_find_nearest(index, scene->store, &bodies, &points, &options, rows + BODIES, 2 * BODIES, NULL), NARC_OK);
     uint64_t hash = TEST_HASH_START;
@@ -366,7 +367,9 @@ TEST(test_ground) {
         a[k] = (uint32_t)(k / count);
         b[k] = (uint32_t)(k % count);
     }
-    const narc_bodies bodies = narc_view_bodies(guests, GUESTS), pieces = narc_view_bodies(ground, count);
+    narc_bodies bodies, pieces;
+    narc_view_bodies(guests, GUESTS, &bodies);
+    narc_view_bodies(ground, count, &pieces);
     const narc_pairs pairs = {.count = pair_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b), .other_bodies = &pieces};
     check_bits(scene.store, &bodies, &pairs);
     hashes[0] = hash_query(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f, .flat_angle = 0.25f});

@@ -104,7 +104,8 @@ static const narc_contact *find_deepest_row(const struct contacts *rows, size_t 
 static void check_forms(const struct ground_bodies *g, const struct contacts *right) {
     const struct scene *scene = &g->scene;
     const size_t count = scene->pair_count, size = right->count * sizeof *right->rows;
-    const narc_workers two = narc_openmp_workers(2);
+    narc_workers two;
+    narc_openmp_workers(2, &two);
     struct contacts rows = ask(g, &(narc_query){.margin = margin, .workers = &two});
     assert_int_equal(rows.count, right->count);
     assert_memory_equal(rows.rows, right->rows, size);
@@ -467,7 +468,7 @@ TEST(test_nearest) {
         uint32_t near[POINTS];
         for (int i = 0; i < POINTS; i++)
             near[i] = rows[2 * i].body;
-        expect_ok(narc_find_distances(scene->store, &bodies, &points, NARC_ARRAY(near), NULL, others, &error), &error);
+        expect_ok(narc_find_distances(scene->store, &bodies, &points, &NARC_ARRAY(near), NULL, others, &error), &error);
         for (int i = 0; i < POINTS; i++) {
             alone += others[i].count;
             const double off = hypot((double)(others[i].place_x - rows[2 * i].place_x),

@@ -250,7 +250,7 @@ static bool is_at_seam(const struct chain *chain, narc_point point, double bound
 static bool holds(const struct reference_body *body, narc_point point) {
     const double x = (point.x - body->x) / body->scale, y = (point.y - body->y) / body->scale;
     return narc_contains_point(body->arcs, body->count,
-                               (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
+                               &(narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
 }
 
 /* Is a place right where a concave arc begins or ends, so near that what is `depth` deep below it belongs to neither side for
@@ -699,7 +699,7 @@ static struct shape choose_sharp(struct test_random *random) {
     if (kind == 0)
         return box_of(1, random_below(random, 2) ? 0.5 : 1, 0);
     if (kind == 1)
-        status = narc_build_four_arc(lens, shape.arcs, &shape.count, NULL);
+        status = narc_build_four_arc(&lens, shape.arcs, &shape.count, NULL);
     else
         status =
             narc_build_regular_polygon(kind == 2 ? 5 : 3, 0.6, kind == 3 ? 0.1 : 0, shape.arcs, &shape.count, NULL);

@@ -39,7 +39,7 @@ static struct shape polygon(const narc_point *points, size_t count) {
 static struct shape make_lens(void) {
     struct shape shape;
     const narc_four_arc form = {5, 5, 8, 0.25, 0.25};
-    assert_int_equal(narc_build_four_arc(form, shape.arcs, &shape.count, NULL), NARC_OK);
+    assert_int_equal(narc_build_four_arc(&form, shape.arcs, &shape.count, NULL), NARC_OK);
     return shape;
 }
 

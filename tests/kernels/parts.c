@@ -46,7 +46,7 @@ static narc_body *place(const narc_bodies *owners, const narc_bodies *parts, con
                         const narc_workers *workers) {
     narc_body *const rows = guard_allocate(parts->count * sizeof *rows);
     narc_error error;
-    expect_ok(narc_place_parts(owners, parts, (narc_index_column){owner, sizeof *owner}, workers, rows, &error),
+    expect_ok(narc_place_parts(owners, parts, &(narc_index_column){owner, sizeof *owner}, workers, rows, &error),
               &error);
     return rows;
 }
@@ -118,9 +118,11 @@ TEST(unturned_parts_keep_their_rotation) {
         owner[k] = (uint32_t)k;
     }
     bodies[5] = (narc_body){0, 1, 1, -0.0f, 1, 7};
-    const narc_bodies owners = narc_view_bodies(bodies, COUNT);
+    narc_bodies owners;
+    narc_view_bodies(bodies, COUNT, &owners);
     for (int drifted = 0; drifted < 2; drifted++) {
-        narc_bodies parts = narc_view_bodies(&plain[drifted], COUNT);
+        narc_bodies parts;
+        narc_view_bodies(&plain[drifted], COUNT, &parts);
         parts.x.stride = parts.y.stride = parts.cosine.stride = parts.sine.stride = parts.scale.stride = 0;
         parts.shape.stride = 0;
         narc_body *const rows = place(&owners, &parts, owner, NULL);
@@ -135,10 +137,12 @@ TEST(unturned_parts_keep_their_rotation) {
 /* Scales below 0, whose product is not. */
 TEST(two_broken_scales_are_none) {
     const narc_body owner = {1, 2, 0.6f, 0.8f, -1, 0}, part = {3, 4, 1, 0, -2, 0}, zeros = {0};
-    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(&part, 1);
+    narc_bodies owners, parts;
+    narc_view_bodies(&owner, 1, &owners);
+    narc_view_bodies(&part, 1, &parts);
     const uint32_t zero = 0;
     narc_body row;
-    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL), NARC_OK);
+    assert_int_equal(narc_place_parts(&owners, &parts, &(narc_index_column){&zero, 0}, NULL, &row, NULL), NARC_OK);
     assert_memory_equal(&row, &zeros, sizeof row);
 }
 
@@ -155,12 +159,15 @@ TEST(moved_shapes_are_placed_parts) {
                           store_shape(store, shape)};
         const struct body turned = turned_body(random_between(&random, -4, 4), 1.5);
         narc_body bodies[4] = {{5, 6, turned.cosine, turned.sine, turned.scale, 0}};
-        const narc_bodies owners = narc_view_bodies(bodies, 1), parts = narc_view_bodies(&part, 1);
-        const narc_bodies all = narc_view_bodies(bodies, 4);
+        narc_bodies owners, parts;
+        narc_view_bodies(bodies, 1, &owners);
+        narc_view_bodies(&part, 1, &parts);
+        narc_bodies all;
+        narc_view_bodies(bodies, 4, &all);
         const uint32_t zero = 0;
         narc_contact row[2];
         size_t found;
-        assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &bodies[1], NULL),
+        assert_int_equal(narc_place_parts(&owners, &parts, &(narc_index_column){&zero, 0}, NULL, &bodies[1], NULL),
                          NARC_OK);
         assert_int_equal(narc_move_arcs(shape.arcs, shape.count, part.x, part.y,
                                         atan2((double)part.sine, (double)part.cosine), (double)part.scale, moved.arcs,
@@ -185,11 +192,13 @@ static double separation_at(const narc_shapes *store, const narc_body *part, nar
     const narc_body owner = {
         motion.x * (time - 0.5), motion.y * (time - 0.5), (float)cos(angle * time), (float)sin(angle * time), 1, 0};
     narc_body two[2] = {{0}, *other};
-    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(part, 1),
-                      bodies = narc_view_bodies(two, 2);
+    narc_bodies owners, parts, bodies;
+    narc_view_bodies(&owner, 1, &owners);
+    narc_view_bodies(part, 1, &parts);
+    narc_view_bodies(two, 2, &bodies);
     narc_contact row;
     size_t found;
-    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, two, NULL), NARC_OK);
+    assert_int_equal(narc_place_parts(&owners, &parts, &(narc_index_column){&zero, 0}, NULL, two, NULL), NARC_OK);
     assert_int_equal(narc_find_contacts(store, &bodies, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY},
                                         &row, 1, &found, NULL),
                      NARC_OK);
@@ -214,7 +223,8 @@ TEST(moved_shapes_meet_when_parts_do) {
                          NARC_OK);
         const narc_body two[2] = {{-4, -0.5, 1, 0, 1, store_shape(store, moved)},
                                   {0.5, random_between(&random, -2, 2), 1, 0, 1, stored}};
-        const narc_bodies bodies = narc_view_bodies(two, 2);
+        narc_bodies bodies;
+        narc_view_bodies(two, 2, &bodies);
         const narc_motions motions = {.x = NARC_ARRAY(x), .y = NARC_ARRAY(y), .angle = NARC_ARRAY(turn)};
         narc_impact row;
         assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &(narc_pairs){.count = 1}, NULL,
@@ -242,11 +252,10 @@ TEST(parts_of_one_body_form_no_pair) {
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct compounds c = make_compounds(&random, BODIES, PARTS, false);
         narc_broad_phase *const broad = create_broad_phase(NULL);
-        uint32_t group[PARTS], a[9000], b[9000];
+        uint32_t a[9000], b[9000];
         for (size_t k = 0; k < PARTS; k++) {
             struct body *const part = &c.parts.bodies[k];
             part->x_single *= 0.125f, part->y_single *= 0.125f, part->x *= 0.125, part->y *= 0.125;
-            group[k] = c.owner[k] + 1;
         }
         for (size_t k = 0; k < BODIES; k++) {
             struct body *const at = &c.owners.bodies[k];
@@ -254,17 +263,18 @@ TEST(parts_of_one_body_form_no_pair) {
             at->y = at->y_single = (float)random_between(&random, -9, 9);
         }
         narc_body *const rows = place_all(&c);
-        const narc_bodies bodies = narc_view_bodies(rows, PARTS);
-        const narc_pair_filter filter = {.group = NARC_ARRAY(group)};
+        narc_bodies bodies;
+        narc_view_bodies(rows, PARTS, &bodies);
+        const narc_pair_filter filter = {.owner = {c.owner, sizeof *c.owner}};
         narc_box boxes[PARTS];
         size_t count, expected = 0, own = 0;
         assert_int_equal(narc_compute_boxes(c.parts.store, &bodies, NULL, boxes, NULL), NARC_OK);
-        assert_int_equal(narc_find_pairs(broad, boxes, PARTS, &filter, NULL, a, b, 9000, &count, NULL), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, boxes, PARTS, &filter, NULL, a, b, 0, 9000, &count, NULL), NARC_OK);
         for (size_t i = 0; i < PARTS; i++)
             for (size_t j = i + 1; j < PARTS; j++)
-                *(group[i] == group[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
+                *(c.owner[i] == c.owner[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
         for (size_t k = 0; k < count; k++)
-            assert_true(group[a[k]] != group[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
+            assert_true(c.owner[a[k]] != c.owner[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
         assert_int_equal(count, expected);
         assert_true(own > 0 && expected > 0); /* or nothing was tested */
         narc_destroy_broad_phase(broad);

@@ -165,8 +165,9 @@ static struct scene make_neighbours(struct test_random *random) {
     struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
     struct shape segment;
     narc_error error;
-    expect_ok(narc_build_segment((narc_point){-0.5, 0}, (narc_point){0.5, 0}, 0, segment.arcs, &segment.count, &error),
-              &error);
+    expect_ok(
+        narc_build_segment(&(narc_point){-0.5, 0}, &(narc_point){0.5, 0}, 0, segment.arcs, &segment.count, &error),
+        &error);
     const double angle = random_below(random, 4) ? random_between(random, -4, 4) : 0;
     for (int k = 0; k < 2; k++) {
         const size_t kind = random_below(random, 3);
@@ -277,7 +278,7 @@ TEST(meets_the_ends_of_segments) {
         struct shape shape;
         narc_ray_hit hit;
         narc_error error;
-        expect_ok(narc_build_segment((narc_point){-c, -s}, (narc_point){c, s}, 0, shape.arcs, &shape.count, &error),
+        expect_ok(narc_build_segment(&(narc_point){-c, -s}, &(narc_point){c, s}, 0, shape.arcs, &shape.count, &error),
                   &error);
         scene_add_shape(&scene, &shape);
         scene_add_body(&scene, turned_body(angle, 1));

@@ -80,7 +80,7 @@ TEST(test_point_distance) {
         struct reference_body body = at(&shape, 7, 7, 0);
         narc_point point = {random_between(&random, -2, 2), random_between(&random, -2, 2)};
         double distance;
-        assert_true(narc_compute_distance(shape.arcs, shape.count, point, &distance));
+        assert_true(narc_compute_distance(shape.arcs, shape.count, &point, &distance));
         double searched = reference_point_distance(&body, point.x, point.y);
         if (fabs(searched - distance) > tolerance * (reference_extent(&body) + 3)) {
             fail_msg("%s: distance %.17g, by search %.17g", family_name((enum family)(trial % FAMILY_COUNT)), distance,
@@ -102,7 +102,7 @@ TEST(test_ground_of_shapes) {
         struct ground *ground = make_ground(&(struct chain){below.arcs, below.count, true});
         const narc_point point = {random_between(&random, -2, 2), random_between(&random, -2, 2)};
         double distance;
-        assert_true(narc_compute_distance(below.arcs, below.count, point, &distance));
+        assert_true(narc_compute_distance(below.arcs, below.count, &point, &distance));
         const double bound = 1e-9 * (2 + hypot(below.arcs[0].center_x, below.arcs[0].center_y));
         if (fabs(ground_distance(ground, point).distance - distance) > bound)
             fail_msg("distance %.17g, of the ground %.17g", distance, ground_distance(ground, point).distance);

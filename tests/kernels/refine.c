@@ -115,7 +115,8 @@ TEST(test_double_rotations_and_shifts) {
         count_row(&a, &b, &rows.rows[k], &fine[k], &counts);
     }
     check_counts(&counts);
-    const narc_workers workers = narc_openmp_workers(3);
+    narc_workers workers;
+    narc_openmp_workers(3, &workers);
     with.workers = &workers;
     assert_int_equal(narc_refine_contacts(scene.store, &all, &pairs, &with, rows.rows, rows.count, again, NULL),
                      NARC_OK);
@@ -151,7 +152,8 @@ TEST(test_concave_arcs) {
         for (size_t i = 0; i < count && found == 0; i++) {
             const narc_body two[2] = {{entries[i].x, entries[i].y, 1, 0, 1, entries[i].shape},
                                       {away * sin(angle), 10 - away * cos(angle), 1, 0, 1, ball}};
-            const narc_bodies bodies = narc_view_bodies(two, 2);
+            narc_bodies bodies;
+            narc_view_bodies(two, 2, &bodies);
             const narc_pairs pairs = {.count = 1};
             narc_contact row;
             narc_refined_contact fine;

@@ -197,7 +197,7 @@ TEST(refuses_points) {
     CHANGED(bodies, count--, ARGUMENT, "29 bodies", NEAREST(room.index, store, &wrong, NULL, out.distances, ROWS));
     const narc_index_column own = {NULL, 0};
 #define DISTANCES(shapes, bodies, points, body, rows)                                                                  \
-    narc_find_distances(shapes, bodies, points, body, NULL, rows, &error)
+    narc_find_distances(shapes, bodies, points, &body, NULL, rows, &error)
     REFUSED(ARGUMENT, "shapes", DISTANCES(NULL, &bodies, &points, own, out.distances));
     REFUSED(ARGUMENT, "bodies", DISTANCES(store, NULL, &points, own, out.distances));
     REFUSED(ARGUMENT, "points", DISTANCES(store, &bodies, NULL, own, out.distances));
@@ -348,7 +348,8 @@ TEST(names_the_first_wrong_shape) {
     many.shape = NARC_ARRAY(shape);
     shape[70000] = shape[70001] = shape[150000] = 12345;
     for (unsigned threads = 1; threads < 5; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
+        narc_workers workers;
+        narc_openmp_workers(threads, &workers);
         narc_box_options options = {.workers = &workers};
         REFUSED(INDEX, "body 70000", FIND(store, &many, &options, boxes));
         assert_int_equal(error.index, 70000);
@@ -367,7 +368,7 @@ TEST(refuses_parts) {
     uint32_t *const owners = calloc(PARTS, sizeof *owners);
     const narc_index_column owner = NARC_ARRAY(first_body), of_many = {owners, sizeof *owners};
     narc_bodies many = bodies;
-#define PLACE(owners, parts, owner, rows) narc_place_parts(owners, parts, owner, NULL, rows, &error)
+#define PLACE(owners, parts, owner, rows) narc_place_parts(owners, parts, &owner, NULL, rows, &error)
     REFUSED(ARGUMENT, "owners is NULL", PLACE(NULL, &bodies, owner, out.parts));
     REFUSED(ARGUMENT, "parts is NULL", PLACE(&bodies, NULL, owner, out.parts));
     REFUSED(ARGUMENT, "out_bodies is NULL", PLACE(&bodies, &bodies, owner, NULL));
@@ -396,9 +397,10 @@ TEST(refuses_parts) {
     owners[80000] = UINT32_MAX;
     owners[70000] = BODIES;
     for (unsigned threads = 1; threads < 4; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
+        narc_workers workers;
+        narc_openmp_workers(threads, &workers);
         REFUSED(INDEX, "part 70000: the owner is 30, but there are 30",
-                narc_place_parts(&bodies, &many, of_many, &workers, rows, &error));
+                narc_place_parts(&bodies, &many, &of_many, &workers, rows, &error));
         assert_int_equal(error.index, 70000);
     }
     assert_true(is_junk(rows, PARTS * sizeof *rows));
@@ -411,13 +413,24 @@ TEST(refuses_lists_of_pairs) {
     narc_broad_phase *const broad = create_broad_phase(NULL);
     const narc_box box = {0, 0, 1, 1};
     uint32_t *const a = out.numbers[0], *const b = out.numbers[1];
-#define FIND(broad, boxes, count, a, b, found) narc_find_pairs(broad, boxes, count, NULL, NULL, a, b, 1, found, &error)
+#define FIND(broad, boxes, count, a, b, found)                                                                         \
+    narc_find_pairs(broad, boxes, count, NULL, NULL, a, b, 0, 1, found, &error)
     REFUSED(ARGUMENT, "broad", FIND(NULL, &box, 1, a, b, &count_out));
     REFUSED(ARGUMENT, "boxes", FIND(broad, NULL, 1, a, b, &count_out));
     REFUSED(ARGUMENT, "out_a", FIND(broad, &box, 1, NULL, b, &count_out));
     REFUSED(ARGUMENT, "out_b", FIND(broad, &box, 1, a, NULL, &count_out));
     REFUSED(ARGUMENT, "out_count", FIND(broad, &box, 1, a, b, NULL));
     REFUSED(ARGUMENT, "4294967295 boxes", FIND(broad, &box, UINT32_MAX, a, b, &count_out));
+    REFUSED(ARGUMENT, "stride is 6", narc_find_pairs(broad, &box, 1, NULL, NULL, a, b, 6, 1, &count_out, &error));
+    const uint32_t zero = 0, one = 1;
+    const narc_pairs pair = {.count = 1, .a = {&zero, 0}, .b = {&zero, 0}}, own = {.count = 1};
+    REFUSED(ARGUMENT, "pairs", narc_copy_pairs(NULL, NULL, 1, a, b, 0, &error));
+    REFUSED(ARGUMENT, "pairs.a", narc_copy_pairs(&own, NULL, 1, a, b, 0, &error));
+    REFUSED(ARGUMENT, "out_a", narc_copy_pairs(&pair, NULL, 1, NULL, b, 0, &error));
+    REFUSED(ARGUMENT, "stride is -2", narc_copy_pairs(&pair, NULL, 1, a, b, -2, &error));
+    REFUSED(INDEX, "2 pairs", narc_copy_pairs(&pair, NULL, 2, a, b, 0, &error));
+    REFUSED(INDEX, "item 0: pair 1", narc_copy_pairs(&pair, &one, 1, a, b, 0, &error));
+    assert_int_equal(narc_copy_pairs(&own, NULL, 0, NULL, NULL, 0, &error), NARC_OK);
     assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
     expect_untouched();
     narc_destroy_broad_phase(broad);
@@ -427,7 +440,8 @@ TEST(refuses_lists_of_pairs) {
 TEST(refuses_rows_to_refine) {
     const uint32_t box = store_shape(store, box_of(2, 1, 0));
     const narc_body two[2] = {{0, 0, 1, 0, 1, box}, {1.5, 0, 1, 0, 1, box}};
-    const narc_bodies of_boxes = narc_view_bodies(two, 2);
+    narc_bodies of_boxes;
+    narc_view_bodies(two, 2, &of_boxes);
     const narc_pairs pairs = {.count = 1};
     const double number = 1;
     const narc_contact row = {.count = 1, .feature = 3, .normal_x = 1}, far = {.pair = 1},

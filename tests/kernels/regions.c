@@ -52,7 +52,8 @@ static void check_rows(const struct pair_list *expected, const narc_pairs *pairs
 }
 
 static void ask(narc_index *index, const struct question *q, unsigned workers, narc_pairs *out_pairs) {
-    const narc_workers some = narc_openmp_workers(workers);
+    narc_workers some;
+    narc_openmp_workers(workers, &some);
     const narc_owners owners = {.owner = {q->owner, sizeof *q->owner},
                                 .ignored = {q->ignored_owner, sizeof *q->ignored_owner}};
     const narc_index_query query = {.mask = {q->mask, sizeof *q->mask},

@@ -149,7 +149,7 @@ TEST(test_vanishing_axes) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         if (k % 3 == 0) {
             const narc_four_arc lens = {1, 1, random_between(&random, 1.5, 1.95), 0, 0};
-            assert_int_equal(narc_build_four_arc(lens, shape.arcs, &shape.count, NULL), NARC_OK);
+            assert_int_equal(narc_build_four_arc(&lens, shape.arcs, &shape.count, NULL), NARC_OK);
         }
         scene_add_shape(&scene, &shape);
     }

@@ -98,7 +98,8 @@ static narc_status ask_body_for_points(const struct search *s, uint32_t body, na
     const narc_bodies bodies = scene_bodies(&s->room.scene);
     const narc_points points = points_of(s);
     (void)inside;
-    return narc_find_distances(s->room.scene.store, &bodies, &points, (narc_index_column){&body, 0}, NULL, rows, error);
+    return narc_find_distances(s->room.scene.store, &bodies, &points, &(narc_index_column){&body, 0}, NULL, rows,
+                               error);
 }
 
 static narc_status ask_body_for_movers(const struct search *s, uint32_t body, narc_inside inside, void *rows,
@@ -263,7 +264,8 @@ static void check_kind(struct test_random *random, struct search *s, const struc
     narc_inside inside = NARC_INSIDE_STOPS;
     char *all = ask_one_by_one(s, kind, inside);
     for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
-        const narc_workers workers = narc_openmp_workers((unsigned)k % 4);
+        narc_workers workers;
+        narc_openmp_workers((unsigned)k % 4, &workers);
         const bool categories = k % 5 < 3;
         struct options o = options[k];
         narc_index_query search = {.workers = &workers};

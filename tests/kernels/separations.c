@@ -35,7 +35,8 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
     float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
     size_t told = 0, skipped = 0, contacts_skipped = 0;
     for (unsigned threads = 1; threads <= 3; threads++) {
-        const narc_workers workers = narc_openmp_workers(threads);
+        narc_workers workers;
+        narc_openmp_workers(threads, &workers);
         float *const found = guard_allocate(pairs->count * sizeof *found);
         query.workers = &workers;
         query.row_stride = 0;
@@ -115,7 +116,9 @@ TEST(test_ground) {
                 b[k * count + i] = i;
             }
         }
-        const narc_bodies bodies = narc_view_bodies(riders, RIDERS), ground = narc_view_bodies(pieces, count);
+        narc_bodies bodies, ground;
+        narc_view_bodies(riders, RIDERS, &bodies);
+        narc_view_bodies(pieces, count, &ground);
         const narc_pairs pairs = {
             .count = RIDERS * count, .a = {a, sizeof *a}, .b = {b, sizeof *b}, .other_bodies = &ground};
         told += check_separations(store, &bodies, &pairs, (narc_query){.margin = 0.125f});

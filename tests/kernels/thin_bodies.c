@@ -74,7 +74,8 @@ static size_t count_rows(const narc_shapes *store, const narc_body *bodies, size
         a[k] = (uint32_t)entries;
         b[k] = (uint32_t)k;
     }
-    const narc_bodies columns = narc_view_bodies(bodies, entries + 1);
+    narc_bodies columns;
+    narc_view_bodies(bodies, entries + 1, &columns);
     const narc_pairs pairs = {.count = entries, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     expect_ok(narc_find_contacts(store, &columns, &pairs, NULL, rows, ROWS, &count, &error), &error);
     return count;

@@ -166,7 +166,7 @@ TEST(builds_four_arcs) {
         f.radius_left = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
         f.radius_right = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
         struct output out = make_output();
-        BUILD(&out, narc_build_four_arc, f);
+        BUILD(&out, narc_build_four_arc, &f);
         assert_int_equal(out.count, 4);
         assert_true(out.arcs[1].radius == f.radius_high && out.arcs[1].center_y == -f.distance / 2);
         assert_true(out.arcs[3].radius == f.radius_low && out.arcs[3].center_y == f.distance / 2);
@@ -185,7 +185,7 @@ TEST(builds_four_arcs) {
     }
     /* A sharp lens of equal circles: two segments of half angle a. */
     struct output out = make_output();
-    BUILD(&out, narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, 0});
+    BUILD(&out, narc_build_four_arc, &(narc_four_arc){5, 5, 8, 0, 0});
     narc_mass mass;
     assert_true(narc_compute_mass(out.arcs, 4, &mass));
     double a = acos(0.8);
@@ -244,21 +244,24 @@ TEST(refuses_what_does_not_fit) {
     REFUSED(&o, SIZE, "side 2", narc_build_polygon, twice, 5, 0);
     REFUSED(&o, RADIUS, "side 1: radius is 0.6, the largest that fits it is 0.5", narc_build_polygon, square, 4, 0.6);
     assert_int_equal(error->index, 1);
-    REFUSED(&o, SIZE, "overlap only below 2", narc_build_four_arc, (narc_four_arc){1, 1, 2, 0, 0});
-    REFUSED(&o, SIZE, "contains the other", narc_build_four_arc, (narc_four_arc){3, 1, 2, 0, 0});
-    REFUSED(&o, SIZE, "radius_high is 0", narc_build_four_arc, (narc_four_arc){3, 0, 2, 0, 0});
-    REFUSED(&o, RADIUS, "radius_left is 1", narc_build_four_arc, (narc_four_arc){5, 5, 8, 1, 0});
-    REFUSED(&o, RADIUS, "radius_right is 1.5", narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, 1.5});
-    REFUSED(&o, RADIUS, "radius_right is -1", narc_build_four_arc, (narc_four_arc){5, 5, 8, 0, -1});
-    REFUSED(&o, NOT_FINITE, "radius_low", narc_build_four_arc, (narc_four_arc){NAN, 5, 8, 0, 0});
+    REFUSED(&o, SIZE, "overlap only below 2", narc_build_four_arc, &(narc_four_arc){1, 1, 2, 0, 0});
+    REFUSED(&o, SIZE, "contains the other", narc_build_four_arc, &(narc_four_arc){3, 1, 2, 0, 0});
+    REFUSED(&o, SIZE, "radius_high is 0", narc_build_four_arc, &(narc_four_arc){3, 0, 2, 0, 0});
+    REFUSED(&o, RADIUS, "radius_left is 1", narc_build_four_arc, &(narc_four_arc){5, 5, 8, 1, 0});
+    REFUSED(&o, RADIUS, "radius_right is 1.5", narc_build_four_arc, &(narc_four_arc){5, 5, 8, 0, 1.5});
+    REFUSED(&o, RADIUS, "radius_right is -1", narc_build_four_arc, &(narc_four_arc){5, 5, 8, 0, -1});
+    REFUSED(&o, NOT_FINITE, "radius_low", narc_build_four_arc, &(narc_four_arc){NAN, 5, 8, 0, 0});
     /* Most of the small circle, with more than half a turn. */
-    REFUSED(&o, SWEEP, "arc 1", narc_build_four_arc, (narc_four_arc){5, 1, 4.5, 0, 0});
+    REFUSED(&o, SWEEP, "arc 1", narc_build_four_arc, &(narc_four_arc){5, 1, 4.5, 0, 0});
     assert_int_equal(narc_build_circle(1, NULL, count, error), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_circle(1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_capsule(1, 1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_box(1, 1, 0, NULL, count, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_build_polygon(square, 4, 0, NULL, count, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, NULL, count, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0, 0}, NULL, count, NULL), NARC_ERROR_ARGUMENT);
+    REFUSED(&o, ARGUMENT, "form", narc_build_four_arc, NULL);
+    REFUSED(&o, ARGUMENT, "from", narc_build_segment, NULL, &square[0], 1);
+    REFUSED(&o, ARGUMENT, "to", narc_build_segment, &square[0], NULL, 1);
 }
 
 /* The polygon with corners at equal angles, whose measures are checked above. */
@@ -489,7 +492,7 @@ TEST(builds_segments) {
         struct output out = make_output();
         narc_mass mass;
         double length = 0, distance;
-        BUILD(&out, narc_build_segment, from, to, r);
+        BUILD(&out, narc_build_segment, &from, &to, r);
         assert_int_equal(out.count, 2);
         assert_true(out.arcs[0].center_x == to.x && out.arcs[1].center_y == from.y && out.arcs[0].radius == r);
         assert_true(narc_compute_mass(out.arcs, 2, &mass) && narc_compute_perimeter(out.arcs, 2, &length));
@@ -500,16 +503,16 @@ TEST(builds_segments) {
         const double t = random_unit(&random), side = k % 4 < 2 ? 1 : -1, up = random_between(&random, 0.1, 1);
         const narc_point p = {from.x + t * (to.x - from.x) - side * up * (to.y - from.y) / l,
                               from.y + t * (to.y - from.y) + side * up * (to.x - from.x) / l};
-        assert_true(narc_compute_distance(out.arcs, 2, p, &distance));
+        assert_true(narc_compute_distance(out.arcs, 2, &p, &distance));
         if (up > r)
             expect_near(distance, up - r, 1e-12, "distance");
     }
     struct output o = make_output();
     const narc_point p = {1, 2}, q = {NAN, 0};
-    REFUSED(&o, SIZE, "radius is 0", narc_build_segment, p, p, 0);
-    REFUSED(&o, NOT_FINITE, "point 1", narc_build_segment, p, q, 0);
-    REFUSED(&o, RADIUS, "radius is -1", narc_build_segment, p, (narc_point){0, 0}, -1);
-    BUILD(&o, narc_build_segment, p, p, 2); /* a disc */
+    REFUSED(&o, SIZE, "radius is 0", narc_build_segment, &p, &p, 0);
+    REFUSED(&o, NOT_FINITE, "point 1", narc_build_segment, &p, &q, 0);
+    REFUSED(&o, RADIUS, "radius is -1", narc_build_segment, &p, &(narc_point){0, 0}, -1);
+    BUILD(&o, narc_build_segment, &p, &p, 2); /* a disc */
     narc_mass disc;
     assert_true(narc_compute_mass(o.arcs, o.count, &disc));
     expect_near(disc.area, 4 * PI, 1e-12, "area");

@@ -111,12 +111,12 @@ static void check_distance(struct test_random *random, const struct shape *shape
         if (k < shape->count) /* the centres too: the worst case of an arc's sector */
             point = (narc_point){shape->arcs[k].center_x, shape->arcs[k].center_y};
         double expected = oracle_distance(shape->arcs, shape->count, point);
-        assert_true(narc_compute_distance(shape->arcs, shape->count, point, &distance));
+        assert_true(narc_compute_distance(shape->arcs, shape->count, &point, &distance));
         if (fabs(expected) < rounding) {
             expect_near(fabs(distance), 0, 2 * rounding, "distance"); /* which side is rounding */
         } else {
             expect_near(distance, expected, rounding, "distance");
-            assert_int_equal(narc_contains_point(shape->arcs, shape->count, point), expected < 0);
+            assert_int_equal(narc_contains_point(shape->arcs, shape->count, &point), expected < 0);
         }
     }
 }
@@ -196,14 +196,16 @@ TEST(refuses_bad_arguments) {
         assert_false(narc_compute_aabb(a, n, 0, &box));
         assert_false(narc_compute_perimeter(a, n, &value));
         assert_false(narc_find_support(a, n, 1, 0, NULL, NULL));
-        assert_false(narc_compute_distance(a, n, (narc_point){0, 0}, &value));
-        assert_false(narc_contains_point(a, n, (narc_point){0, 0}));
+        assert_false(narc_compute_distance(a, n, &(narc_point){0, 0}, &value));
+        assert_false(narc_contains_point(a, n, &(narc_point){0, 0}));
     }
     assert_false(narc_compute_mass(arcs, 1, NULL));
     assert_false(narc_compute_bounding_circle(arcs, 1, NULL));
     assert_false(narc_compute_inscribed_circle(arcs, 1, NULL));
     assert_false(narc_compute_aabb(arcs, 1, 0, NULL));
     assert_false(narc_compute_perimeter(arcs, 1, NULL));
-    assert_false(narc_compute_distance(arcs, 1, (narc_point){0, 0}, NULL));
+    assert_false(narc_compute_distance(arcs, 1, &(narc_point){0, 0}, NULL));
+    assert_false(narc_compute_distance(arcs, 1, NULL, &value));
+    assert_false(narc_contains_point(arcs, 1, NULL));
     assert_false(narc_find_support(arcs, 1, 0, 0, NULL, NULL));
 }

@@ -150,7 +150,7 @@ TEST(is_tight_for_known_shapes) {
     store_shape(shapes, box_of(2, 1, 0));
     expect_inner_radii(shapes, 1, 0, 0);
     /* A lens with round tips of 0.25: next to them the large arcs have no more room than they. */
-    narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
+    narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
     assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
     expect_inner_radii(shapes, 0, 0.25, 0.25);
     expect_inner_radii(shapes, 1, 0.25, 0.25);

@@ -139,7 +139,7 @@ TEST(saves_recorded_bytes) {
         store_shape(shapes, box_of(length, 2, k / 16.0));
         assert_int_equal(narc_build_ellipse(length, 0.75, 12, arcs, &count, NULL, NULL), NARC_OK);
         assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
-        assert_int_equal(narc_build_segment((narc_point){-1, k}, (narc_point){2, 1}, k % 2, arcs, &count, NULL),
+        assert_int_equal(narc_build_segment(&(narc_point){-1, k}, &(narc_point){2, 1}, k % 2, arcs, &count, NULL),
                          NARC_OK);
         assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
     }
@@ -252,7 +252,8 @@ static void expect_usable(const narc_shapes *shapes) {
         a[k] = k / (uint32_t)count;
         b[k] = k % (uint32_t)count;
     }
-    const narc_bodies bodies = narc_view_bodies(body, count);
+    narc_bodies bodies;
+    narc_view_bodies(body, count, &bodies);
     const narc_pairs pairs = {.count = count * count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     uint64_t *const bits = find_overlaps(shapes, &bodies, &pairs, NULL);
     struct contacts contacts = find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY});
@@ -494,7 +495,7 @@ TEST(refuses_forged_flat_arcs) {
     narc_shapes *shapes = empty_store();
     struct shape lens;
     size_t size;
-    assert_int_equal(narc_build_four_arc((narc_four_arc){radius, radius, 2 * sqrt(radius * radius - 1), 0, 0},
+    assert_int_equal(narc_build_four_arc(&(narc_four_arc){radius, radius, 2 * sqrt(radius * radius - 1), 0, 0},
                                          lens.arcs, &lens.count, NULL),
                      NARC_OK);
     store_shape(shapes, lens);

@@ -128,7 +128,7 @@ TEST(knows_what_shapes_are) {
     assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_POLYGON | NARC_SHAPE_CENTERS_INSIDE);
     narc_build_polygon(rhombus, 4, 0.1, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_CENTERS_INSIDE);
-    narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
+    narc_build_four_arc(&(narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_SMOOTH);
     assert_int_equal(narc_build_points(square, 4, 0.5, arcs, &count, NULL), NARC_ERROR_RADIUS);
     narc_build_points(square, 4, 0.6, arcs, &count, NULL);
@@ -212,7 +212,7 @@ TEST(knows_capsules) {
     for (int turned = 0; turned < 2; turned++) {
         const double x = turned ? -2 : 2;
         for (int radius = 0; radius < 2; radius++) {
-            narc_build_segment((narc_point){-x, 0}, (narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL);
+            narc_build_segment(&(narc_point){-x, 0}, &(narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL);
             expect_form(&shape, 2, 0, (float)radius, turned ? NARC_IS_CAPSULE : NARC_IS_CAPSULE | 1);
             assert_int_equal(signbit(find_form(shape.arcs, shape.count).half_y) != 0, !turned);
         }
@@ -256,7 +256,7 @@ TEST(bounds_what_is_stored) {
         double room = fabs(oracle_distance(arcs, count, middle)); /* its sign is lost in the rounding of the joins */
         /* What was stored of a segment lies on it but for rounding. */
         const bool segment = count == 2 && arcs[0].radius == 0 && arcs[1].radius == 0;
-        assert_true(narc_contains_point(arcs, count, middle) || (segment && room <= 2 * ulp * extent));
+        assert_true(narc_contains_point(arcs, count, &middle) || (segment && room <= 2 * ulp * extent));
         narc_compute_bounding_circle(shape.arcs, shape.count, &bound);
         narc_compute_inscribed_circle(shape.arcs, shape.count, &inner);
         assert_true((double)header.bound_radius >= reach + least * extent);

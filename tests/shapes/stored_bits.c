@@ -80,7 +80,7 @@ static narc_status build(enum builder builder, struct test_random *random, size_
         return narc_build_regular_polygon(count, a, k % 2 ? part * a / 4 : 0, out_arcs, out_count, NULL);
     case FOUR_ARC: {
         const double distance = a + b - part * (a < b ? a : b), tip = k % 2 ? (a + b - distance) / 8 : 0;
-        return narc_build_four_arc((narc_four_arc){a, b, distance, tip, tip / 2}, out_arcs, out_count, NULL);
+        return narc_build_four_arc(&(narc_four_arc){a, b, distance, tip, tip / 2}, out_arcs, out_count, NULL);
     }
     case POINTS:
     case RADIUS: {
@@ -94,7 +94,7 @@ static narc_status build(enum builder builder, struct test_random *random, size_
     case RING:
         return narc_build_ring(corners, count, out_arcs, out_count, NULL);
     case SEGMENT:
-        return narc_build_segment(corners[0], corners[1], radius, out_arcs, out_count, NULL);
+        return narc_build_segment(&corners[0], &corners[1], radius, out_arcs, out_count, NULL);
     case SKIN:
         return narc_build_skin_polygon(corners, count, part, out_arcs, out_count, NULL);
     default:

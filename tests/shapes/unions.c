@@ -107,8 +107,8 @@ TEST(moved_shapes_are_the_same_elsewhere) {
             const narc_point q = {x + scale * (cos(angle) * p.x - sin(angle) * p.y),
                                   y + scale * (sin(angle) * p.x + cos(angle) * p.y)};
             double distance, there;
-            assert_true(narc_compute_distance(shape.arcs, shape.count, p, &distance));
-            assert_true(narc_compute_distance(moved.arcs, moved.count, q, &there));
+            assert_true(narc_compute_distance(shape.arcs, shape.count, &p, &distance));
+            assert_true(narc_compute_distance(moved.arcs, moved.count, &q, &there));
             expect_near(there / scale, distance, 1e-12, "distance");
         }
     }

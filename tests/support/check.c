@@ -67,7 +67,7 @@ double distance_to(const struct reference_body *a, const struct reference_body *
     x -= body->x - a->x;
     y -= body->y - a->y;
     narc_point local = {(c * x + s * y) / scale, (c * y - s * x) / scale};
-    narc_compute_distance(body->arcs, body->count, local, &distance);
+    narc_compute_distance(body->arcs, body->count, &local, &distance);
     return distance * scale;
 }
 

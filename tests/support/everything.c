@@ -72,7 +72,7 @@ static void ask_pairs(const struct everything *e, const narc_workers *workers, s
     expect_ok(narc_cast_pairs(e->shapes, &e->bodies, &e->motions, &e->pairs, NULL, &cast,
                               add_rows(answers, ANSWER_CASTS, count), count, &error),
               &error);
-    expect_ok(narc_find_distances(e->shapes, &e->bodies, &e->points, e->pairs.a, workers,
+    expect_ok(narc_find_distances(e->shapes, &e->bodies, &e->points, &e->pairs.a, workers,
                                   add_rows(answers, ANSWER_DISTANCES, count), &error),
               &error);
 }
@@ -96,10 +96,11 @@ static void ask_lists(const struct everything *e, narc_index *index, const narc_
     narc_error error;
     expect_ok(narc_query_index(index, boxes, near, &search, &pairs, &error), &error);
     uint64_t hash = hash_pairs(TEST_HASH_START, &pairs, near);
-    const narc_status status = narc_find_pairs(broad, boxes, e->indexed, NULL, workers, NULL, NULL, 0, &found, &error);
+    const narc_status status =
+        narc_find_pairs(broad, boxes, e->indexed, NULL, workers, NULL, NULL, 0, 0, &found, &error);
     assert_int_equal(status, found > 0 ? NARC_ERROR_CAPACITY : NARC_OK);
     uint32_t *const a = guard_allocate(found * sizeof *a), *const b = guard_allocate(found * sizeof *b);
-    expect_ok(narc_find_pairs(broad, boxes, e->indexed, NULL, workers, a, b, found, &found, &error), &error);
+    expect_ok(narc_find_pairs(broad, boxes, e->indexed, NULL, workers, a, b, 0, found, &found, &error), &error);
     pairs = (narc_pairs){.count = found, .a = {a, sizeof *a}, .b = {b, sizeof *b}};
     hash = hash_pairs(hash, &pairs, near);
     guard_release(a);
@@ -153,7 +154,7 @@ struct answers ask_everything(const struct everything *e, const narc_workers *wo
     for (size_t k = 0; k < bodies; k++)
         owner[k] = (uint32_t)((7 * k + 3) % bodies);
     expect_ok(narc_compute_boxes(e->shapes, &e->bodies, &options, boxes, &error), &error);
-    expect_ok(narc_place_parts(&e->bodies, &e->bodies, NARC_ARRAY(owner), workers,
+    expect_ok(narc_place_parts(&e->bodies, &e->bodies, &NARC_ARRAY(owner), workers,
                                add_rows(&answers, ANSWER_PARTS, bodies), &error),
               &error);
     ask_pairs(e, workers, &answers, counts);

@@ -208,7 +208,7 @@ static struct shape make_lens(struct test_random *random) {
     double tip = sharp ? 0 : sagitta * random_log_between(random, 0.02, 0.6);
     /* Thickness radius + other - distance, that of the lens with equal arcs. */
     narc_four_arc form = {radius, other, radius + other - 2 * sagitta, tip, random_below(random, 2) ? tip : tip / 2};
-    require_ok(narc_build_four_arc(form, shape.arcs, &shape.count, &error), &error);
+    require_ok(narc_build_four_arc(&form, shape.arcs, &shape.count, &error), &error);
     return shape;
 }
 
@@ -285,9 +285,9 @@ static struct shape make_segment(struct test_random *random) {
     const double half = random_between(random, 0.25, 1),
                  part = random_below(random, 2) ? 1 : random_between(random, 0.2, 1);
     const double x = random_below(random, 3) ? half * cos(angle) : half, y = x == half ? 0 : half * sin(angle);
-    require_ok(
-        narc_build_segment((narc_point){-x * part, -y * part}, (narc_point){x, y}, 0, shape.arcs, &shape.count, &error),
-        &error);
+    require_ok(narc_build_segment(&(narc_point){-x * part, -y * part}, &(narc_point){x, y}, 0, shape.arcs, &shape.count,
+                                  &error),
+               &error);
     return shape;
 }
 

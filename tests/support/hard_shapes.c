@@ -74,7 +74,7 @@ static struct shape make_tips(struct test_random *random) {
         const double sagitta = random_log_between(random, 0.009, 0.7), radius = (1 + sagitta * sagitta) / (2 * sagitta);
         const double tip = sagitta * random_log_between(random, 1e-5, 1e-2);
         const narc_four_arc form = {radius, radius, 2 * (radius - sagitta), tip, random_below(random, 2) ? tip : 0};
-        if (narc_build_four_arc(form, shape.arcs, &shape.count, NULL) == NARC_OK)
+        if (narc_build_four_arc(&form, shape.arcs, &shape.count, NULL) == NARC_OK)
             return shape;
     } while (true);
 }

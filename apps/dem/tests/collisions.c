@@ -255,7 +255,8 @@ TEST(test_order_of_time_step) {
 static double find_place(const dem *d, uint32_t shape, double y) {
     narc_body two[2] = {{.cosine = 1, .scale = 1, .shape = shape},
                         {.x = 2.4, .y = y, .cosine = 1, .scale = 1, .shape = shape}};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     const narc_pairs pair = {.count = 1};
     const narc_query query = {.margin = INFINITY};
     narc_contact contact;

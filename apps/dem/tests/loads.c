@@ -29,7 +29,7 @@ TEST(test_reach) {
     dem d = plain_world();
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
-    assert_int_equal(narc_build_four_arc((narc_four_arc){20, 30, 48, 0.1, 0}, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_build_four_arc(&(narc_four_arc){20, 30, 48, 0.1, 0}, arcs, &count, NULL), NARC_OK);
     dem_add_shape(&d, "lens", arcs, count);
     assert_int_equal(narc_build_box(4, 1, 0, arcs, &count, NULL), NARC_OK);
     const uint32_t box = dem_add_shape(&d, "box", arcs, count);

@@ -25,7 +25,8 @@ static touch ask(const dem *d, uint32_t shape, pose p, bool asks, unsigned *feat
     if (asks) {
         narc_body two[2] = {{0, 0, (float)a.cosine, (float)a.sine, 1, shape},
                             {p.x, p.y, (float)b.cosine, (float)b.sine, 1, shape}};
-        const narc_bodies bodies = narc_view_bodies(two, 2);
+        narc_bodies bodies;
+        narc_view_bodies(two, 2, &bodies);
         const narc_pairs pair = {.count = 1};
         const narc_query query = {.margin = 1e-5F};
         narc_contact row;

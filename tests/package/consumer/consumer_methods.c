@@ -9,7 +9,8 @@
 
 int main(void) {
     static const narc_body two[] = {{0.0, 0.0, 1.0f, 0.0f, 1.0f, 0}, {1.5, 0.0, 1.0f, 0.0f, 1.0f, 0}};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
     narc_shapes *shapes = NULL;
     narc_methods *methods = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
