@@ -169,7 +169,8 @@ TEST(pairs_with_ground_are_asked_before_they_touch) {
         narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
         w->has_filter = w->has_motion = false;
         for (size_t k = 0; k < 60; k++) {
-            const narc_bodies bodies = narc_view_bodies(w->body, w->count + w->ground);
+            narc_bodies bodies;
+            narc_view_bodies(w->body, w->count + w->ground, &bodies);
             const narc_step step = make_step(w, &bodies, NULL);
             const narc_step_result *r;
             narc_error error;
