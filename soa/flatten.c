@@ -2,7 +2,7 @@
  *
  * flatten.c - outlines of shapes and chains as polylines.
  *
- * A chord over the angle h of an arc strays from it by the sagitta r (1 - cos(h / 2)), which is at most r h^2 / 8, as 1 - cos x is
+ * A chord over the angle h of an arc leaves it by the sagitta r (1 - cos(h / 2)), which is at most r h^2 / 8, as 1 - cos x is
  * at most x^2 / 2. So ceil(sweep sqrt(r / (8 t))) even chords stay within t. Of the tolerance 1/1024 is left to points that are as
  * near to the one before, which are dropped: ends of arcs that are one.
  */
@@ -77,10 +77,10 @@ narc_status narc_flatten_arcs(const narc_arc *arcs, size_t count, bool closed, c
     const double square = at.cosine * at.cosine + at.sine * at.sine - 1, factor = NARC_INVERSE_LENGTH(square);
     at.cosine *= factor;
     at.sine *= factor;
-    const double same = tolerance * 0x1p-10, stray = (tolerance - same) / at.scale;
+    const double same = tolerance * 0x1p-10, sagitta = (tolerance - same) / at.scale;
     double needed = 0;
     for (size_t k = 0; k < count; k++)
-        needed += count_chords(&arcs[k], stray) + 1;
+        needed += count_chords(&arcs[k], sagitta) + 1;
     if (!(needed <= (double)capacity)) {
         *out_count = needed < (double)SIZE_MAX ? (size_t)needed : SIZE_MAX;
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, needed, "up to %.0f points, but there is room for %zu", needed,
@@ -88,7 +88,7 @@ narc_status narc_flatten_arcs(const narc_arc *arcs, size_t count, bool closed, c
     }
     size_t found = 0;
     for (size_t k = 0; k < count; k++) {
-        const size_t chords = (size_t)count_chords(&arcs[k], stray);
+        const size_t chords = (size_t)count_chords(&arcs[k], sagitta);
         for (size_t i = 0; i <= chords; i++) {
             const narc_point p = find_point(&arcs[k], chords > 0 ? (double)i / (double)chords : 0, &at);
             if (found == 0 || !are_same(&p, &out_points[found - 1], same))
