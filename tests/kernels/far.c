@@ -136,6 +136,37 @@ TEST(an_index_far_away_has_the_same_answers) {
     }
 }
 
+/* A polygon with a side through its own origin is a plane, however large it is: contacts near its position are as exact as near
+ * a small one, level or tilted. */
+TEST(a_large_polygon_is_a_plane) {
+    struct test_random random = test_random_named("planes");
+    const double sizes[] = {1e2, 1e4, 1e6, 1e8};
+    for (size_t k = 0; k < 4 * test_trials(500); k++) {
+        const double size = sizes[k % 4], angle = k % 8 < 4 ? 0 : random_between(&random, -PI, PI);
+        const narc_point corners[] = {{size, 0}, {-size, 0}, {-size, -size}, {size, -size}};
+        struct shape plane = {.count = 0};
+        narc_shapes *const shapes = empty_store();
+        narc_error error;
+        expect_ok(narc_build_polygon(corners, 4, 0, plane.arcs, &plane.count, &error), &error);
+        const narc_body ground = {0, 0, (float)cos(angle), (float)sin(angle), 1, store_shape(shapes, plane)};
+        const double length = hypot((double)ground.cosine, (double)ground.sine);
+        const double c = (double)ground.cosine / length, s = (double)ground.sine / length;
+        const double along = random_between(&random, -50, 50), gap = random_between(&random, -0.4, 0.4);
+        const narc_body box = {
+            c * along - s * (gap + 0.5),         s * along + c * (gap + 0.5), ground.cosine, ground.sine, 1,
+            store_shape(shapes, box_of(1, 1, 0))};
+        const narc_query query = {.margin = 1};
+        narc_manifold row;
+        expect_ok(narc_find_manifold(shapes, &ground, &box, &query, &row, &error), &error);
+        assert_int_equal(row.count, 2);
+        const double bound = NARC_ERROR_BOUND * (fabs(along) + 2);
+        for (int i = 0; i < 2; i++)
+            assert_true(fabs((double)row.point[i].separation - gap) <= bound);
+        assert_true(fabs((double)row.normal_x + s) <= 1e-6 && fabs((double)row.normal_y - c) <= 1e-6);
+        narc_destroy_shapes(shapes);
+    }
+}
+
 /* An origin that is none is refused, and nothing is written. */
 TEST(origins_are_finite) {
     const narc_point bad[] = {{NAN, 0}, {0, INFINITY}};
