@@ -16,11 +16,11 @@ from ._batch import (bodies, box_pairs, boxes, contacts, manifolds, overlaps, pa
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
 from ._scene import Contacts, Index, Step, casts, distances
-from ._shapes import Shapes, mass, move, union_mass
+from ._shapes import Shapes, mass, move, outlines, union_mass
 from ._tables import (ARC, BODY, BOX, CHAIN_ENTRY, CIRCLE, CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, MASS, RAY_HIT,
                       TOUCH_EVENT)
 
 __all__ = ["ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "CONTACT", "Contacts", "DISTANCE", "Error", "IMPACT",
            "Index", "MANIFOLD", "MASS", "NoAnswer", "OutOfRange", "RAY_HIT", "Shapes", "Step", "TOUCH_EVENT", "__version__",
-           "bodies", "box_pairs", "boxes", "casts", "contacts", "distances", "get_isa", "manifolds", "mass", "move", "overlaps",
+           "bodies", "box_pairs", "boxes", "casts", "contacts", "distances", "get_isa", "manifolds", "mass", "move", "outlines", "overlaps",
            "pairs", "place_parts", "separations", "set_isa", "union_mass", "validate"]

@@ -132,7 +132,8 @@ class Contacts(_narc.Handle):
     _kind: Any
 
     def __new__(cls, rows: str = "manifolds") -> Contacts:
-        kinds = {"manifolds": (MANIFOLD, CONSTANTS["NARC_MANIFOLD_ROWS"]), "contacts": (CONTACT, CONSTANTS["NARC_CONTACT_ROWS"])}
+        kinds = {"manifolds": (MANIFOLD, int(CONSTANTS["NARC_MANIFOLD_ROWS"])),
+                 "contacts": (CONTACT, int(CONSTANTS["NARC_CONTACT_ROWS"]))}
         if rows not in kinds:
             raise ValueError(f"rows is {rows!r}, it must be 'manifolds' or 'contacts'")
         self = super().__new__(cls, "Contacts", kinds[rows][1])
@@ -153,7 +154,7 @@ class Contacts(_narc.Handle):
 
     def _step(self, step: tuple[Any, ...]) -> Step:
         kinds = (np.uint32, np.uint32, self._kind, self._kind, TOUCH_EVENT, TOUCH_EVENT, np.uint32)
-        arrays = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
+        arrays: list[Any] = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
         return Step(arrays[0].reshape(-1, 2), *arrays[1:], *step[7:])
 
     def forget(self, ids: ArrayLike | None = None) -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,10 +30,10 @@ def _built(build: Any, *arguments: Any) -> Arcs:
     return out[: build(*arguments, out)].copy()
 
 
-def _one(compute: Any, arcs: ArrayLike, kind: Any) -> Any:
+def _one(compute: Any, arcs: ArrayLike, kind: Any) -> np.void:
     out = np.zeros(1, kind)
     compute(_arcs(arcs), out)
-    return out[0]
+    return cast(np.void, out[0])
 
 
 class Shapes(_narc.Handle):
@@ -118,7 +118,7 @@ class Shapes(_narc.Handle):
 
     def mass(self, shape: int) -> np.void:
         """Area, centroid and second moment about it: a row of narc.MASS, to be multiplied by a density."""
-        return _one(_narc.compute_mass, self.arcs(shape), MASS)
+        return mass(self.arcs(shape))
 
     def bounding_circle(self, shape: int) -> np.void:
         """The smallest circle around a shape, a row of narc.CIRCLE."""
@@ -154,6 +154,18 @@ def _load(kind: type[Shapes], data: bytes) -> Shapes:
     return shapes
 
 
+def outlines(shapes: Shapes, bodies: NDArray[np.void], tolerance: float = 1e-2) -> list[NDArray[np.float64]]:
+    """Points (n, 2) on the outline of each body, rows of narc.BODY, as Shapes.as_polygon() has them: for plots."""
+    known = {shape: shapes.as_polygon(int(shape), tolerance) for shape in set(bodies["shape"])}
+    out = []
+    for body in bodies:
+        points = body["scale"] * known[body["shape"]]
+        turned = np.stack([body["cosine"] * points[:, 0] - body["sine"] * points[:, 1],
+                           body["sine"] * points[:, 0] + body["cosine"] * points[:, 1]], axis=1)
+        out.append(body["xy"] + turned)
+    return out
+
+
 def mass(arcs: ArrayLike) -> np.void:
     """Area, centroid and second moment of a list of arcs, a row of narc.MASS."""
     return _one(_narc.compute_mass, arcs, MASS)
@@ -164,7 +176,7 @@ def union_mass(parts: list[ArrayLike]) -> np.void:
     arcs = [np.asarray(_arcs(part)).view(ARC).reshape(-1) for part in parts]
     out = np.zeros(1, MASS)
     _narc.compute_union_mass(np.concatenate(arcs), np.array([len(a) for a in arcs], np.uint64), out)
-    return out[0]
+    return cast(np.void, out[0])
 
 
 def move(arcs: ArrayLike, xy: ArrayLike = (0, 0), angle: float = 0.0, scale: float = 1.0) -> Arcs:

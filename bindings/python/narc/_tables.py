@@ -12,7 +12,7 @@ _LAYOUTS = _narc.layouts()
 CONSTANTS: dict[str, int | float] = _narc.constants()
 
 
-def row_type(name: str) -> np.dtype:
+def row_type(name: str) -> np.dtype[np.void]:
     """The type of rows of a structure. What is x and y of one thing is a pair: `normal_x`, `normal_y` are `normal`, and a plain
     `x`, `y` is `xy`."""
     size, members = _LAYOUTS[name]
@@ -28,7 +28,7 @@ def row_type(name: str) -> np.dtype:
                      "offsets": [o for _, o in fields.values()], "itemsize": size})
 
 
-def _known(name: str) -> np.dtype:
+def _known(name: str) -> np.dtype[np.void]:
     kind = row_type(name)
     _narc.know(name, kind)
     return kind
