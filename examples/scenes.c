@@ -224,7 +224,7 @@ static void build_car(world *w, uint64_t seed) {
     for (int k = 0; k < 2; k++)
         add_ball(w, 0.4, (double)x + (k ? 0.85 : -0.85), 0.4, 1);
     for (int k = 0; k < 3; k++) {
-        w->bodies[k].group = 1;
+        w->bodies[k].owner = 0;
         w->bodies[k].velocity.x = 5;
     }
     for (int k = 1; k < 3 && w->error.status == NARC_OK; k++)

@@ -93,6 +93,7 @@ narc_status world_add_body(world *w, world_body body) {
     body.inverse_mass = moved_by_contacts ? 1 / w->shapes[body.shape].mass : 0;
     body.inverse_inertia = moved_by_contacts ? 1 / w->shapes[body.shape].inertia : 0;
     body.id = ++w->last_id;
+    body.owner = UINT32_MAX;
     body.run = NARC_NO_RUN;
     body.start = body.position;
     world_wake_body(&body);

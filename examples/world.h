@@ -30,7 +30,7 @@ typedef struct world_body {
     float cosine, sine; /* next to the position: the kernels load all four at once */
     uint32_t shape;
     uint8_t kind;   /* 0: it moves; NARC_STATIC; NARC_SENSOR: it goes where its velocity takes it, and pushes nothing */
-    uint32_t group; /* bodies of one group, but 0, do not meet: those of a machine */
+    uint32_t owner; /* bodies of one owner do not meet: those of a machine. Of one that is added, UINT32_MAX: none */
     vec velocity;
     float spin; /* radians per second */
     float friction, restitution;

@@ -26,7 +26,7 @@ static narc_status find_broken_body(world *w) {
 /* One call: pairs, with what is known of them, and the rows of those that have moved. */
 narc_status world_update_contacts(world *w) {
     const narc_bodies bodies = view_bodies(w);
-    const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, kind), .group = NARC_COLUMN(w->bodies, group)};
+    const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, kind), .owner = NARC_COLUMN(w->bodies, owner)};
     const narc_step step = {.bodies = &bodies,
                             .margin = w->settings.margin,
                             .flat_angle = w->settings.flat_angle,

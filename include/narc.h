@@ -221,9 +221,9 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
  * part that is not turned (sine 0, cosine above 0) has its owner's rotation to the bit. A broken part, or one of a broken
  * owner (see narc_bodies), is a row of zeros but for its shape, and so is one whose place or scale is out of range:
  * broken bodies, which queries skip and count as ever.
- *   Parts of one owner form no pair if their groups are one: narc_pair_filter.group with owner + 1, as 0 is no group.
- * Who has groups of bodies gives all their parts that of the bodies, and other numbers to the rest. Parts come and go
- * as bodies do: the last one into the gap, and narc_step.id tells which is which. docs/questions.md has more.
+ *   Parts of one owner form no pair with this column in narc_pair_filter.owner, and are one thing to questions with it in
+ * narc_owners. Parts come and go as bodies do: the last one into the gap, and narc_step.id tells which is which.
+ * docs/questions.md has more.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (NULL, too many), NARC_ERROR_INDEX (`error` names
  * the part and the owner), and those for NARC_ISA. No parts: NARC_OK. Allocates nothing. Not in narc_small.wasm. */
 NARC_API narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts,

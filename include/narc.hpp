@@ -602,6 +602,7 @@ struct cast_options : detail::options<cast_options, narc_cast_options> {
     cast_options &target(float value) noexcept { return set(&narc_cast_options::target, value); }
     cast_options &targets(narc_float_column value) noexcept { return set(&narc_cast_options::targets, value); }
     cast_options &front_only() noexcept { return set(&narc_cast_options::front_only, 1u); }
+    cast_options &parting(float value) noexcept { return set(&narc_cast_options::parting, value); }
     cast_options &tolerance(float value) noexcept { return set(&narc_cast_options::tolerance, value); }
     cast_options &skipped(size_t &out) noexcept { return set(&narc_cast_options::out_skipped, &out); }
 };

@@ -232,12 +232,13 @@ enum { NARC_STATIC = 1, NARC_ASLEEP = 2, NARC_SENSOR = 4 };
  *   kind             see the table above; left out: all move
  *   category, mask   a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
  *                    out: all bits set.
- *   group            two boxes of the same group other than 0 form no pair (the parts of one machine; of a compound:
- *                    narc_place_parts()). */
+ *   owner            two boxes of one owner form no pair: they are one thing, such as a machine, or a body of several
+ *                    parts (narc_place_parts()). UINT32_MAX: a thing by itself; left out: all are. The same column tells
+ *                    other questions what one thing is (narc_owners) */
 typedef struct narc_pair_filter {
     narc_byte_column kind;
     narc_word_column category, mask;
-    narc_index_column group;
+    narc_index_column owner;
     void *reserved[2]; /* NULL */
 } narc_pair_filter;
 

@@ -232,7 +232,11 @@ typedef struct narc_motions {
  *   targets       a target for each pair instead, of narc_cast_shapes() for each mover; `target` then means nothing
  *   front_only    not 0: pieces of chains are hit from the front alone, as in narc_query: a body with the centre of its
  *                 bounding circle behind a piece where they touch at the start passes it, and so does one that comes
- *                 from behind */
+ *                 from behind
+ *   parting       above 0: bodies that are no further apart than the target at the start (a hit at fraction 0) are let go,
+ *                 to part or to slide. One that comes deeper than it was then, by `parting` (and up to twice the tolerance
+ *                 more), hits at fraction 0, with the contact at the start, so that no body creeps into another one from
+ *                 cast to cast. Once it is clear, further away than the target by the tolerance, the target counts again */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
@@ -240,6 +244,7 @@ typedef struct narc_cast_options {
     size_t *out_skipped;
     narc_float_column targets;
     uint32_t front_only;
+    float parting;
     void *reserved[1]; /* NULL */
 } narc_cast_options;
 
@@ -274,9 +279,9 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not: what touches, or overlaps a little, can't be
- * cast away from the other body, or along it, but with a target below the separation that it has, such as the contact's
- * less a little (`targets`). Without turning, the time is exact up to
+ * no further than the target at the start hit at fraction 0, parting or not; those with `parting` only if they come deeper. Without turning, such a cast is exact, too: separations are convex in time. With turning a body is clear where
+ * the cast sees it so at one of the times at which it looks, so one that is clear for a short time and comes back hits at 0, or
+ * does not hit if it comes no deeper than it was. Without turning, the time is exact up to
  * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
@@ -285,7 +290,7 @@ typedef struct narc_impact {
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_NOT_FINITE (target, tolerance, or
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target, tolerance, parting, or
  * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,

@@ -206,7 +206,7 @@ typedef struct narc_cast_batch {
     const struct narc_kernel_table *kernels; /* in use; few casts go to others, which ask its pair kernel */
     const narc_batch *batch;
     narc_motions motions[2];
-    float target, tolerance;
+    float target, tolerance, parting;
     narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A */
     bool nearest, front_only;
     narc_impact *out;

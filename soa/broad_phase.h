@@ -102,7 +102,7 @@ typedef struct narc_pair_block {
 /* What a filter says of one body. */
 typedef struct narc_body_filter {
     uint64_t category, mask;
-    uint32_t group;
+    uint32_t owner;
     uint8_t kind, unused[3]; /* 0 */
 } narc_body_filter;
 

@@ -174,8 +174,8 @@ typedef struct dem_wall {
 typedef struct dem_image {
     uint64_t id; /* as narc knows it: the part; of an image also its direction, or the grain's part */
     uint32_t part;
-    uint32_t owner;    /* the only part that it may meet, or UINT32_MAX */
-    uint32_t group;    /* two of the same form no pair: the body + 2; 1 of walls and images */
+    uint32_t only;     /* the part that it may meet alone, or UINT32_MAX */
+    uint32_t owner;    /* two of the same form no pair: the body; of walls and images the number of grains */
     int16_t right, up; /* by how many cells */
     vec shift;         /* from the part */
 } dem_image;

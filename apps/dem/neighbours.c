@@ -8,8 +8,8 @@
  * rotation included).
  *
  * Borders: an image is a cell's width away. A pair across a border is found from both sides, and counts where the image is
- * that of the larger part. Images stand behind their part, so pairs are in the order of parts; images and walls are of one
- * group, and form none. A pair of parts must be found once, so that its history can be, and not with two images of B: so a
+ * that of the larger part. Images stand behind their part, so pairs are in the order of parts; images and walls have one
+ * owner, and form none. A pair of parts must be found once, so that its history can be, and not with two images of B: so a
  * cell is wider than the boxes of any two together (find_widths()). Where a grain is wrapped another image of it, or of its
  * neighbour, takes over: the pair parts and begins in the same step, and its history goes along.
  *
@@ -36,8 +36,8 @@ static bool is_plate(const dem *d, uint32_t part) {
 /* A plate itself meets no grain, but its images do. */
 static void add_part(dem *d, uint32_t part) {
     const uint32_t body = d->parts[part].body, only = is_plate(d, part) ? part : UINT32_MAX;
-    const uint32_t group = body < d->grain_count ? body + 2 : 1;
-    add_image(d, (dem_image){.id = part, .part = part, .owner = only, .group = group});
+    const uint32_t owner = body < d->grain_count ? body : (uint32_t)d->grain_count;
+    add_image(d, (dem_image){.id = part, .part = part, .only = only, .owner = owner});
 }
 
 /* Of all images, where bodies were when the images were made. */
@@ -92,7 +92,8 @@ static narc_box find_widths(dem *d) {
 static void add_images_across_borders(dem *d, uint32_t part, narc_box all) {
     const narc_box box = d->boxes[part];
     for (int i = 0; i < 9; i++) {
-        dem_image image = {.id = (uint64_t)(i + 1) << 32 | part, .part = part, .owner = UINT32_MAX, .group = 1};
+        dem_image image = {
+            .id = (uint64_t)(i + 1) << 32 | part, .part = part, .only = UINT32_MAX, .owner = (uint32_t)d->grain_count};
         image.right = (int16_t)(i % 3 - 1);
         image.up = (int16_t)(i / 3 - 1);
         image.shift = dem_find_shift(d, &image, d->last_offset);
@@ -122,7 +123,8 @@ static void add_images_of_plate(dem *d, uint32_t part) {
                      (size_t)(b - d->bodies), plate->name, dem_explain_depth(d));
         if (height - b->reach > d->settings.skin * 1.001)
             continue;
-        dem_image image = {.id = (uint64_t)(k + 10) << 32 | part, .part = part, .owner = k, .group = 1};
+        dem_image image = {
+            .id = (uint64_t)(k + 10) << 32 | part, .part = part, .only = k, .owner = (uint32_t)d->grain_count};
         image.shift = (vec){(double)(float)(-n.y * along), (double)(float)(n.x * along)};
         add_image(d, image);
     }
@@ -146,7 +148,7 @@ void dem_find_images(dem *d) {
             add_images_across_borders(d, k, all);
     }
     find_boxes(d);
-    const narc_pair_filter filter = {.group = NARC_COLUMN(d->images, group)};
+    const narc_pair_filter filter = {.owner = NARC_COLUMN(d->images, owner)};
     size_t count = 8 * d->image_count;
     for (size_t room = 0; room < count;) {
         room = count;
@@ -161,7 +163,7 @@ void dem_find_images(dem *d) {
         const dem_image *a = &d->images[d->near_a[i]], *b = &d->images[d->near_b[i]];
         d->near_a[d->near_count] = d->near_a[i];
         d->near_b[d->near_count] = d->near_b[i];
-        d->near_count += a->id < d->part_count && (b->owner == UINT32_MAX || b->owner == a->part);
+        d->near_count += a->id < d->part_count && (b->only == UINT32_MAX || b->only == a->part);
     }
 }
 

@@ -19,7 +19,7 @@ static void put_in_order(uint32_t *one, uint32_t *other) {
 /* Two static bodies do not meet, nor do two sensors. */
 static bool lets_pair(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
     const narc_body_filter one = narc_read_filter(filter, a), other = narc_read_filter(filter, b);
-    return !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) && (one.group == 0 || one.group != other.group) &&
+    return !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) && (one.owner == UINT32_MAX || one.owner != other.owner) &&
            (one.category & other.mask) != 0 && (other.category & one.mask) != 0;
 }
 

@@ -76,7 +76,7 @@ static inline narc_body_filter narc_read_filter(const narc_pair_filter *filter, 
     const narc_word_column category = filter->category, mask = filter->mask;
     return (narc_body_filter){.category = category.base ? narc_word_at(category, body) : UINT64_MAX,
                               .mask = mask.base ? narc_word_at(mask, body) : UINT64_MAX,
-                              .group = filter->group.base ? narc_index_at(filter->group, body) : 0,
+                              .owner = filter->owner.base ? narc_index_at(filter->owner, body) : UINT32_MAX,
                               .kind = filter->kind.base ? narc_byte_at(filter->kind, body) & NARC_KINDS : 0};
 }
 

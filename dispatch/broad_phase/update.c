@@ -54,7 +54,7 @@ static narc_pair_filter filter_in_use(const update *u) {
 
 static bool has_sets(const update *u) {
     const narc_pair_filter filter = filter_in_use(u);
-    return filter.category.base || filter.mask.base || filter.group.base;
+    return filter.category.base || filter.mask.base || filter.owner.base;
 }
 
 static narc_body_filter filter_of(const update *u, size_t body) {
@@ -122,7 +122,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
         }
         if (all->use_sets) {
             const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
-            out |= now.category != then->category || now.mask != then->mask || now.group != then->group;
+            out |= now.category != then->category || now.mask != then->mask || now.owner != then->owner;
         }
         if (!moved && !out)
             continue;
@@ -190,7 +190,7 @@ static unsigned look_at_listed(const update *u) {
         const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
         const unsigned other = now.kind ^ broad->kinds[k];
         if (other & (NARC_STATIC | NARC_SENSOR) || now.category != then->category || now.mask != then->mask ||
-            now.group != then->group)
+            now.owner != then->owner)
             return WHOLE;
         found |= other & NARC_ASLEEP ? REST : 0;
     }

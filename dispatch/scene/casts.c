@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "broad_phase/steps.h"
 #include "casts.h"
 #include "column.h"
 #include "error.h"
@@ -38,10 +39,9 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
     const narc_motions *const both[2] = {motions ? motions : &none, other_motions ? other_motions : &none};
     narc_status status = check_number(options->target, "target", error);
     if (status == NARC_OK)
-        status = check_number(options->tolerance, "tolerance", error);
-    if (status == NARC_OK && options->tolerance < 0)
-        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->tolerance,
-                           "options.tolerance is %g, less than 0", (double)options->tolerance);
+        status = narc_check_length(options->tolerance, "options", "tolerance", error);
+    if (status == NARC_OK)
+        status = narc_check_length(options->parting, "options", "parting", error);
     if (status == NARC_OK)
         status = narc_check_reserved(options->reserved, 1, "options", error);
     if (status == NARC_OK)
@@ -52,6 +52,7 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
     out_job->batch.motions[1] = *both[1];
     out_job->batch.target = options->target;
     out_job->batch.tolerance = options->tolerance;
+    out_job->batch.parting = options->parting;
     out_job->batch.targets = options->targets;
     out_job->batch.nearest = false;
     out_job->batch.front_only = options->front_only != 0;

@@ -38,7 +38,7 @@ typedef struct narc_casts {
     union {
         struct {
             struct narc_cast_side side[2]; /* A, B */
-            float target[CAST_SLOTS];      /* the caller's */
+            float target[CAST_SLOTS];      /* the caller's; below that where it is let go, and above at the end of that */
             float time[CAST_SLOTS];        /* where it is now */
             float back[CAST_SLOTS];        /* where it was to go, had it not tried to go further; CAST_FREE: it has not;
                                          CAST_DIRECT: it went too far once, and tries no more */
@@ -60,6 +60,7 @@ typedef struct narc_casts {
     /* What does not move: where they are at their times, A at the origin, and what touches there. */
     float x_now[CAST_SLOTS], y_now[CAST_SLOTS], cosine_now[2][CAST_SLOTS], sine_now[2][CAST_SLOTS];
     double turned_x[2][CAST_SLOTS], turned_y[2][CAST_SLOTS];
+    float looked[CAST_SLOTS]; /* these times; only kept where bodies are let go */
     narc_contact contact[CAST_SLOTS];
     size_t count;
     bool front_only; /* the caller's */
@@ -70,8 +71,8 @@ _Static_assert(sizeof((narc_casts *)NULL)->single == offsetof(narc_casts, wide) 
 
 #if NARC_PIECES
 /* What becomes of one cast with a concave arc, or from where it meets a run's closure (piece_casts.c). Time and contact
- * are then the answer's. */
-int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot);
+ * are then the answer's. `wanted`: the caller's target, which counts again where one that is let go comes clear of it. */
+int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot, float wanted);
 #endif
 
 #endif

@@ -8,6 +8,7 @@
  * could have come down to the target, or goes back there if it may have. What contacts mean is in cast_lines.inl and
  * cast_turns.inl.
  */
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -44,6 +45,7 @@ struct cast_call {
     struct sources sources;
     enum pose_layout layout[2];
     bool own, pieces; /* do pairs bring their own bodies; are there pieces of chains? */
+    bool lets_go;     /* what is at its target at the start */
     size_t skipped;   /* pairs without an answer */
 };
 
@@ -82,6 +84,13 @@ static void write_row(const narc_cast_batch *given, const narc_casts *casts, siz
     memcpy(&row->separation, &c->separation, sizeof *c - offsetof(narc_contact, separation));
 }
 
+/* The caller's target of a cast. */
+static float find_target(const narc_cast_batch *given, const narc_casts *casts, size_t slot) {
+    const size_t pair = casts->pair[slot];
+    return narc_float_or(given->targets, given->nearest ? narc_index_at(given->batch->pairs->a, pair) : pair,
+                         given->target);
+}
+
 #if NARC_PIECES
 /* Is what touches a piece's front for certain? Else it may be a run's closure, or behind a piece: where it has been
  * from the start, or is to be so deep. */
@@ -99,28 +108,64 @@ static int cast_pieces(const struct cast_call *call, narc_casts *casts, size_t s
                                    *const b = &call->shapes->headers[casts->side[1].shape[slot]];
     if (outcome == CAST_GOES_ON ? narc_is_concave(a) || narc_is_concave(b)
                                 : outcome == NARC_CAST_HIT && !is_in_front(a, b, casts, slot))
-        return NARC_NAMED(piece)(call->shapes, casts, slot);
+        return NARC_NAMED(piece)(call->shapes, casts, slot, find_target(call->given, casts, slot));
     return outcome;
 }
 #endif
 
+/* Lets go what is at its target at the start. Its target is deeper by `parting` from then on, until it is seen clear of the
+ * caller's: nothing that does not turn comes back from there, as separations are convex in time. What comes so deep before
+ * hits at the start, which is looked at once more with a target that all have reached. */
+static int let_go(const narc_cast_batch *given, narc_casts *casts, size_t slot, int outcome) {
+    const float separation = casts->contact[slot].separation, enough = (float)casts->enough[slot],
+                wanted = find_target(given, casts, slot), target = casts->target[slot];
+    const bool is_gone = target < wanted;
+    if (outcome == NARC_CAST_HIT && (is_gone || (target <= wanted && !(casts->time[slot] > 0)))) {
+        const float deeper = separation - given->parting - enough;
+        casts->target[slot] = is_gone ? FLT_MAX : deeper < wanted ? deeper : nextafterf(wanted, -INFINITY);
+        casts->time[slot] = 0;
+    } else if (is_gone &&
+               (outcome == NARC_CAST_MISS || (outcome == CAST_GOES_ON && casts->time[slot] >= casts->looked[slot])) &&
+               separation > wanted + enough) {
+        if (!(casts->moved[slot] > 0))
+            return NARC_CAST_MISS;
+        casts->target[slot] = wanted;
+        casts->time[slot] = casts->looked[slot];
+    } else
+        return outcome;
+    casts->back[slot] = CAST_FREE;
+    casts->rounds[slot] = 0;
+    return CAST_GOES_ON;
+}
+
+/* What a step of a cast comes to by rules that are for it alone. */
+static int end_alone(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
+    for (float target = NAN; target != casts->target[slot];) {
+        target = casts->target[slot];
+#if NARC_PIECES
+        if (call->pieces)
+            outcome = cast_pieces(call, casts, slot, outcome);
+#endif
+        if (call->lets_go)
+            outcome = let_go(call->given, casts, slot, outcome);
+    }
+    if (outcome != CAST_GOES_ON || !call->given->nearest)
+        return outcome;
+    const bool is_gone = call->lets_go && casts->target[slot] < find_target(call->given, casts, slot);
+    return !is_gone && is_late(call->given, casts, slot) ? NARC_CAST_MISS : CAST_GOES_ON;
+}
+
 /* Of casts k ... in some lanes: ends those that are done. */
 NOINLINE void end_casts(struct cast_call *call, narc_casts *casts, size_t k, uint32_t lanes, int32_t *outcome) {
     const narc_cast_batch *const given = call->given;
-    const bool nearest = given->nearest;
     for (; lanes; lanes &= lanes - 1) {
         const size_t lane = (size_t)FIND_LOWEST(lanes), slot = k + lane;
-#if NARC_PIECES
-        if (call->pieces)
-            outcome[lane] = cast_pieces(call, casts, slot, outcome[lane]);
-#endif
+        outcome[lane] = end_alone(call, casts, slot, outcome[lane]);
         if (outcome[lane] == NARC_CAST_HIT || outcome[lane] == NARC_CAST_UNFINISHED) {
             write_row(given, casts, slot, outcome[lane]);
-        } else if (outcome[lane] == CAST_GOES_ON) {
-            outcome[lane] = nearest && is_late(given, casts, slot) ? NARC_CAST_MISS : CAST_GOES_ON;
-        } else {
+        } else if (outcome[lane] != CAST_GOES_ON) {
             call->skipped += outcome[lane] == CAST_BROKEN;
-            if (!nearest)
+            if (!given->nearest)
                 given->out[casts->pair[slot]] = (narc_impact){.pair = casts->pair[slot]};
         }
     }
@@ -131,7 +176,7 @@ INLINE size_t keep_casts(struct cast_call *call, narc_casts *casts, size_t k, vm
     const vi broken = vi_set(CAST_BROKEN);
     int32_t lane[V_WIDTH];
     const vm ended = vm_and_not(live, vi_lt(broken, outcome));
-    const uint32_t lanes = call->pieces || call->given->nearest ? vm_bits(live) : vm_bits(ended);
+    const uint32_t lanes = call->pieces || call->lets_go || call->given->nearest ? vm_bits(live) : vm_bits(ended);
     if (lanes) {
         vi_store(lane, outcome);
         end_casts(call, casts, k, lanes, lane);
@@ -469,6 +514,8 @@ NOINLINE void advance_casts(struct cast_call *call, narc_casts *casts) {
             if (any_turns)
                 select_steps(straight, &step, &turned);
         }
+        if (call->lets_go)
+            v_store(casts->looked + k, v_load(casts->time + k));
         v_store(casts->time + k, v_load(step.time));
         v_store(casts->back + k, v_load(step.back));
         v_store(casts->rounds + k, v_load(step.rounds));
@@ -553,6 +600,7 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
     call.layout[1] = few ? POSE_COLUMNS : find_pose_layout(batch->b);
     call.own = narc_have_own_bodies(batch->pairs);
     call.pieces = NARC_PIECES && batch->shapes->piece_count > 0;
+    call.lets_go = given->parting > 0;
     call.skipped = 0;
     narc_casts casts;
     casts.count = 0;

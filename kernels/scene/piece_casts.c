@@ -304,20 +304,42 @@ static double find_entering(const struct scene *scene, int arc, double target, p
     return least;
 }
 
-static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
+/* Does an arc that moves along a line come clear of a target by more than `room`, if it is not so at the start? */
+static bool comes_clear(const struct scene *scene, int arc, double target, double room, place motion) {
+    const place u = find_way(scene, arc);
+    const double most = scene->arc.radius - get_radius(scene, arc) - target - room, along = find_dot(u, motion),
+                 across = find_cross(u, motion), square = find_dot(motion, motion);
+    return most > sqrt(find_dot(u, u)) || (along < 0 && most > 0 && most * most * square > across * across);
+}
+
+/* When does it have a contact that is at a target, after the start? Of arcs that come clear of it before, by some room. */
+static double find_contact_time(const struct scene *scene, double target, double room, place motion, double meeting) {
+    double least = INFINITY;
+    for (int arc = 0; arc < scene->body.header->count; arc++) {
+        const double goal = scene->arc.radius - get_radius(scene, arc) - target;
+        if (comes_clear(scene, arc, target, room, motion))
+            least = find_least(least, find_leaving(scene, arc, goal, motion));
+        least = find_least(least, find_entering(scene, arc, target, motion, meeting));
+    }
+    return least;
+}
+
+static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side, double wanted) {
     const double sign = side == 0 ? 1 : -1, target = (double)casts->target[slot];
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
     const double meeting = find_meeting(&scene, motion);
-    double least = nearest.separation <= target ? 0 : INFINITY;
-    for (int arc = 0; arc < scene.body.header->count; arc++) {
-        const double goal = scene.arc.radius - get_radius(&scene, arc) - target;
-        least = find_least(least, find_leaving(&scene, arc, goal, motion));
-        least = find_least(least, find_entering(&scene, arc, target, motion, meeting));
-    }
+    double least = nearest.separation <= target ? 0 : find_contact_time(&scene, target, -INFINITY, motion, meeting);
     if (!(least <= 1))
         return NARC_CAST_MISS;
+    if (target < wanted) {
+        const double again = find_contact_time(&scene, wanted, casts->enough[slot], motion, meeting);
+        if (again < least && round_time(again) > 0) {
+            casts->target[slot] = (float)wanted;
+            least = again;
+        }
+    }
     casts->time[slot] = round_time(least);
     scene = place_scene(shapes, casts, slot, side, (double)casts->time[slot]);
     nearest = find_nearest(&scene, false);
@@ -379,9 +401,8 @@ static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t
 }
 
 static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, look_at_time *look, double speed,
-                           double size) {
-    const double target = (double)casts->target[slot], enough = casts->enough[slot],
-                 least = NARC_TURNING_TOLERANCE * size / speed;
+                           double size, float wanted) {
+    const double enough = casts->enough[slot], least = NARC_TURNING_TOLERANCE * size / speed;
     const double end =
         casts->target[slot] < 0 ? 1 : casts->end[slot]; /* circles say nothing of how deep it is in a hollow */
     double time = (double)casts->time[slot];
@@ -389,7 +410,12 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
     bool behind = false, told = false;
     for (int round = 0; round < MOST_CONTACTS; round++) {
         casts->time[slot] = round_time(time);
-        const struct outlook o = look(shapes, casts, slot, (double)casts->time[slot]);
+        struct outlook o = look(shapes, casts, slot, (double)casts->time[slot]);
+        if (casts->target[slot] < wanted && o.separation > (double)wanted + enough) { /* it was let go, and is clear */
+            casts->target[slot] = wanted;
+            o = look(shapes, casts, slot, (double)casts->time[slot]);
+        }
+        const double target = (double)casts->target[slot];
         const bool near = o.separation <= target + enough;
         told = o.reached && o.separation < INFINITY;
         if (near && o.reached && !behind) {
@@ -702,7 +728,7 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
 
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
-int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
+int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot, float wanted) {
     const bool of_a = is_concave(shapes, casts, slot, 0), of_b = is_concave(shapes, casts, slot, 1);
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]};
     const double speed = sqrt(find_dot(motion, motion)) + casts->moved[slot];
@@ -713,8 +739,8 @@ int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot)
     if (of_a && of_b)
         return NARC_CAST_MISS;
     if (!of_a && !of_b)
-        return advance_in_time(shapes, casts, slot, look_at_run, speed, size);
+        return advance_in_time(shapes, casts, slot, look_at_run, speed, size, wanted);
     if (casts->moved[slot] > 0)
-        return advance_in_time(shapes, casts, slot, look_at_concave, speed, size);
-    return cast_straight(shapes, casts, slot, of_a ? 0 : 1);
+        return advance_in_time(shapes, casts, slot, look_at_concave, speed, size, wanted);
+    return cast_straight(shapes, casts, slot, of_a ? 0 : 1, (double)wanted);
 }

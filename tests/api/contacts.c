@@ -95,7 +95,7 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
         const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind),
                                          .category = NARC_ARRAY(w->category),
                                          .mask = NARC_ARRAY(w->mask),
-                                         .group = NARC_ARRAY(w->group)};
+                                         .owner = NARC_ARRAY(w->owner)};
         narc_step step = make_step(w, &bodies, &filter);
         expect_ok(narc_update_contacts(all, w->store, &step, &r, &error), &error);
         check_pairs(w, &step, r);

@@ -95,7 +95,7 @@ static void check_pointers(void) {
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
            AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(targets, 24) &&
-               AT(front_only, 40) && AT(reserved, 48));
+               AT(front_only, 40) && AT(parting, 44) && AT(reserved, 48));
     LAYOUT(narc_chain_options, 56,
            AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(thickness, 24) &&
                AT(both_sides, 28) && AT(reserved, 32));
@@ -108,7 +108,7 @@ static void check_pointers(void) {
     LAYOUT(narc_pairs, 96,
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
-    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48) && AT(reserved, 64));
+    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(reserved, 64));
     LAYOUT(narc_contacts_settings, 64,
            AT(rows, 0) && AT(user_size, 8) && AT(row_offset, 16) && AT(allocator, 24) && AT(reserved, 32));
     LAYOUT(narc_step, 216,

@@ -27,7 +27,7 @@ typedef struct body {
     narc_body at;
     uint64_t id, category, mask;
     float near_x, near_y, reach;
-    uint32_t group;
+    uint32_t owner;
     uint8_t kind;
 } body;
 
@@ -92,7 +92,7 @@ static int tear_down(void **state) {
 }
 
 static double half_of_margin, skin;
-static bool kinds_alone; /* bodies have no categories, masks and groups, and kinds next to each other */
+static bool kinds_alone; /* bodies have no categories, masks and owners, and kinds next to each other */
 static bool in_singles;  /* positions are */
 
 static narc_bodies view(const body *bodies, size_t count) {
@@ -135,7 +135,7 @@ static bool meet(const wide_box *a, const wide_box *b) {
 }
 
 static bool may_pair(const body *a, const body *b) {
-    return !(a->kind & b->kind & (NARC_STATIC | NARC_SENSOR)) && (a->group != b->group || a->group == 0) &&
+    return !(a->kind & b->kind & (NARC_STATIC | NARC_SENSOR)) && (a->owner != b->owner || a->owner == UINT32_MAX) &&
            (a->category & b->mask) && (b->category & a->mask);
 }
 
@@ -194,7 +194,7 @@ static bool has_left(const reference *r, const body *bodies, size_t k) {
     const uint8_t lasting = NARC_STATIC | NARC_SENSOR;
     const body *now = &bodies[k], *then = &r->bodies[k];
     const wide_box box = reach_of(now);
-    return now->category != then->category || now->mask != then->mask || now->group != then->group ||
+    return now->category != then->category || now->mask != then->mask || now->owner != then->owner ||
            ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]);
 }
 
@@ -315,7 +315,7 @@ static void check_step(reference *r, const body *bodies, size_t count, bool with
     const narc_pair_filter alone = {.kind = NARC_ARRAY(kinds)}, all = {.kind = NARC_COLUMN(bodies, kind),
                                                                        .category = NARC_COLUMN(bodies, category),
                                                                        .mask = NARC_COLUMN(bodies, mask),
-                                                                       .group = NARC_COLUMN(bodies, group)};
+                                                                       .owner = NARC_COLUMN(bodies, owner)};
     const narc_bodies of_step = view(bodies, count);
     narc_step step = {.bodies = &of_step,
                       .margin = 2 * (float)half_of_margin,
@@ -369,7 +369,7 @@ static void put(body *b, double x, double y) {
 }
 
 static body body_at(double x, double y, uint32_t shape) {
-    body b = {.at = {.cosine = 1, .scale = 1, .shape = shape}};
+    body b = {.at = {.cosine = 1, .scale = 1, .shape = shape}, .owner = UINT32_MAX};
     put(&b, x, y);
     return b;
 }
@@ -386,7 +386,7 @@ static body random_body(struct test_random *random, size_t side, uint64_t id) {
     b.id = id * 0x9e3779b97f4a7c15u;
     b.category = choose_mask(random);
     b.mask = choose_mask(random);
-    b.group = kinds_alone || random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3);
+    b.owner = kinds_alone || random_below(random, 4) ? UINT32_MAX : (uint32_t)random_below(random, 3);
     b.kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8);
     return b;
 }
@@ -444,7 +444,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         b->category = choose_mask(random);
         break;
     case 2:
-        b->group = kinds_alone ? 0 : (uint32_t)random_below(random, 3);
+        b->owner = kinds_alone ? UINT32_MAX : (uint32_t)random_below(random, 3) - 1;
         break;
     case 3:
         if (skin > 0)

@@ -31,7 +31,7 @@ static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
     if (kind &&
         (kind[(ptrdiff_t)a * f->kind.stride] & kind[(ptrdiff_t)b * f->kind.stride] & (NARC_STATIC | NARC_SENSOR)) != 0)
         return false;
-    if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
+    if (word(f->owner, a, UINT32_MAX) != UINT32_MAX && word(f->owner, a, 0) == word(f->owner, b, 0))
         return false;
     return (long_word(f->category, a) & long_word(f->mask, b)) && (long_word(f->category, b) & long_word(f->mask, a));
 }
@@ -119,7 +119,7 @@ TEST(filters_pairs) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
         uint64_t category, mask;
-        uint32_t group;
+        uint32_t owner;
         uint8_t kind;
     };
     for (size_t trial = 0; trial < test_trials(30); trial++) {
@@ -129,16 +129,16 @@ TEST(filters_pairs) {
             boxes[k] = spread_box(&random, 10, 0.5, 2);
             bodies[k] =
                 (struct body){(uint64_t)random_below(&random, 8) << 31, (uint64_t)random_below(&random, 8) << 31,
-                              (uint32_t)random_below(&random, 4), (uint8_t)random_below(&random, 256)};
+                              (uint32_t)random_below(&random, 4) - 1, (uint8_t)random_below(&random, 256)};
         }
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
-        const narc_index_column group = NARC_COLUMN(bodies, group);
-        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .group = group},
+        const narc_index_column owner = NARC_COLUMN(bodies, owner);
+        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .owner = owner},
                                             {.kind = kind},
                                             {.category = category},
                                             {.mask = mask},
-                                            {.group = group},
+                                            {.owner = owner},
                                             {.kind = {0}}};
         for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
             check_pairs(broad, boxes, 200, &filters[f]);

@@ -18,14 +18,15 @@
 struct moving {
     struct scene scene;
     struct test_motion *motion;
-    float target, tolerance;
+    float target, tolerance, parting;
 };
 
 static narc_impact *cast_all(const struct moving *m, size_t *out_skipped) {
     const narc_bodies bodies = scene_bodies(&m->scene);
     const narc_pairs pairs = scene_pairs(&m->scene);
     const narc_motions motions = view_motions(m->motion);
-    const narc_cast_options options = {.target = m->target, .tolerance = m->tolerance, .out_skipped = out_skipped};
+    const narc_cast_options options = {
+        .target = m->target, .tolerance = m->tolerance, .out_skipped = out_skipped, .parting = m->parting};
     narc_impact *rows = guard_allocate(pairs.count * sizeof *rows);
     narc_error error;
     expect_ok(narc_cast_pairs(m->scene.store, &bodies, &motions, &pairs, NULL, &options, rows, pairs.count, &error),
@@ -312,6 +313,119 @@ TEST(test_hard_turning) { check_scenes("hard turning", make_hard, 3, 0, 8, 0.01)
 
 /* So deep that the arcs which touch on the way are not those that touch at the target, or that it is never reached. */
 TEST(test_deep_targets) { check_scenes("deep targets", make_deep, 0, 0.6, 60, 0); }
+
+/* ------------------------------------------------------------------------------------------------ let go */
+
+/* Bodies where they are placed, which part, slide, or come deeper, or any of it while they turn. */
+static struct moving let_move(struct test_random *random, struct scene scene, double turning) {
+    struct moving m = {.scene = scene, .motion = calloc(scene.body_count, sizeof *m.motion)};
+    assert_non_null(m.motion);
+    for (size_t k = 0; k < scene.pair_count; k++) {
+        const uint32_t of = scene.pairs[k].a, to = scene.pairs[k].b;
+        const struct reference_body a = scene_reference(&scene, of), b = scene_reference(&scene, to);
+        const struct reference_gap gap = reference_solve_gap(&a, &b);
+        const double size = fmin(reference_extent(&a), reference_extent(&b));
+        m.motion[to] = random_motion(random, size, turning);
+        if (random_below(random, 3) > 0) { /* along the normal, or across it */
+            const double way =
+                hypot((double)m.motion[to].x, (double)m.motion[to].y) * (random_below(random, 2) ? 1 : -1);
+            const bool across = random_below(random, 2);
+            m.motion[to].x = (float)(way * (across ? -gap.normal_y : gap.normal_x));
+            m.motion[to].y = (float)(way * (across ? gap.normal_x : gap.normal_y));
+        }
+    }
+    return m;
+}
+
+/* What became of those that were let go. */
+struct let_go {
+    size_t missed, deeper, again, lost; /* lost: they were clear, and hit at the start */
+};
+
+/* The largest separation up to a time at which it is `deep`. */
+static double find_most(struct way *w, double end, double deep) {
+    enum { SAMPLES = 400 };
+    double most = -INFINITY;
+    for (int k = 0; k <= SAMPLES; k++) {
+        const double now = separation_at(w, end * k / SAMPLES);
+        if (now <= deep)
+            break;
+        most = fmax(most, now);
+    }
+    return most;
+}
+
+static void check_let_go(const struct moving *m, size_t pair, const narc_impact *row, struct summary *summary,
+                         struct let_go *out) {
+    struct way w = find_way(m, pair);
+    const double target = (double)m->target, fraction = (double)row->fraction, start = separation_at(&w, 0);
+    const double bound = separation_bound(&w.a, &w.b), speed = hypot(w.motion_x, w.motion_y);
+    const double turning = fabs(w.angle_a) * reference_extent(&w.a) + fabs(w.angle_b) * reference_extent(&w.b);
+    const double tolerance = turns(&w) ? (double)m->tolerance : bound,
+                 rounding = bound + 0x1p-23 * (speed + 3 * turning);
+    if (start > target + tolerance + bound)
+        check_row(m, pair, row, summary);
+    if (start > target - bound)
+        return;
+    const double deep = start - (double)m->parting, deepest = deep - 2 * tolerance - 2 * rounding;
+    if (row->count == NARC_CAST_MISS) {
+        const double least = find_least(&w, 1, deepest);
+        if (least < deepest)
+            fail_cast(m, pair, row, "let go, and so deep", least - start, deepest - start);
+        out->missed++;
+    } else if (fraction == 0) {
+        const double least = find_least(&w, 1, deep + rounding);
+        if (least > deep + rounding)
+            fail_cast(m, pair, row, "it comes no deeper", least - start, deep + rounding - start);
+        assert_true(fabs((double)row->separation - start) <= bound);
+        out->deeper++;
+        out->lost += turns(&w) && find_most(&w, 1, deep) > target + 4 * tolerance + rounding;
+    } else if (row->count == NARC_CAST_HIT) {
+        const double now = separation_at(&w, fraction),
+                     least = find_least(&w, fraction, fmin(deepest, target - rounding));
+        if (!turns(&w) || now > target + tolerance + rounding || now < target - 1.5 * rounding || least < deepest)
+            fail_cast(m, pair, row, "not again", now - target, tolerance);
+        assert_true(find_most(&w, fraction, -INFINITY) > target);
+        out->again++;
+    }
+}
+
+static void check_letting_go(const char *name, double turning, struct let_go *out) {
+    static const float targets[] = {0, 0, 0.05f, 1};
+    struct test_random random = test_random_named(name);
+    struct summary summary = {.at_start = 0};
+    *out = (struct let_go){0};
+    for (size_t k = 0; k < test_trials(turning > 0 ? 20 : 40); k++) {
+        struct scene scene = k % 3 ? make_placed(&random, (narc_precision)(k % 2)) : make_deep(&random, NARC_FLOAT64);
+        struct moving m = let_move(&random, scene, turning);
+        m.target = targets[random_below(&random, 4)];
+        m.tolerance = 0.001f;
+        m.parting = (float)random_log_between(&random, 1e-3, 0.1);
+        narc_impact *const rows = cast_all(&m, NULL);
+        for (size_t pair = 0; pair < m.scene.pair_count; pair++)
+            check_let_go(&m, pair, &rows[pair], &summary, out);
+        guard_release(rows);
+        destroy_moving(&m);
+    }
+    print_message("%s: %zu let go, %zu came deeper, %zu hit again, %zu unseen\n", name, out->missed, out->deeper,
+                  out->again, out->lost);
+    assert_true(out->missed > 0 && out->deeper > 0);
+}
+
+/* What touches or overlaps parts and slides, and hits only if it comes deeper, and then at once. */
+TEST(test_letting_go) {
+    struct let_go found;
+    check_letting_go("letting go", 0, &found);
+    assert_int_equal(found.again, 0);
+}
+
+/* With turning it may come clear, and hit again. */
+TEST(test_letting_go_turning) {
+    struct let_go found;
+    check_letting_go("letting go, turning", 3, &found);
+    assert_true(test_trials(20) < 10 || found.again > 0);
+    assert_true(found.lost * 20 <= found.deeper + found.again);
+}
 
 /* The scene by a quarter turn: the same numbers in other places, to the last bit. */
 TEST(test_quarter_turn) {

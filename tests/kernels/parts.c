@@ -252,11 +252,10 @@ TEST(parts_of_one_body_form_no_pair) {
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         struct compounds c = make_compounds(&random, BODIES, PARTS, false);
         narc_broad_phase *const broad = create_broad_phase(NULL);
-        uint32_t group[PARTS], a[9000], b[9000];
+        uint32_t a[9000], b[9000];
         for (size_t k = 0; k < PARTS; k++) {
             struct body *const part = &c.parts.bodies[k];
             part->x_single *= 0.125f, part->y_single *= 0.125f, part->x *= 0.125, part->y *= 0.125;
-            group[k] = c.owner[k] + 1;
         }
         for (size_t k = 0; k < BODIES; k++) {
             struct body *const at = &c.owners.bodies[k];
@@ -266,16 +265,16 @@ TEST(parts_of_one_body_form_no_pair) {
         narc_body *const rows = place_all(&c);
         narc_bodies bodies;
         narc_view_bodies(rows, PARTS, &bodies);
-        const narc_pair_filter filter = {.group = NARC_ARRAY(group)};
+        const narc_pair_filter filter = {.owner = {c.owner, sizeof *c.owner}};
         narc_box boxes[PARTS];
         size_t count, expected = 0, own = 0;
         assert_int_equal(narc_compute_boxes(c.parts.store, &bodies, NULL, boxes, NULL), NARC_OK);
         assert_int_equal(narc_find_pairs(broad, boxes, PARTS, &filter, NULL, a, b, 0, 9000, &count, NULL), NARC_OK);
         for (size_t i = 0; i < PARTS; i++)
             for (size_t j = i + 1; j < PARTS; j++)
-                *(group[i] == group[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
+                *(c.owner[i] == c.owner[j] ? &own : &expected) += overlap(&boxes[i], &boxes[j]);
         for (size_t k = 0; k < count; k++)
-            assert_true(group[a[k]] != group[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
+            assert_true(c.owner[a[k]] != c.owner[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
         assert_int_equal(count, expected);
         assert_true(own > 0 && expected > 0); /* or nothing was tested */
         narc_destroy_broad_phase(broad);

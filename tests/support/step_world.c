@@ -37,7 +37,7 @@ static void make_body(struct step_world *w, size_t k) {
     w->kind[k] = random_below(random, 6) ? 0 : (uint8_t)random_below(random, 8);
     w->category[k] = 1u << random_below(random, 3);
     w->mask[k] = random_below(random, 4) ? UINT64_MAX : 3;
-    w->group[k] = random_below(random, 9) ? 0 : 1 + (uint32_t)random_below(random, 3);
+    w->owner[k] = random_below(random, 9) ? UINT32_MAX : (uint32_t)random_below(random, 3);
     w->run[k] = NARC_NO_RUN;
     w->motion_x[k] = w->motion_y[k] = w->ahead[k] = 0;
 }
@@ -49,7 +49,7 @@ static void copy_body(struct step_world *w, size_t to, size_t from) {
     w->kind[to] = w->kind[from];
     w->category[to] = w->category[from];
     w->mask[to] = w->mask[from];
-    w->group[to] = w->group[from];
+    w->owner[to] = w->owner[from];
     w->run[to] = w->run[from];
     w->motion_x[to] = w->motion_x[from];
     w->motion_y[to] = w->motion_y[from];
@@ -67,7 +67,7 @@ static void lay_world(struct step_world *w) {
         make_body(w, w->count + k);
         w->body[w->count + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
         w->kind[w->count + k] = NARC_STATIC;
-        w->group[w->count + k] = 0;
+        w->owner[w->count + k] = UINT32_MAX;
         w->run[w->count + k] = entries[k].run;
     }
 }

@@ -16,7 +16,7 @@ struct step_world {
     narc_body body[ROOM];
     uint64_t id[ROOM], category[ROOM], mask[ROOM];
     uint8_t kind[ROOM];
-    uint32_t group[ROOM], run[ROOM], moved[ROOM];
+    uint32_t owner[ROOM], run[ROOM], moved[ROOM];
     float motion_x[ROOM], motion_y[ROOM], ahead[ROOM];
     size_t count, ground, moved_count;
     uint64_t last_id;
