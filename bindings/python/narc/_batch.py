@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, MANIFOLD
+from ._tables import BODY, BOX, CONTACT, MANIFOLD, REFINED_CONTACT
 
 Rows = NDArray[np.void]
 Bodies = Any  # rows of BODY, other records with fields of these names, or a mapping of columns
@@ -151,6 +151,38 @@ def separations(shapes: Shapes, bodies: Bodies, pairs: Any, *, margin: float = n
     out = np.full(count_of(pairs), np.inf, np.float32)
     _narc.find_separations(shapes, bodies, told, {"margin": margin, "workers": threads, **options}, out)
     return out
+
+
+def _two(call: Any, kind: Any, shapes: Shapes, a: Any, b: Any, margin: float, options: dict[str, Any]) -> Any:
+    out = np.zeros(1, kind)
+    call(shapes, a, b, {"margin": margin, **options} if margin or options else None, out)
+    return out[0]
+
+
+def contact(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+    """The contact of two bodies, rows of narc.BODY: a row of narc.CONTACT, `count` 0 where there is none."""
+    return _two(_narc.find_contact, CONTACT, shapes, a, b, margin, options)
+
+
+def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+    """The manifold of two bodies, rows of narc.BODY: a row of narc.MANIFOLD, `count` 0 where there is none."""
+    return _two(_narc.find_manifold, MANIFOLD, shapes, a, b, margin, options)
+
+
+def refine(shapes: Shapes, bodies: Bodies, pairs: Any, rows: Rows, *, others: Bodies = None) -> Rows:
+    """Contacts of these pairs again in double precision: separation, normal, point."""
+    _, told = _prepare(shapes, bodies, pairs, others, 0.0, 1)
+    out = np.zeros(len(rows), REFINED_CONTACT)
+    _narc.refine_contacts(shapes, bodies, told, rows, out)
+    return out
+
+
+def poses(angle: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Cosines and sines of angles, (n,) each, the same to the last bit on every machine."""
+    angles = np.ascontiguousarray(angle, np.float32)
+    cosine, sine = np.empty_like(angles), np.empty_like(angles)
+    _narc.compute_poses(angles, cosine, sine)
+    return cosine, sine
 
 
 def place_parts(owners: Bodies, parts: Bodies, owner: ArrayLike, *, threads: int = 1) -> Rows:

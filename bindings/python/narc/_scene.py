@@ -157,6 +157,10 @@ class Contacts(_narc.Handle):
         arrays: list[Any] = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
         return Step(arrays[0].reshape(-1, 2), *arrays[1:], *step[7:])
 
+    def slots_of(self, body: int) -> NDArray[np.uint32]:
+        """The slots of all pairs of a body, by its number in the last step."""
+        return np.frombuffer(_narc.find_body_slots(self, body), np.uint32)
+
     def forget(self, ids: ArrayLike | None = None) -> None:
         """Takes bodies out by their ids, or forgets all pairs."""
         if ids is None:

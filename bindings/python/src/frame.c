@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "format.h"
 #include "threads.h"
 
 void frame_begin(frame *f) {
@@ -89,143 +90,6 @@ static const narc_layout *find_known(PyObject *array) {
     return layout;
 }
 
-/* ------------------------------------------------------------------------------------------------ formats */
-
-/* An item of a format, as the buffer protocol writes it (PEP 3118): one number or several of a kind. */
-typedef struct item {
-    char code, order;
-    size_t offset, size, count; /* the size of one number */
-    const char *name;
-    size_t name_length;
-} item;
-
-static size_t size_of(char code, char order) {
-    const bool native = order == '@' || order == '^';
-    switch (code) {
-    case 'x':
-    case 'c':
-    case 'b':
-    case 'B':
-    case '?':
-    case 's':
-    case 'p':
-        return 1;
-    case 'h':
-    case 'H':
-    case 'e':
-        return 2;
-    case 'i':
-    case 'I':
-    case 'f':
-    case 'w':
-        return 4;
-    case 'l':
-    case 'L':
-        return native ? sizeof(long) : 4;
-    case 'q':
-    case 'Q':
-    case 'd':
-        return 8;
-    case 'n':
-    case 'N':
-    case 'O':
-    case 'P':
-        return sizeof(void *);
-    case 'g':
-        return sizeof(long double);
-    default:
-        return 0;
-    }
-}
-
-/* Reads the next item of a format and goes on behind it; false at the end or where it is not understood. */
-static bool next_item(const char **format, char *order, size_t *end, item *out) {
-    const char *p = *format;
-    size_t count = 1, factor = 1;
-    for (; *p && strchr("@=<>!^(0123456789,) \n", *p); p++) {
-        if (strchr("@=<>!^", *p))
-            *order = *p;
-        else if (*p >= '0' && *p <= '9') {
-            size_t number = 0;
-            for (; *p >= '0' && *p <= '9'; p++)
-                number = number * 10 + (size_t)(*p - '0');
-            count *= number;
-            p--;
-        }
-    }
-    if (*p == 'Z') { /* complex: two numbers */
-        factor = 2;
-        p++;
-    }
-    *out = (item){.code = *p, .order = *order, .count = count};
-    if (*p == 'T' && p[1] == '{') {
-        item part;
-        size_t inner = 0;
-        for (p += 2; *p && *p != '}';)
-            if (!next_item(&p, order, &inner, &part))
-                return false;
-        out->size = inner;
-    } else {
-        out->size = *p ? size_of(*p, *order) : 0;
-        if (*order == '@' && out->size)
-            *end = (*end + out->size - 1) / out->size * out->size;
-    }
-    if (!*p || *p == '}' || (out->size == 0 && out->code != 'T'))
-        return false;
-    out->size *= factor;
-    out->code = factor == 2 ? 'Z' : out->code;
-    p++;
-    if (*p == ':') {
-        out->name = ++p;
-        while (*p && *p != ':')
-            p++;
-        out->name_length = (size_t)(p - out->name);
-        p += *p == ':';
-    }
-    out->offset = *end;
-    *end += out->size * count;
-    *format = p;
-    return true;
-}
-
-/* The only item of a format, or the field of records that is called like this: member "motion_x" is also number 0 of a field
- * "motion", and "y" number 1 of "xy". */
-static bool find_item(const char *format, const char *member, item *out) {
-    char order = '@';
-    size_t end = 0;
-    if (!format)
-        format = "B";
-    if (!member)
-        return next_item(&format, &order, &end, out) && !*format && out->code != 'T';
-    if (format[0] != 'T' || format[1] != '{')
-        return false;
-    const size_t length = strlen(member), stem = length > 2 && member[length - 2] == '_' ? length - 2 : 0;
-    const size_t which = member[length - 1] == 'x' ? 0 : member[length - 1] == 'y' ? 1 : 2;
-    for (format += 2; next_item(&format, &order, &end, out);) {
-        if (!out->name)
-            continue;
-        if (out->name_length == length && memcmp(out->name, member, length) == 0 && out->count == 1)
-            return true;
-        const bool pair = which < 2 && out->count == 2 &&
-                          (stem ? out->name_length == stem && memcmp(out->name, member, stem) == 0
-                                : length == 1 && out->name_length == 2 && memcmp(out->name, "xy", 2) == 0);
-        if (pair) {
-            out->offset += which * out->size;
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_big_endian(void) {
-    const uint16_t one = 1;
-    return *(const uint8_t *)&one == 0;
-}
-
-static bool is_foreign(const item *from) {
-    return from->size > 1 && (from->order == '<' ? is_big_endian() : strchr(">!", from->order) && !is_big_endian());
-}
-
 /* ------------------------------------------------------------------------------------------------ columns */
 
 /* Numbers in memory: from a buffer, or a single one with a stride of 0. */
@@ -235,45 +99,29 @@ typedef struct numbers {
     item item;
 } numbers;
 
-static const char *describe(const item *from) {
-    switch (from->code) {
-    case 'f':
-        return "float32";
-    case 'd':
-        return "float64";
-    case 'e':
-        return "float16";
-    case '?':
-        return "bool";
-    case 'Z':
-        return "complex";
-    case 'O':
-        return "objects";
-    case 'T':
-        return "records";
-    case 'b':
-    case 'h':
-    case 'i':
-    case 'l':
-    case 'q':
-    case 'n':
-        return from->size == 8 ? "int64" : from->size == 4 ? "int32" : from->size == 2 ? "int16" : "int8";
-    case 'B':
-    case 'H':
-    case 'I':
-    case 'L':
-    case 'Q':
-    case 'N':
-        return from->size == 8 ? "uint64" : from->size == 4 ? "uint32" : from->size == 2 ? "uint16" : "uint8";
+static bool is_member(const char *type, const char *of) { return strcmp(type, of) == 0; }
+
+/* A whole number of any size, which may not be aligned; below 0 as its complement. */
+static uint64_t read_whole(const char *at, size_t size, bool with_sign) {
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    uint64_t eight;
+    switch (size) {
+    case 1:
+        memcpy(&one, at, sizeof one);
+        return with_sign ? (uint64_t)(int64_t)(int8_t)one : one;
+    case 2:
+        memcpy(&two, at, sizeof two);
+        return with_sign ? (uint64_t)(int64_t)(int16_t)two : two;
+    case 4:
+        memcpy(&four, at, sizeof four);
+        return with_sign ? (uint64_t)(int64_t)(int32_t)four : four;
     default:
-        return "something else";
+        memcpy(&eight, at, sizeof eight);
+        return eight;
     }
 }
-
-static bool is_signed(char code) { return strchr("bhilqn", code) != NULL; }
-static bool is_integer(char code) { return strchr("bhilqnBHILQN", code) != NULL; }
-
-static bool is_member(const char *type, const char *of) { return strcmp(type, of) == 0; }
 
 /* Whole numbers of another size, converted to a column's own. */
 static const void *convert(frame *f, const numbers *from, size_t size, const char *path) {
@@ -282,36 +130,12 @@ static const void *convert(frame *f, const numbers *from, size_t size, const cha
     if (!made)
         return PyErr_NoMemory();
     f->memory[f->memory_count++] = made;
-    const bool with_sign = is_signed(from->item.code);
+    const bool with_sign = is_signed(&from->item);
     for (Py_ssize_t k = 0; k < count; k++) {
-        const char *const at = from->base + k * from->stride;
-        uint64_t value = 0;
-        int64_t number = 0;
-        switch (from->item.size) {
-        case 1:
-            value = *(const uint8_t *)at, number = *(const int8_t *)at;
-            break;
-        case 2: {
-            uint16_t v;
-            memcpy(&v, at, 2);
-            value = v, number = (int16_t)v;
-            break;
-        }
-        case 4: {
-            uint32_t v;
-            memcpy(&v, at, 4);
-            value = v, number = (int32_t)v;
-            break;
-        }
-        default:
-            memcpy(&value, at, 8);
-            number = (int64_t)value;
-        }
-        if (with_sign ? number < 0 || (size == 4 && number > UINT32_MAX) : size == 4 && value > UINT32_MAX) {
-            if (with_sign)
-                PyErr_Format(PyExc_IndexError, "%s: item %zd is %lld", path, k, (long long)number);
-            else
-                PyErr_Format(PyExc_IndexError, "%s: item %zd is %llu", path, k, (unsigned long long)value);
+        const uint64_t value = read_whole(from->base + k * from->stride, from->item.size, with_sign);
+        if ((with_sign && value >> 63) || (size == 4 && value > UINT32_MAX)) {
+            with_sign ? PyErr_Format(PyExc_IndexError, "%s: item %zd is %lld", path, k, (long long)value)
+                      : PyErr_Format(PyExc_IndexError, "%s: item %zd is %llu", path, k, (unsigned long long)value);
             return NULL;
         }
         const uint32_t small = (uint32_t)value;
@@ -340,11 +164,11 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
     } else { /* whole numbers are converted */
         size = is_member(type, "narc_word_column") ? 8 : 4;
         wanted = size == 8 ? "uint64" : "uint32";
-        whole = is_integer(i->code);
-        fits = whole && i->size == size && !is_signed(i->code);
+        whole = is_integer(i);
+        fits = whole && i->size == size && !is_signed(i);
     }
     if (is_foreign(i) || !(fits || whole)) {
-        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %s%s", path, wanted, describe(i),
+        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %s%s", path, wanted, describe_item(i),
                      is_foreign(i) ? " in another order of bytes" : "");
         return false;
     }
@@ -363,7 +187,7 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
     Py_ssize_t stride = from->stride;
     if (!fits || ((uintptr_t)base | (size_t)stride) % size != 0) {
         if (!whole) {
-            PyErr_Format(PyExc_ValueError, "%s: items of %s are not aligned", path, describe(i));
+            PyErr_Format(PyExc_ValueError, "%s: items of %s are not aligned", path, describe_item(i));
             return false;
         }
         base = convert(f, from, size, path);

@@ -26,6 +26,7 @@ typedef struct frame {
     size_t count, skipped; /* what the library tells */
     narc_pairs pairs;
     const narc_step_result *step;
+    const uint32_t *slots;
     narc_error error;
     size_t largest;                  /* the longest column: is it worth to let other threads of Python run? */
     const char *argument;            /* which one is read, for messages */

@@ -119,7 +119,7 @@ static PyType_Spec handle_spec = {"narc._narc.Handle", sizeof(handle), 0, Py_TPF
 
 /* What a call returns: how many rows there are, if more than there was room for, too; pairs that the library owns, or the last
  * step, as copies; bytes. */
-typedef enum result { COUNT, PAIRS, STEP } result;
+typedef enum result { COUNT, PAIRS, SLOTS, STEP } result;
 
 typedef struct call {
     const char *name;
@@ -146,6 +146,24 @@ static narc_status load_shapes(void *object, const void *bytes, size_t size, nar
         self->pointer = loaded;
     }
     return status;
+}
+
+/* The number of a shape or body: too large a one is none. */
+static uint32_t number(size_t n) { return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; }
+
+static narc_status find_depths(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
+                               double *out) {
+    bool are = true;
+    for (size_t k = 0; k < point_count; k++)
+        are = are && narc_compute_distance(arcs, count, &points[k], &out[k]);
+    return MUST(are);
+}
+
+static narc_status find_inside(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
+                               bool *out) {
+    for (size_t k = 0; k < point_count; k++)
+        out[k] = narc_contains_point(arcs, count, &points[k]);
+    return MUST(count > 0 && count <= NARC_MAX_ARCS);
 }
 
 static narc_status update_contacts(void **p, const narc_step_result **out_step, narc_error *error) {
@@ -372,6 +390,8 @@ static PyObject *make_result(const frame *f, const signature *s, narc_status sta
     switch (s->call->result) {
     case PAIRS:
         return copy_pairs(&f->pairs, NULL, f->pairs.count);
+    case SLOTS:
+        return copy_rows(f->slots, sizeof *f->slots, NULL, f->count);
     case STEP:
         return copy_step(f->step);
     default:
@@ -467,6 +487,27 @@ static PyObject *set_isa(PyObject *self, PyObject *name) {
     Py_RETURN_NONE;
 }
 
+/* {"isa": names, "kernel": names, "cpu": names}; of instruction sets those that can be had */
+static PyObject *list_names(PyObject *self, PyObject *unused) {
+    static const struct {
+        const char *key, *(*name)(size_t index);
+    } lists[] = {{"isa", narc_isa_name}, {"kernel", narc_kernel_name}, {"cpu", narc_cpu_feature}};
+    PyObject *names = PyDict_New();
+    (void)self, (void)unused;
+    for (int list = 0; list < 3; list++) {
+        PyObject *const made = PyList_New(0);
+        const char *name;
+        for (size_t k = 0; made && (name = lists[list].name(k)); k++) {
+            PyObject *const text = list > 0 || narc_isa_supported(name) ? PyUnicode_FromString(name) : NULL;
+            if (text && PyList_Append(made, text))
+                PyErr_Clear();
+            Py_XDECREF(text);
+        }
+        put(&names, lists[list].key, made);
+    }
+    return names;
+}
+
 /* know(structure, dtype) */
 static PyObject *know(PyObject *self, PyObject *given) {
     const char *name;
@@ -479,10 +520,13 @@ static PyObject *know(PyObject *self, PyObject *given) {
     Py_RETURN_NONE;
 }
 
-static PyMethodDef functions[] = {
-    {"layouts", list_layouts, METH_NOARGS, NULL}, {"constants", list_constants, METH_NOARGS, NULL},
-    {"get_isa", get_isa, METH_NOARGS, NULL},      {"set_isa", set_isa, METH_O, NULL},
-    {"know", know, METH_VARARGS, NULL},           {NULL, NULL, 0, NULL}};
+static PyMethodDef functions[] = {{"layouts", list_layouts, METH_NOARGS, NULL},
+                                  {"constants", list_constants, METH_NOARGS, NULL},
+                                  {"get_isa", get_isa, METH_NOARGS, NULL},
+                                  {"set_isa", set_isa, METH_O, NULL},
+                                  {"know", know, METH_VARARGS, NULL},
+                                  {"names", list_names, METH_NOARGS, NULL},
+                                  {NULL, NULL, 0, NULL}};
 
 static bool add(PyObject *module, const char *name, PyObject *value) {
     return value && PyModule_AddObjectRef(module, name, value) == 0;

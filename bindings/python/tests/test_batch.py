@@ -123,6 +123,25 @@ def test_one_value_is_that_of_all(random):
     assert plain[0].tobytes() == same[0].tobytes() and (plain[1] == same[1]).all()
 
 
+def test_two_bodies_are_a_batch_of_one(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies, margin=1.0)[:200]
+    dense = narc.contacts(scene.shapes, scene.bodies, pairs, dense=True, margin=0.5)
+    points = narc.manifolds(scene.shapes, scene.bodies, pairs, dense=True)
+    for k, (a, b) in enumerate(pairs):
+        row = narc.contact(scene.shapes, scene.bodies[a], scene.bodies[b], margin=0.5)
+        row["pair"] = k
+        assert row.tobytes() == dense[k].tobytes()
+        assert narc.manifold(scene.shapes, scene.bodies[a], scene.bodies[b])["count"] == points["count"][k]
+
+
+def test_rows_again_in_double_precision(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies)
+    rows = narc.contacts(scene.shapes, scene.bodies, pairs)
+    fine = narc.refine(scene.shapes, scene.bodies, pairs, rows)
+    assert fine["separation"].dtype == np.float64 and np.allclose(fine["separation"], rows["separation"], atol=1e-5)
+    assert np.allclose(np.linalg.norm(fine["normal"], axis=1), 1, atol=1e-12)
+
+
 def test_pairs_of_two_sets(scene):
     one, other = scene.bodies[:100].copy(), scene.bodies[100:].copy()
     rows, pairs = narc.contacts(scene.shapes, one, others=other, margin=0.2)

@@ -73,6 +73,35 @@ def test_arcs_move_and_parts_have_a_mass():
     assert np.allclose(narc.place_parts(owners, parts, np.zeros(2, np.uint32))["xy"], [[5, 6], [3, 5]], atol=1e-6)
 
 
+def test_lists_of_arcs_are_asked():
+    shapes = narc.Shapes()
+    arcs = shapes.arcs(shapes.box(4, 2))
+    narc.validate_arcs(arcs)
+    with pytest.raises(narc.Error):
+        narc.validate_arcs(arcs[:3])
+    assert narc.perimeter(arcs) == pytest.approx(12) and narc.inscribed_circle(arcs)["radius"] == pytest.approx(1)
+    assert narc.bounding_circle(arcs)["radius"] == pytest.approx(5**0.5)
+    assert np.allclose(narc.bounding_box(arcs, np.pi / 2)["max"], [1, 2])
+    points = np.array([[0, 0], [3, 0], [2, 1], [-1.5, 0.5]])
+    assert np.allclose(narc.depths(arcs, points), [-1, 1, 0, -0.5]) and list(narc.contains(arcs, points)) == [1, 0, 1, 1]
+    point, arc = narc.support(arcs, (1, 1))
+    assert np.allclose(point, [2, 1]) and np.allclose(arcs[arc]["center"], point)
+    assert np.allclose(narc.mirror(narc.move(arcs, (3, 0)))["center"].mean(0), [-3, 0])
+    assert np.allclose(narc.mass(narc.center(narc.move(arcs, (3, 1))))["centroid"], 0)
+    ring = np.array([[0, 0], [4, 0], [4, 3], [2, 3.001], [0, 3]])
+    assert len(narc.weld(ring, 0.01)) == 4
+    junctions = narc.adjust([[0, 0], [4, 0], [4, 3], [0, 3]])
+    least, most, chosen = narc.radius_range(junctions)
+    assert least < chosen < most and shapes.arcs(shapes.smooth(junctions, chosen))[0]["radius"] == pytest.approx(chosen)
+    assert shapes.mass(shapes.four_arc(5, 5, 8, 0.25, 0.25))["area"] > 1
+    assert shapes.add(arcs, shape=40) == 40 and shapes.uses(40) == 1
+    with pytest.raises(narc.Error) as caught:
+        shapes.add(arcs, shape=40)
+    assert caught.value.status == "NARC_ERROR_IN_USE"
+    cosine, sine = narc.poses([0.0, np.pi / 2])
+    assert np.allclose(cosine, [1, 0], atol=1e-7) and np.allclose(sine, [0, 1])
+
+
 def test_shapes_are_pickled():
     shapes = narc.Shapes()
     shapes.circle(1), shapes.ellipse(3, 1)
@@ -172,6 +201,8 @@ def test_steps_have_the_rows_of_batches(scene):
         assert len(set(r.slots)) == len(r.slots) and (r.rows["pair"] == r.slots).all()
         if step == 0:
             assert len(r.began) == len(r.slots) and len(r.ended) == 0
+    body = int(r.pairs[0, 0])
+    assert set(r.slots[(r.pairs == body).any(1)]) <= set(contacts.slots_of(body))
     data = contacts.save()
     again = narc.Contacts()
     assert again.load(scene.shapes, data).rows.tobytes() == r.rows.tobytes()
