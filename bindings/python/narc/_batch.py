@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, MANIFOLD, REFINED_CONTACT
+from ._tables import BODY, BOX, CONTACT, MANIFOLD, REFINED_CONTACT, split
 
 Rows = NDArray[np.void]
 Bodies = Any  # rows of BODY, other records with fields of these names, or a mapping of columns
@@ -30,6 +30,11 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
     out["cosine"], out["sine"] = np.cos(angle), np.sin(angle)
     out["scale"], out["shape"] = scale, shape
     return out
+
+
+def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
+    little = words.astype("<u8", copy=False)
+    return np.unpackbits(little.view(np.uint8), count=count, bitorder="little").view(np.bool_)
 
 
 def count_of(of: Bodies) -> int:
@@ -52,7 +57,7 @@ def boxes(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, threads: int =
 
 def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[np.uint32]:
     """All pairs a < b of boxes that overlap, (m, 2), in order. `boxes`: rows of narc.BOX, or of four float32. `filters` are
-    the columns of narc_pair_filter: kind, category, mask, group."""
+    the columns of narc_pair_filter: kind, category, mask, owner."""
     broad = _narc.Handle("BroadPhase")
     room = 4 * len(boxes) + 16  # type: ignore[arg-type]
     while True:
@@ -64,13 +69,16 @@ def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[
 
 
 def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies = None, threads: int = 1,
-          **filters: Any) -> NDArray[np.uint32]:
-    """Pairs of bodies whose boxes are closer than `margin`, (m, 2), in order: of `bodies` with each other, or with `others`."""
-    around = boxes(shapes, bodies, margin=margin / 2, threads=threads)
+          **options: Any) -> NDArray[np.uint32]:
+    """Pairs of bodies whose boxes are closer than `margin`, (m, 2), in order: of `bodies` with each other, or with `others`.
+    `options`: the columns of narc_pair_filter, as in box_pairs(), for pairs with each other; `origin`, a place (x, y) near
+    bodies that are far from (0, 0)."""
+    filters, options = split(options, "narc_pair_filter")
+    around = boxes(shapes, bodies, margin=margin / 2, threads=threads, **options)
     if others is None:
-        return box_pairs(around, threads=threads, **filters)
+        return box_pairs(around, threads=threads, **(filters or {}))
     index = _narc.Handle("Index")
-    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads), {"workers": threads})
+    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads, **options), {"workers": threads, **options})
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
@@ -139,9 +147,7 @@ def overlaps(shapes: Shapes, bodies: Bodies, pairs: Any, *, others: Bodies = Non
     count = count_of(pairs)
     words = np.zeros((count + 63) // 64, np.uint64)
     _narc.find_overlaps(shapes, bodies, told, {"workers": threads}, words)
-    if words.dtype.newbyteorder("<") != words.dtype:
-        words = words.byteswap()
-    return np.unpackbits(words.view(np.uint8), count=count, bitorder="little").view(np.bool_)
+    return from_bits(words, count)
 
 
 def separations(shapes: Shapes, bodies: Bodies, pairs: Any, *, margin: float = np.inf, others: Bodies = None,

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
-from ._batch import Bodies, Rows, boxes, count_of
+from ._batch import Bodies, Rows, boxes, count_of, from_bits
 from ._shapes import Shapes
-from ._tables import CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, RAY_HIT, TOUCH_EVENT
+from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, split)
 
 
 def _search(mask: Any, ignored: Any, owners: Any, threads: int) -> dict[str, Any]:
@@ -23,6 +23,12 @@ def _floats(given: ArrayLike) -> Any:
     return given if isinstance(given, np.ndarray) else np.asarray(given, np.float64)
 
 
+def _rays(xy: ArrayLike, motion: Any, fraction: Any) -> dict[str, Any]:
+    start = _floats(xy)
+    place = {"xy": start} if np.ndim(start) == 2 else {"x": float(start[0]), "y": float(start[1])}
+    return {**place, "motion": motion, "fraction": fraction}
+
+
 class Index(_narc.Handle):
     """A tree over the boxes of bodies, for questions to a scene. It keeps the bodies, not a copy: update() after they have
     moved. `category`: 64 bits for each body, which `mask` of a question selects."""
@@ -31,17 +37,28 @@ class Index(_narc.Handle):
     _bodies: Bodies
     _options: dict[str, Any]
 
-    def __new__(cls, shapes: Shapes, bodies: Bodies, *, category: Any = None, fast: bool = False, threads: int = 1) -> Index:
+    def __new__(cls, shapes: Shapes, bodies: Bodies, *, category: Any = None, fast: bool = False,
+                origin: tuple[float, float] | None = None, threads: int = 1) -> Index:
         self = super().__new__(cls, "Index")
-        self._shapes, self._options = shapes, {"category": category, "fast": fast, "workers": threads}
-        self.update(bodies)
+        self._shapes, self._bodies = shapes, bodies
+        self._options = {"category": category, "fast": fast, "origin": origin, "workers": threads}
+        _narc.build_index(self, self._boxes(), self._options)
         return self
 
-    def update(self, bodies: Bodies = None) -> None:
-        """Takes bodies as they are now, or others."""
+    def _boxes(self) -> Rows:
+        return boxes(self._shapes, self._bodies, origin=self._options["origin"], threads=self._options["workers"])
+
+    def update(self, bodies: Bodies = None, changed: Any = None) -> None:
+        """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were."""
         self._bodies = self._bodies if bodies is None else bodies
-        around = boxes(self._shapes, self._bodies, threads=self._options["workers"])
-        _narc.build_index(self, around, self._options)
+        _narc.update_index(self, self._boxes(), changed, self._options)
+
+    def statistics(self) -> np.void:
+        """How the tree is: boxes, bodies, nodes, leaves, depth, bytes, mean_perimeter, slack."""
+        out = np.zeros(1, INDEX_STATISTICS)
+        _narc.describe_index(self, out)
+        row: np.void = out[0]
+        return row
 
     def __len__(self) -> int:
         return count_of(self._bodies)
@@ -60,10 +77,8 @@ class Index(_narc.Handle):
         """What each ray hits first: rows of narc.RAY_HIT, `count` 0 where there is nothing. A ray goes from `xy` (n, 2), or
         from one place (2,), to xy + motion, (n, 2) of float32; `most` rows for each ray, nearest first. `options` are those of
         narc_ray_options: inside, any."""
-        start = _floats(xy)
-        rays = {"xy": start} if np.ndim(start) == 2 else {"x": float(start[0]), "y": float(start[1])}
         out = np.zeros(len(motion) * max(most, 1), RAY_HIT)
-        _narc.cast_rays(self, self._shapes, self._bodies, {**rays, "motion": motion, "fraction": fraction},
+        _narc.cast_rays(self, self._shapes, self._bodies, _rays(xy, motion, fraction),
                         {"search": _search(mask, ignored, owners, threads), "most": most, **options}, out)
         return out.reshape(-1, most) if most > 1 else out
 
@@ -93,6 +108,23 @@ def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *
     points = _floats(xy)
     out = np.zeros(len(points), DISTANCE)
     _narc.find_distances(shapes, bodies, points, body, threads, out)
+    return out
+
+
+def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *, threads: int = 1) -> NDArray[np.bool_]:
+    """Which points of `xy` (n, 2) are within body number `body`[k], one number for all, or body k: (n,) of bool."""
+    points = _floats(xy)
+    words = np.zeros((len(points) + 63) // 64, np.uint64)
+    _narc.find_inside(shapes, bodies, points, body, threads, words)
+    return from_bits(words, len(points))
+
+
+def rays(shapes: Shapes, bodies: Bodies, xy: ArrayLike, motion: Any, body: Any = None, *, fraction: Any = None, threads: int = 1,
+         **options: Any) -> Rows:
+    """Where each ray, from `xy` on by `motion` as in Index.rays(), hits body number `body`[k], one for all, or body k: rows of
+    narc.RAY_HIT."""
+    out = np.zeros(len(motion), RAY_HIT)
+    _narc.cast_ray_pairs(shapes, bodies, _rays(xy, motion, fraction), body, {"search": {"workers": threads}, **options}, out)
     return out
 
 
@@ -141,15 +173,13 @@ class Contacts(_narc.Handle):
         return self
 
     def update(self, shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, skin: float = 0.0, recycling: float = 0.0,
-               threads: int = 1, kind: Any = None, category: Any = None, mask: Any = None, group: Any = None,
-               **options: Any) -> Step:
-        """A step: finds what is near, asks again what has moved, and tells what began and ended. Columns kind, category, mask
-        and group say which bodies may meet (narc_pair_filter). `options` are those of narc_step: second_margin, flat_angle,
-        front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs."""
-        filters = {"kind": kind, "category": category, "mask": mask, "group": group}
-        chosen = None if all(column is None for column in filters.values()) else filters
+               threads: int = 1, **options: Any) -> Step:
+        """A step: finds what is near, asks again what has moved, and tells what began and ended. `options` are those of
+        narc_step: second_margin, flat_angle, front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs, origin; and
+        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner."""
+        filters, options = split(options, "narc_pair_filter")
         step = _narc.update_contacts(self, shapes, bodies, {"margin": margin, "skin": skin, "recycling": recycling,
-                                                            "filter": chosen, "workers": threads, **options})
+                                                            "filter": filters, "workers": threads, **options})
         return self._step(step)
 
     def _step(self, step: tuple[Any, ...]) -> Step:

@@ -126,6 +126,10 @@ class Shapes(_narc.Handle):
         """The arcs of a shape as they are stored, in single precision; none of a shape that is not there."""
         return _built(_narc.get_arcs, self, shape)
 
+    def flags(self, shape: int) -> int:
+        """What the store knows of a shape: bits of CONSTANTS["NARC_SHAPE_..."]."""
+        return int(_narc.shape_flags(self, shape))
+
     def uses(self, shape: int) -> int:
         """How often a shape was added, and not removed."""
         return int(_narc.count_uses(self, shape))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from . import _narc
@@ -34,6 +36,12 @@ def _known(name: str) -> np.dtype[np.void]:
     return kind
 
 
+def split(options: dict[str, Any], structure: str) -> tuple[dict[str, Any] | None, dict[str, Any]]:
+    """Options that are members of a structure, None if there are none, and the others."""
+    members = _LAYOUTS[structure][1]
+    return ({k: v for k, v in options.items() if k in members} or None, {k: v for k, v in options.items() if k not in members})
+
+
 ARC = _known("narc_arc")
 BODY = _known("narc_body")
 BOX = _known("narc_box")
@@ -45,6 +53,7 @@ IMPACT = _known("narc_impact")
 MANIFOLD = _known("narc_manifold")
 MASS = _known("narc_mass")
 AABB = _known("narc_aabb")
+INDEX_STATISTICS = _known("narc_index_statistics")
 FOUR_ARC = row_type("narc_four_arc")
 REFINED_CONTACT = _known("narc_refined_contact")
 RAY_HIT = _known("narc_ray_hit")

@@ -259,18 +259,17 @@ static bool take_column(frame *f, const char *type, void *column, const Py_buffe
     return set_column(f, type, column, &from, group, path);
 }
 
-static bool read_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group,
-                        const char *path) {
+bool frame_column(frame *f, const char *type, void *column, size_t *out_count, PyObject *given, unsigned char group) {
+    *out_count = 1;
     if (given == Py_None)
         return true;
     if (!PyObject_CheckBuffer(given))
-        return set_constant(f, type, column, given, path);
+        return set_constant(f, type, column, given, f->argument);
     const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
-    return view && take_column(f, type, column, view, 1, 0, group, path);
-}
-
-bool frame_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group) {
-    return read_column(f, type, column, given, group, f->argument);
+    if (!view || !take_column(f, type, column, view, 1, 0, group, f->argument))
+        return false;
+    *out_count = view->ndim ? (size_t)view->shape[0] : 1;
+    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ structures */
@@ -287,11 +286,15 @@ static bool is_column(const narc_member *member) {
     return length > 7 && strcmp(member->type + length - 7, "_column") == 0;
 }
 
-/* Numbers of the pairs or bodies to look at, and what things bodies are parts of, have lengths of their own. */
+/* The member that is the length of a column, such as narc_query.selection_count; NULL: it has that of a group. */
+static const narc_member *find_count(const narc_layout *layout, const narc_member *column) {
+    char name[64];
+    PyOS_snprintf(name, sizeof name, "%s_count", column->name);
+    return find_member(layout, name);
+}
+
 static unsigned char group_of(const narc_layout *layout, const narc_member *member, unsigned char group) {
-    char count[64];
-    PyOS_snprintf(count, sizeof count, "%s_count", member->name);
-    if (find_member(layout, count))
+    if (find_count(layout, member))
         return 0;
     return is_member(layout->name, "narc_owners") && is_member(member->name, "owner") ? 'B' : group;
 }
@@ -324,16 +327,14 @@ static bool set_member(frame *f, const narc_layout *layout, const narc_member *m
         return true;
     if (is_column(m)) {
         const unsigned char own = group_of(layout, m, group);
-        if (!read_column(f, m->type, place, given, own, path))
-            return false;
-        if (!own && PyObject_CheckBuffer(given)) { /* its length is a member, too */
-            char count[64];
-            PyOS_snprintf(count, sizeof count, "%s_count", m->name);
-            const Py_buffer *const view = &f->buffers[f->buffer_count - 1];
-            const narc_member *const of = find_member(layout, count);
-            *(size_t *)(structure + of->offset) = view->ndim ? (size_t)view->shape[0] : 1;
-        }
-        return true;
+        const char *const argument = f->argument;
+        size_t count;
+        f->argument = path;
+        const bool is_set = frame_column(f, m->type, place, &count, given, own);
+        f->argument = argument;
+        if (is_set && !own) /* its length is a member, too */
+            *(size_t *)(structure + find_count(layout, m)->offset) = count;
+        return is_set;
     }
     if (is_member(m->type, "const narc_workers *"))
         return frame_workers(f, given, place);
@@ -349,10 +350,12 @@ static bool set_member(frame *f, const narc_layout *layout, const narc_member *m
         if (pointer)
             *(void **)place = room;
         /* pairs, and another set of bodies, have lengths of their own */
-        return frame_fill(f, inner, room, given,
-                          is_member(m->name, "other_bodies") ? 'O'
-                          : is_member(m->name, "pairs")      ? 'P'
-                                                             : group);
+        const unsigned char own = is_member(m->name, "other_bodies") ? 'O' : is_member(m->name, "pairs") ? 'P' : group;
+        const char *const argument = f->argument;
+        f->argument = path;
+        const bool is_filled = frame_fill(f, inner, room, given, own);
+        f->argument = argument;
+        return is_filled;
     }
     if (strchr(m->type, '*') || m->count > 1) {
         PyErr_Format(PyExc_TypeError, "%s can't be given", path);
@@ -441,13 +444,35 @@ static bool fill_mapping(frame *f, const narc_layout *layout, char *structure, P
     return true;
 }
 
+/* All members, which are numbers: a place is (x, y). */
+static bool fill_tuple(frame *f, const narc_layout *layout, char *structure, PyObject *given) {
+    if (PyTuple_Size(given) != (Py_ssize_t)layout->member_count) {
+        PyErr_Format(PyExc_TypeError, "%s: %zd numbers, where there are to be %zd", f->argument, PyTuple_Size(given),
+                     (Py_ssize_t)layout->member_count);
+        return false;
+    }
+    for (size_t k = 0; k < layout->member_count; k++) {
+        const narc_member *const m = &layout->members[k];
+        if (strchr(m->type, '*') || is_column(m) || m->count > 1 ||
+            !set_number(structure + m->offset, m->type, m->size, PyTuple_GetItem(given, (Py_ssize_t)k), f->argument)) {
+            if (!PyErr_Occurred())
+                PyErr_Format(PyExc_TypeError, "%s can't be a tuple", f->argument);
+            return false;
+        }
+    }
+    return true;
+}
+
 bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *given, unsigned char group) {
     const narc_member *const skipped = find_member(layout, "out_skipped"), *two[2];
     if (skipped)
         *(size_t **)((char *)structure + skipped->offset) = &f->skipped;
     if (given == Py_None)
         return true;
-    if (PyDict_Check(given)) {
+    if (PyTuple_Check(given)) {
+        if (!fill_tuple(f, layout, structure, given))
+            return false;
+    } else if (PyDict_Check(given)) {
         if (!fill_mapping(f, layout, structure, given, group))
             return false;
     } else {

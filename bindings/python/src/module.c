@@ -201,6 +201,7 @@ typedef struct argument {
     int kind;                  /* of a handle */
     const narc_layout *layout; /* of a structure or of rows */
     size_t size;               /* of items without a layout */
+    bool is_bits;              /* words of 64 bits, one bit for each item of the group */
     char column[32];
 } argument;
 
@@ -224,8 +225,9 @@ static bool read_argument(const char *text, argument *out) {
     if (rows) {
         out->type = kind[0] == '<' ? ROWS_IN : ROWS_OUT;
         out->layout = narc_find_layout(kind + 1);
-        out->size = out->layout ? out->layout->size : (size_t)(kind[1] - '0');
-        return out->layout || (kind[1] >= '1' && kind[1] <= '8');
+        out->is_bits = strcmp(kind + 1, "bits") == 0;
+        out->size = out->layout ? out->layout->size : out->is_bits ? sizeof(uint64_t) : (size_t)(kind[1] - '0');
+        return out->layout || out->is_bits || (kind[1] >= '1' && kind[1] <= '8');
     }
     if ((out->kind = find_kind(kind, length - changed)) >= 0) {
         out->type = changed ? CHANGED_HANDLE : HANDLE;
@@ -296,7 +298,7 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         f->p[k] = frame_allocate(f, a->layout->size);
         if (!f->p[k])
             return false;
-        return a->type == COLUMN ? frame_column(f, a->column, f->p[k], given, a->group)
+        return a->type == COLUMN ? frame_column(f, a->column, f->p[k], &f->n[k], given, a->group)
                                  : frame_fill(f, a->layout, f->p[k], given, a->group);
     case ROWS_IN:
     case ROWS_OUT:
@@ -313,14 +315,13 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         return frame_workers(f, given, (const narc_workers **)&f->p[k]);
     }
     /* rows for each item of a group */
-    const unsigned char group = a->group == 'W' ? 'P' : a->group;
     const Py_ssize_t rows = (Py_ssize_t)f->n[k];
-    if (!group || (a->type == ROWS_IN && f->lengths[group] < 0)) {
-        f->lengths[group] = group ? rows : -1;
+    if (!a->group || (a->type == ROWS_IN && f->lengths[a->group] < 0)) {
+        f->lengths[a->group] = a->group ? rows : -1;
         return true;
     }
-    const Py_ssize_t length = f->lengths[group] < 0 ? 1 : f->lengths[group];
-    const Py_ssize_t wanted = a->group == 'W' ? (length + 63) / 64 : length;
+    const Py_ssize_t length = f->lengths[a->group] < 0 ? 1 : f->lengths[a->group];
+    const Py_ssize_t wanted = a->is_bits ? (length + 63) / 64 : length;
     if (rows >= wanted && (a->type == ROWS_OUT || rows == wanted))
         return true;
     PyErr_Format(PyExc_ValueError, "%s has %zd rows, where there are %zd", a->name, rows, wanted);
@@ -520,13 +521,15 @@ static PyObject *know(PyObject *self, PyObject *given) {
     Py_RETURN_NONE;
 }
 
-static PyMethodDef functions[] = {{"layouts", list_layouts, METH_NOARGS, NULL},
-                                  {"constants", list_constants, METH_NOARGS, NULL},
-                                  {"get_isa", get_isa, METH_NOARGS, NULL},
-                                  {"set_isa", set_isa, METH_O, NULL},
-                                  {"know", know, METH_VARARGS, NULL},
-                                  {"names", list_names, METH_NOARGS, NULL},
-                                  {NULL, NULL, 0, NULL}};
+static PyMethodDef functions[] = {
+    {"layouts", list_layouts, METH_NOARGS, NULL},
+    {"constants", list_constants, METH_NOARGS, NULL},
+    {"get_isa", get_isa, METH_NOARGS, "The name of the instruction set in use."},
+    {"set_isa", set_isa, METH_O,
+     "Chooses the instruction set for all later calls, such as \"avx2\" or \"scalar\"; None: the best."},
+    {"know", know, METH_VARARGS, NULL},
+    {"names", list_names, METH_NOARGS, NULL},
+    {NULL, NULL, 0, NULL}};
 
 static bool add(PyObject *module, const char *name, PyObject *value) {
     return value && PyModule_AddObjectRef(module, name, value) == 0;

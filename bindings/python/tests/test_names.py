@@ -14,7 +14,7 @@ INCLUDE = HERE.parent.parent / "include"
 # Python has these itself, or needs them not.
 OWN = """create_shapes destroy_shapes create_index destroy_index create_contacts destroy_contacts create_broad_phase
 destroy_broad_phase get_layout get_constant find_layout write_layouts view_bodies openmp_workers copy_pairs status_name version
-reserve_shapes get_aabb refit_index""".split()
+reserve_shapes get_aabb""".split()
 LIBRARIES = ["narc_files.h", "narc_fit.h", "narc_methods.h"]
 
 

@@ -149,6 +149,13 @@ def test_rays_meet_circles_where_a_formula_says(random):
     assert hit.sum() > 200 and (hits["count"][clear] == (first[clear] < 1)).all()
     assert np.allclose(hits["fraction"][hit], first[hit], atol=1e-5)
     assert (hits["body"][hit] == fraction.argmin(1)[hit]).all()
+    again = narc.rays(shapes, bodies, start, motion, hits["body"], inside=2)
+    assert (again["fraction"] == hits["fraction"])[hits["count"] == 1].all()
+    far = narc.bodies(bodies["xy"] + 1e9, shape=bodies["shape"])
+    same = narc.Index(shapes, far, origin=(1e9, 1e9)).rays(start + 1e9, motion, inside=2)
+    assert (same["body"] == hits["body"])[hit].mean() > 0.99
+    with pytest.raises(TypeError, match="options.origin"):
+        narc.Index(shapes, far, origin=(1, "far"))
     fan = index.rays((30, 30), motion, most=3, threads=3)
     assert fan.shape == (500, 3) and (fan["fraction"][:, 1] >= fan["fraction"][:, 0])[fan["count"][:, 1] == 1].all()
     assert index.rays(np.float32([[30, 30]]), motion[:1]).shape == (1,)
@@ -172,9 +179,16 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     found = index.regions(boxes)
     inside = [((bodies["xy"] >= box[:2] - 1) & (bodies["xy"] <= box[2:] + 1)).all(1) for box in boxes]
     assert (found == np.argwhere(inside)).all()
+    deep = narc.inside(shapes, bodies, points, near["body"])
+    assert (deep == (near["separation"] < 0))[np.abs(near["separation"]) > 1e-4].all() and deep.any()
+    bodies["xy"][:100] += 100
+    index.update(changed=np.arange(100))
+    assert (index.regions(boxes) == [row for row in found if row[1] >= 100]).all()
     bodies["xy"] += 100
     index.update()
     assert len(index.regions(boxes)) == 0 and repr(index) == "<narc.Index of 400 bodies>"
+    index.update(bodies[:50].copy())
+    assert len(index) == 50 and index.statistics()["bodies"] == 50
 
 
 def test_casts_hit_when_circles_meet():
@@ -211,6 +225,8 @@ def test_steps_have_the_rows_of_batches(scene):
     assert all(np.array_equal(a, b) for a, b in zip(one, other))
     still = np.full(len(scene.bodies), narc.CONSTANTS["NARC_STATIC"], np.uint8)
     contacts.forget()
+    one_thing = np.zeros(len(scene.bodies), np.uint32)
+    assert len(contacts.update(scene.shapes, scene.bodies, owner=one_thing).slots) == 0
     assert len(contacts.update(scene.shapes, scene.bodies, margin=0.02, kind=still).slots) == 0
     with pytest.raises(ValueError, match="rows is"):
         narc.Contacts("points")
