@@ -43,6 +43,13 @@ class WithCore(sdist):
                 shutil.copy(HERE / name, base_dir)
 
 
+# What is built goes to the tree's build folder, not among the sources.
+options = {}
+if CORE != HERE / "core":
+    base = CORE / "build" / "wheel"
+    base.mkdir(parents=True, exist_ok=True)
+    options = {"build": {"build_base": str(base)}, "egg_info": {"egg_base": str(base)}}
+
 version = re.findall(r"#define NARC_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", (CORE / "include" / "narc.h").read_text())
-setup(version=".".join(version), ext_modules=[Extension("narc._narc", [], py_limited_api=True)],
+setup(version=".".join(version), options=options, ext_modules=[Extension("narc._narc", [], py_limited_api=True)],
       cmdclass={"build_ext": BuildByCMake, "sdist": WithCore})
