@@ -100,25 +100,19 @@ def _prepare(shapes: Shapes, bodies: Bodies, pairs_: Any, others: Bodies, margin
 
 def _rows(call: Any, kind: Any, shapes: Shapes, bodies: Bodies, pairs_: Any, margin: float, others: Bodies, out: Any,
           threads: int, options: dict[str, Any]) -> Any:
-    found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
-    room = count_of(found) if out is None else len(out)
+    found = told = pairs_
+    if others is not None or not isinstance(pairs_, np.ndarray):
+        found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
+    if out is not None and out.dtype is not kind and out.dtype != kind:
+        raise TypeError(f"out: rows of {kind} are wanted")
     query = {"margin": margin, "workers": threads, **options}
-    while True:
-        rows = np.zeros(room, kind) if out is None else out
-        if rows.dtype != kind:
-            raise TypeError(f"out: rows of {kind} are wanted")
-        count = _narc_call(call, shapes, bodies, told, query, rows, out is not None)
-        if count <= room:
-            rows = rows[:room if options.get("dense") else count]
-            return (rows, found) if pairs_ is None else rows
-        room = count
-
-
-def _narc_call(call: Any, shapes: Shapes, bodies: Bodies, told: Any, query: Any, rows: Any, fixed: bool) -> int:
-    count = int(call(shapes, bodies, told, query, rows))
-    if fixed and count > len(rows):
-        raise ValueError(f"out has {len(rows)} rows, {count} are needed")
-    return count
+    rows = np.zeros(count_of(found), kind) if out is None else out
+    while (count := call(shapes, bodies, told, query, rows)) > len(rows):
+        if out is not None:
+            raise ValueError(f"out has {len(rows)} rows, {count} are needed")
+        rows = np.zeros(count, kind)
+    rows = rows[: count_of(found) if options.get("dense") else count]
+    return (rows, found) if pairs_ is None else rows
 
 
 def contacts(shapes: Shapes, bodies: Bodies, pairs: Any = None, *, margin: float = 0.0, others: Bodies = None,

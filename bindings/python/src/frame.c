@@ -242,7 +242,8 @@ static bool take_column(frame *f, const char *type, void *column, const Py_buffe
                         unsigned char group, const char *path) {
     numbers from = {.base = (const char *)view->buf, .count = -1};
     if (!find_item(view->format, NULL, &from.item) || from.item.count != 1) {
-        PyErr_Format(PyExc_TypeError, "%s: an array of numbers is wanted, not of the format %s", path, view->format);
+        PyErr_Format(PyExc_TypeError, "%s: an array of numbers is wanted, not of the format %s", path,
+                     view->format ? view->format : "B");
         return false;
     }
     if (view->ndim == 0 && width == 1)
@@ -357,7 +358,8 @@ static bool set_member(frame *f, const narc_layout *layout, const narc_member *m
         f->argument = argument;
         return is_filled;
     }
-    if (strchr(m->type, '*') || m->count > 1) {
+    /* rows lie where arrays have them */
+    if (strchr(m->type, '*') || m->count > 1 || is_member(m->name, "row_stride")) {
         PyErr_Format(PyExc_TypeError, "%s can't be given", path);
         return false;
     }
@@ -419,7 +421,7 @@ static bool fill_records(frame *f, const narc_layout *layout, char *structure, c
     }
     if (!found)
         PyErr_Format(PyExc_TypeError, "%s: records have no field of %s, their format is %s", f->argument, layout->name,
-                     view->format);
+                     rows ? rows->name : view->format);
     return found > 0;
 }
 

@@ -7,6 +7,7 @@
  */
 #include "frame.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include <narc_broad_phase.h>
@@ -124,10 +125,10 @@ typedef enum result { COUNT, PAIRS, SLOTS, STEP } result;
 typedef struct call {
     const char *name;
     /* name:type of each argument, in the order of slots.
-     *   Shapes, Shapes!      a handle of this kind; it is changed
+     *   Shapes, Shapes!      a handle of this kind; it is changed. Index!@B: as many boxes are a length
      *   narc_query@P         a structure, and what its columns have the length of
      *   narc_index_column@P  a column
-     *   <narc_arc, >narc_arc rows that are read, or filled; <8, >8: items of so many bytes
+     *   <narc_arc, >narc_arc rows that are read, or filled; <8, >8: items of so many bytes; >narc_arc*64: at least so many
      *   double, size, flag   a number
      *   bytes, threads */
     const char *arguments;
@@ -201,6 +202,7 @@ typedef struct argument {
     int kind;                  /* of a handle */
     const narc_layout *layout; /* of a structure or of rows */
     size_t size;               /* of items without a layout */
+    Py_ssize_t least;          /* rows to be filled, whatever the call */
     bool is_bits;              /* words of 64 bits, one bit for each item of the group */
     char column[32];
 } argument;
@@ -216,11 +218,12 @@ static signature signatures[CALLS];
 static bool read_argument(const char *text, argument *out) {
     char kind[48];
     const size_t name = strcspn(text, ":"), end = strcspn(text, " ");
-    const char *const at = memchr(text, '@', end);
-    const size_t length = (at ? (size_t)(at - text) : end) - name - 1;
+    const char *const at = memchr(text, '@', end), *const star = memchr(text, '*', end), *const mark = at ? at : star;
+    const size_t length = (mark ? (size_t)(mark - text) : end) - name - 1;
     PyOS_snprintf(out->name, sizeof out->name, "%.*s", (int)name, text);
     PyOS_snprintf(kind, sizeof kind, "%.*s", (int)length, text + name + 1);
     out->group = at ? (unsigned char)at[1] : 0;
+    out->least = star ? (Py_ssize_t)strtol(star + 1, NULL, 10) : 0;
     const bool rows = kind[0] == '<' || kind[0] == '>', changed = kind[length - 1] == '!';
     if (rows) {
         out->type = kind[0] == '<' ? ROWS_IN : ROWS_OUT;
@@ -272,6 +275,9 @@ static bool take_handle(frame *f, const argument *a, PyObject *given, int slot) 
         h->readers++;
     f->handles[slot] = h;
     f->p[slot] = h->pointer;
+    narc_index_statistics index;
+    if (a->group && narc_describe_index(h->pointer, &index, NULL) == NARC_OK)
+        f->lengths[a->group] = (Py_ssize_t)index.boxes;
     return true;
 }
 
@@ -316,6 +322,10 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
     }
     /* rows for each item of a group */
     const Py_ssize_t rows = (Py_ssize_t)f->n[k];
+    if (rows < a->least) {
+        PyErr_Format(PyExc_ValueError, "%s has %zd rows, %zd are needed", a->name, rows, a->least);
+        return false;
+    }
     if (!a->group || (a->type == ROWS_IN && f->lengths[a->group] < 0)) {
         f->lengths[a->group] = a->group ? rows : -1;
         return true;

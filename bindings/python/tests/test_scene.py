@@ -175,6 +175,8 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     masks = np.where(np.arange(len(bodies)) % 2, 1, 2).astype(np.uint64)
     odd = narc.Index(shapes, bodies, category=masks).nearest(points, mask=1)
     assert (odd["body"] % 2 == 1).all()
+    with pytest.raises(ValueError, match="owners.owner has 3 items"):
+        index.nearest(points, owners={"owner": np.zeros(3, np.uint32)})
     boxes = np.float32([[0, 0, 10, 10], [50, 50, 70, 70]])
     found = index.regions(boxes)
     inside = [((bodies["xy"] >= box[:2] - 1) & (bodies["xy"] <= box[2:] + 1)).all(1) for box in boxes]
