@@ -24,7 +24,7 @@ class BuildByCMake(build_ext):
         build.mkdir(parents=True, exist_ok=True)
         subprocess.run(["cmake", "-S", str(HERE), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release", f"-DNARC_SOURCE={CORE}",
                         f"-DNARC_PYTHON_INCLUDE={sysconfig.get_path('include')}",
-                        f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={out}"], check=True)
+                        f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={out}", *os.environ.get("CMAKE_ARGS", "").split()], check=True)
         subprocess.run(["cmake", "--build", str(build), "--target", "_narc", "--parallel", str(os.cpu_count() or 1)],
                        check=True)
 

@@ -74,6 +74,8 @@ def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies
     `options`: the columns of narc_pair_filter, as in box_pairs(), for pairs with each other; `origin`, a place (x, y) near
     bodies that are far from (0, 0)."""
     filters, options = split(options, "narc_pair_filter")
+    if filters and others is not None:
+        raise TypeError(f"{', '.join(filters)}: filters are for pairs of one set of bodies")
     around = boxes(shapes, bodies, margin=margin / 2, threads=threads, **options)
     if others is None:
         return box_pairs(around, threads=threads, **(filters or {}))

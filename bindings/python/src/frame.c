@@ -134,9 +134,8 @@ static const void *convert(frame *f, const numbers *from, size_t size, const cha
     for (Py_ssize_t k = 0; k < count; k++) {
         const uint64_t value = read_whole(from->base + k * from->stride, from->item.size, with_sign);
         if ((with_sign && value >> 63) || (size == 4 && value > UINT32_MAX)) {
-            with_sign ? PyErr_Format(PyExc_IndexError, "%s: item %zd is %lld", path, k, (long long)value)
-                      : PyErr_Format(PyExc_IndexError, "%s: item %zd is %llu", path, k, (unsigned long long)value);
-            return NULL;
+            const char *const format = with_sign ? "%s: item %zd is %lld" : "%s: item %zd is %llu";
+            return PyErr_Format(PyExc_IndexError, format, path, k, (unsigned long long)value);
         }
         const uint32_t small = (uint32_t)value;
         memcpy(made + (size_t)k * size, size == 4 ? (const void *)&small : (const void *)&value, size);
@@ -224,6 +223,8 @@ static bool set_constant(frame *f, const char *type, void *column, PyObject *giv
         memcpy(room, &value, sizeof value);
         if (is_member(type, "narc_byte_column")) {
             const uint8_t byte = (uint8_t)value;
+            if (value > UINT8_MAX)
+                PyErr_SetNone(PyExc_OverflowError);
             one.item.code = 'B', one.item.size = 1;
             memcpy(room, &byte, 1);
         }
@@ -381,9 +382,8 @@ static bool find_two(const narc_layout *layout, const char *stem, const narc_mem
     return true;
 }
 
-static bool fill_two(frame *f, const narc_member *const two[2], char *structure, PyObject *given, unsigned char group,
-                     const char *path) {
-    const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
+static bool fill_two(frame *f, const narc_member *const two[2], char *structure, const Py_buffer *view,
+                     unsigned char group, const char *path) {
     for (int k = 0; view && k < 2; k++)
         if (!take_column(f, two[k]->type, structure + two[k]->offset, view, 2, k, group, path))
             return false;
@@ -394,13 +394,14 @@ static bool find_field(const char *format, const narc_layout *rows, const char *
     if (!rows)
         return find_item(format, name, out);
     const narc_member *const m = find_member(rows, name);
-    if (m)
+    const bool is_number = m && strchr("fdu", m->type[0]) && m->count == 1;
+    if (is_number)
         *out = (item){.code = m->type[0] == 'u' ? 'I' : m->type[0],
                       .order = '@',
                       .offset = m->offset,
                       .size = m->size,
                       .count = 1};
-    return m != NULL;
+    return is_number;
 }
 
 /* Records: a field for each column. `rows`: what they are, if that is known, NULL: as their format says. */
@@ -435,13 +436,15 @@ static bool fill_mapping(frame *f, const narc_layout *layout, char *structure, P
         if (!name)
             return false;
         PyOS_snprintf(path, sizeof path, "%s.%s", f->argument, name);
-        if (m ? !set_member(f, layout, m, structure, value, group, path)
-              : find_two(layout, name, two) && value != Py_None && !fill_two(f, two, structure, value, group, path))
+        bool is_set = value == Py_None;
+        if (m)
+            is_set = set_member(f, layout, m, structure, value, group, path);
+        else if (!find_two(layout, name, two))
+            return PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name) != NULL;
+        else if (!is_set)
+            is_set = fill_two(f, two, structure, frame_view(f, value, PyBUF_RECORDS_RO), group, path);
+        if (!is_set)
             return false;
-        if (!m && !find_two(layout, name, two)) {
-            PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name);
-            return false;
-        }
     }
     return true;
 }
@@ -486,9 +489,8 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
             if (!fill_records(f, layout, structure, view, rows, group))
                 return false;
         } else if (find_two(layout, "xy", two) || find_two(layout, "ab", two)) {
-            for (int k = 0; k < 2; k++)
-                if (!take_column(f, two[k]->type, (char *)structure + two[k]->offset, view, 2, k, group, f->argument))
-                    return false;
+            if (!fill_two(f, two, structure, view, group, f->argument))
+                return false;
         } else {
             PyErr_Format(PyExc_TypeError, "%s: records or a mapping of columns are wanted", f->argument);
             return false;

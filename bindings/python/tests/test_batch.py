@@ -202,6 +202,9 @@ REFUSED = [
     (lambda s: narc.contacts(s.shapes, s.bodies, [[k, k] for k in range(9)], out=np.zeros(3, narc.CONTACT)), ValueError,
      "out has 3 rows, 9 are needed"),
     (lambda s: narc.contacts(None, s.bodies, [[0, 1]]), TypeError, "shapes: a narc.Shapes is wanted"),
+    (lambda s: narc.pairs(s.shapes, s.bodies, others=s.bodies, kind=np.zeros(300, "u1")), TypeError, "kind: filters"),
+    (lambda s: narc.pairs(s.shapes, s.bodies, kind=256), TypeError, "filter.kind"),
+    (lambda s: narc.contacts(s.shapes, np.zeros(3, narc.MANIFOLD), [[0, 1]]), TypeError, "format is narc_manifold"),
     (lambda s: narc.bodies([1, 2, 3]), ValueError, "xy: the shape"),
     (lambda s: narc.place_parts(s.bodies, s.bodies[:5], np.zeros(4, np.uint32)), ValueError, "owner has 4 items"),
 ]
