@@ -261,7 +261,7 @@ def test_python_runs_meanwhile_and_shapes_are_guarded(random):
     shapes = narc.Shapes()
     box = shapes.regular(30, 1.0, 0.01)
     bodies = narc.bodies(random.random((3000, 2)) * 5, random.random(3000) * 7, box)
-    pairs = random.integers(0, 3000, (400000, 2)).astype(np.uint32)
+    pairs = random.integers(0, 3000, (100000, 2)).astype(np.uint32)
     seen, errors = [], []
 
     def ask():

@@ -242,6 +242,7 @@ def test_a_child_of_fork_answers(scene):
     assert os.waitpid(child, 0)[1] == 0
 
 
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer keeps memory for a while")
 def test_memory_comes_back(scene):
     pairs = narc.pairs(scene.shapes, scene.bodies).astype(np.int64)
 
