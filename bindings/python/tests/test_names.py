@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Is everything that the headers declare there from Python, or left out for a reason?"""
 
+import ctypes
 import pathlib
 import re
 
@@ -32,6 +33,11 @@ def test_all_functions_are_called():
     assert sorted(declared - called - set(OWN)) == []
     table = set(re.findall(r"^CALL\((\w+),", sources, flags=re.M))
     assert sorted(table - used) == []
+
+
+def test_functions_of_c_are_not_shown_to_others():
+    library = ctypes.CDLL(narc._narc.__file__)
+    assert hasattr(library, "PyInit__narc") and not hasattr(library, "narc_version")
 
 
 def test_what_is_public_has_words():
