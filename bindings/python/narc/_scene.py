@@ -14,8 +14,10 @@ from ._shapes import Shapes
 from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, split)
 
 
-def _search(mask: Any, ignored: Any, owners: Any, threads: int) -> dict[str, Any]:
-    return {"mask": mask, "ignored": ignored, "owners": owners, "workers": threads}
+def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What of the options says which bodies count, and the others."""
+    chosen, others = split(options, "narc_index_query")
+    return {**(chosen or {}), "workers": threads}, others
 
 
 def _floats(given: ArrayLike) -> Any:
@@ -31,22 +33,25 @@ def _rays(xy: ArrayLike, motion: Any, fraction: Any) -> dict[str, Any]:
 
 class Index(_narc.Handle):
     """A tree over the boxes of bodies, for questions to a scene. It keeps the bodies, not a copy: update() after they have
-    moved. `category`: 64 bits for each body, which `mask` of a question selects."""
+    moved. `options` are those of narc_index_options: category, 64 bits for each body, which `mask` of a question selects; fast;
+    origin, a place (x, y) near bodies that are far from (0, 0).
+
+    Questions go through all bodies, or those that options of narc_index_query select, for each question: mask, 64 bits;
+    ignored, a body; owners, {"owner": of each body, "ignored": of each question}, which says what bodies are one thing."""
 
     _shapes: Shapes
     _bodies: Bodies
     _options: dict[str, Any]
 
-    def __new__(cls, shapes: Shapes, bodies: Bodies, *, category: Any = None, fast: bool = False,
-                origin: tuple[float, float] | None = None, threads: int = 1) -> Index:
+    def __new__(cls, shapes: Shapes, bodies: Bodies, *, threads: int = 1, **options: Any) -> Index:
         self = super().__new__(cls, "Index")
         self._shapes, self._bodies = shapes, bodies
-        self._options = {"category": category, "fast": fast, "origin": origin, "workers": threads}
+        self._options = {**options, "workers": threads}
         _narc.build_index(self, self._boxes(), self._options)
         return self
 
     def _boxes(self) -> Rows:
-        return boxes(self._shapes, self._bodies, origin=self._options["origin"], threads=self._options["workers"])
+        return boxes(self._shapes, self._bodies, origin=self._options.get("origin"), threads=self._options["workers"])
 
     def update(self, bodies: Bodies = None, changed: Any = None) -> None:
         """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were."""
@@ -66,40 +71,39 @@ class Index(_narc.Handle):
     def __repr__(self) -> str:
         return f"<narc.Index of {len(self)} bodies>"
 
-    def regions(self, boxes: ArrayLike, *, mask: Any = None, ignored: Any = None, threads: int = 1) -> NDArray[np.uint32]:
+    def regions(self, boxes: ArrayLike, *, threads: int = 1, **options: Any) -> NDArray[np.uint32]:
         """Pairs (box, body) of boxes that overlap, (m, 2). `boxes`: rows of narc.BOX, or of (min x, min y, max x, max y) as
         float32."""
-        found = _narc.query_index(self, boxes, {"mask": mask, "ignored": ignored, "workers": threads})
+        found = _narc.query_index(self, boxes, {**options, "workers": threads})
         return np.frombuffer(found, np.uint32).reshape(-1, 2)
 
-    def rays(self, xy: ArrayLike, motion: Any, *, most: int = 1, mask: Any = None, ignored: Any = None, owners: Any = None,
-             fraction: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def rays(self, xy: ArrayLike, motion: Any, *, most: int = 1, fraction: Any = None, threads: int = 1,
+             **options: Any) -> Rows:
         """What each ray hits first: rows of narc.RAY_HIT, `count` 0 where there is nothing. A ray goes from `xy` (n, 2), or
         from one place (2,), to xy + motion, (n, 2) of float32; `most` rows for each ray, nearest first. `options` are those of
         narc_ray_options: inside, any."""
         out = np.zeros(len(motion) * max(most, 1), RAY_HIT)
+        search, options = _search(options, threads)
         _narc.cast_rays(self, self._shapes, self._bodies, _rays(xy, motion, fraction),
-                        {"search": _search(mask, ignored, owners, threads), "most": most, **options}, out)
+                        {"search": search, "most": most, **options}, out)
         return out.reshape(-1, most) if most > 1 else out
 
-    def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, mask: Any = None, ignored: Any = None,
-                owners: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
         """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none. `distance`:
         only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is within."""
         points = _floats(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
+        search, options = _search(options, threads)
         _narc.find_nearest(self, self._shapes, self._bodies, points,
-                           {"search": _search(mask, ignored, owners, threads), "distance": distance, "most": most, **options},
-                           out)
+                           {"search": search, "distance": distance, "most": most, **options}, out)
         return out.reshape(-1, most) if most > 1 else out
 
-    def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, mask: Any = None, ignored: Any = None,
-              owners: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, threads: int = 1, **options: Any) -> Rows:
         """What each mover hits first on its way, `motion` (n, 2) of float32 while it turns by `angle`: rows of narc.IMPACT.
         `options` are those of narc_cast_options: target, tolerance, targets, front_only."""
         out = np.zeros(count_of(movers), IMPACT)
-        _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle},
-                          _search(mask, ignored, owners, threads), options or None, out)
+        search, options = _search(options, threads)
+        _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle}, search, options or None, out)
         return out
 
 

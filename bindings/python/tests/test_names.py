@@ -4,6 +4,7 @@
 import ctypes
 import pathlib
 import re
+import textwrap
 
 import pytest
 
@@ -38,6 +39,13 @@ def test_all_functions_are_called():
 def test_functions_of_c_are_not_shown_to_others():
     library = ctypes.CDLL(narc._narc.__file__)
     assert hasattr(library, "PyInit__narc") and not hasattr(library, "narc_version")
+
+
+def test_the_first_page_runs():
+    scope: dict = {}
+    for text in ((HERE / "README.md").read_text().split("```python\n")[1].split("```")[0], narc.__doc__.split("\n\n")[1]):
+        exec(textwrap.dedent(text), scope)
+    assert len(scope["rows"]) > 0 and len(scope["hits"]) == 2
 
 
 def test_what_is_public_has_words():
