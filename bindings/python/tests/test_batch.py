@@ -62,7 +62,7 @@ def test_separations_are_distances_of_shapely(scene):
         assert abs(max(separation, 0) - distance) < 2e-3  # shapely's circles are polygons
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30, deadline=None, database=None)
 @given(st.lists(st.tuples(*[st.floats(-10, 10)] * 2, st.floats(-7, 7)), min_size=2, max_size=12))
 def test_overlaps_and_contacts_agree(places):
     shapes = narc.Shapes()
