@@ -205,6 +205,11 @@ REFUSED = [
     (lambda s: narc.pairs(s.shapes, s.bodies, others=s.bodies, kind=np.zeros(300, "u1")), TypeError, "kind: filters"),
     (lambda s: narc.pairs(s.shapes, s.bodies, kind=256), TypeError, "filter.kind"),
     (lambda s: narc.contacts(s.shapes, np.zeros(3, narc.MANIFOLD), [[0, 1]]), TypeError, "format is narc_manifold"),
+    (lambda s: narc._narc.compute_mass(s.shapes.arcs(0), np.zeros(0, narc.MASS)), ValueError, "out has 0 rows, 1 are needed"),
+    (lambda s: narc._narc.build_box(1, 1, 0, np.zeros(4, narc.ARC)), ValueError, "out has 4 rows, 64 are needed"),
+    (lambda s: narc._narc.compute_boxes(s.shapes, s.bodies, None, np.zeros(9, narc.BOX)), ValueError, "out has 9 rows"),
+    (lambda s: narc._narc.find_overlaps(s.shapes, s.bodies, np.zeros((65, 2), "u4"), None, np.zeros(1, "u8")), ValueError,
+     "out has 1 rows, where there are 2"),
     (lambda s: narc.bodies([1, 2, 3]), ValueError, "xy: the shape"),
     (lambda s: narc.place_parts(s.bodies, s.bodies[:5], np.zeros(4, np.uint32)), ValueError, "owner has 4 items"),
 ]
