@@ -42,6 +42,19 @@ INLINE vm select_polygons(const struct queue *queue, int k, vm which) {
     return are_polygons(which, get(queue, INFO_A, k), get(queue, INFO_B, k));
 }
 
+/* The largest gap at a junction and the second largest; where the largest is: edge i of A, or MAX_CORNERS + i of B. */
+struct best_edge {
+    vf gap, second;
+    vi edge;
+    vec2 normal;
+};
+
+/* The edge with the largest gap, and the other shape's corner that is closest to it. */
+struct polygon_edge {
+    struct best_edge best;
+    vi corner;
+};
+
 /* A polygon in each lane, in A's frame: its corners, and the normals of the edges before them, B's negated. Lanes that
  * have less corners than others repeat their first one. `full`: all have 8. */
 struct polygon {
@@ -57,10 +70,7 @@ INLINE vec2 place_corner(vec2 center, const struct pose *pose, bool is_b) {
 
 /* The record of corner j in each lane, for v_rows(). */
 INLINE void store_corner_record(const struct polygon *p, struct ring ring, int j, int32_t index[V_WIDTH]) {
-    if (BLOCK == 1) {
-        vi_store(index, ring.base);
-        index[0] += j < p->most ? j : 0;
-    } else if (!p->full)
+    if (!p->full)
         vi_store(index, vi_select(vi_lt(vi_set(j), ring.count), vi_add(ring.base, vi_set(j)), ring.base));
 }
 
@@ -97,41 +107,14 @@ INLINE void load_polygon(const narc_record *records, struct ring ring, const str
     }
 }
 
-/* The largest gap at a junction and the second largest; where the largest is: edge i of A, or MAX_CORNERS + i of B. */
-struct best_edge {
-    vf gap, second;
-    vi edge;
-    vec2 normal;
-};
-
 /* The nearer of two corners of B, seen from A; of A it is the other one. */
 INLINE vf find_nearer(vf a, vf b, bool of_a) { return of_a ? v_max(a, b) : v_min(a, b); }
 
-/* With one lane: the edge of a polygon that faces the other one, by the axis of the inscribed circles. */
-INLINE int find_facing_edge(const struct polygon *p, vec2 axis) {
-    vf most = v_set(-INFINITY);
-    int facing = 0;
-    for (int i = 0; i < p->most; i++) {
-        const vf along = v2_dot(axis, p->normal[i]);
-        facing = vm_any(v_lt(most, along)) ? i : facing;
-        most = v_max(most, along);
-    }
-    return facing;
-}
-
-/* Takes the junctions of `own`. With one lane those that the inscribed circles rule out are left out, as nearly all are
- * once the edge that faces the other body is known. */
-INLINE void try_edges(const struct polygon *own, const struct polygon *other, const struct queue *queue, int k,
-                      struct best_edge *best) {
+/* Takes the junctions of `own`. */
+INLINE void try_edges(const struct polygon *own, const struct polygon *other, struct best_edge *best) {
     const bool of_a = own->is_b; /* whose corners are searched */
-    const vf room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k)), core = get(queue, CORE, k);
-    const vec2 axis = get_vec2(queue, AXIS, k);
-    const int first = V_WIDTH == 1 ? find_facing_edge(own, axis) : 0;
-    for (int tried = 0; tried < (own->full ? MAX_CORNERS : own->most); tried++) {
-        const int i = first + tried < own->most ? first + tried : first + tried - own->most;
+    for (int i = 0; i < (own->full ? MAX_CORNERS : own->most); i++) {
         const vec2 n = own->normal[i];
-        if (V_WIDTH == 1 && !vm_any(v_le(v_sub(best->gap, room), v_sub(v2_dot(axis, n), core))))
-            continue;
         vf even = v2_dot(n, other->corner[0]), odd = v2_dot(n, other->corner[1]);
         UNROLL
         for (int j = 2; j < MAX_CORNERS; j += 2) {
@@ -166,12 +149,6 @@ INLINE vi find_closest_corner(const struct polygon *a, const struct polygon *b, 
     return closest;
 }
 
-/* The edge with the largest gap, and the other shape's corner that is closest to it. */
-struct polygon_edge {
-    struct best_edge best;
-    vi corner;
-};
-
 INLINE struct polygon_edge find_best_of(const narc_record *records, const struct queue *queue, int k, bool full) {
     const struct pose pose = get_pose(queue, k);
     const vf none = v_set(-INFINITY);
@@ -182,17 +159,103 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
     b.is_b = true;
     load_polygon(records, get_ring_a(queue, k), &pose, &a);
     load_polygon(records, get_ring_b(queue, k), &pose, &b);
-    try_edges(&a, &b, queue, k, &found.best);
-    try_edges(&b, &a, queue, k, &found.best);
+    try_edges(&a, &b, &found.best);
+    try_edges(&b, &a, &found.best);
     found.corner = find_closest_corner(&a, &b, vi_lt(found.best.edge, vi_set(MAX_CORNERS)), found.best.normal);
+    return found;
+}
+
+/* ------------------------------------------------------------------------------------------------ one lane
+ *
+ * With one lane a junction is asked in the frame of the shape whose it is, so that of all others nothing is placed, and
+ * those that the inscribed circles rule out are left out, as nearly all are once the edge that faces the other body is
+ * known. These values differ from the formula's by as little as others do. Corners may have radii, equal ones. */
+
+/* The other shape, seen from the one whose junctions are tried. */
+struct seen_polygon {
+    const narc_record *own, *other; /* their first arcs */
+    int own_count, other_count;
+    struct pose pose; /* scale_a: of its own */
+    vec2 axis;        /* from the centre of the own inscribed circle to that of the other one */
+};
+
+/* Takes the junctions of `own`; the number of its first one is `first`. Returns whether the best is among them. */
+INLINE bool try_seen_edges(const struct seen_polygon *p, vf radii, vf core, vf room, int first,
+                           struct polygon_edge *found) {
+    struct best_edge *const best = &found->best;
+    float along[MAX_CORNERS];
+    vf most = v_set(-INFINITY);
+    vi facing = vi_set(0);
+    int32_t at;
+    bool is_best = false;
+    for (int i = 0; i < p->own_count; i++) {
+        const narc_stored_arc *const arc = &p->own[i].arc;
+        const vf here = v2_dot(p->axis, (vec2){v_load(&arc->start_x), v_load(&arc->start_y)});
+        facing = vi_select(v_lt(most, here), vi_set(i), facing);
+        most = v_max(most, here);
+        v_store(along + i, here);
+    }
+    vi_store(&at, facing);
+    for (int tried = 0; tried < p->own_count; tried++, at = at + 1 < p->own_count ? at + 1 : 0) {
+        if (!vm_any(v_le(v_sub(best->gap, room), v_sub(v_load(along + at), core))))
+            continue;
+        const narc_stored_arc *const arc = &p->own[at].arc;
+        const vec2 n = {v_load(&arc->start_x), v_load(&arc->start_y)}, m = v2_unrotate(p->pose.rotation, n);
+        vf least = v_set(INFINITY);
+        vi closest = vi_set(0);
+        for (int j = 0; j < p->other_count; j++) {
+            const narc_stored_arc *const other = &p->other[j].arc;
+            const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)});
+            closest = vi_select(v_lt(there, least), vi_set(j), closest);
+            least = v_min(there, least);
+        }
+        const vec2 own = {v_load(&arc->center_x), v_load(&arc->center_y)};
+        const vf reach = v_add(v_mul(p->pose.scale_a, v2_dot(n, own)), radii);
+        const vf gap = v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, least)), reach);
+        best->second = v_max(best->second, v_min(best->gap, gap));
+        if (!vm_any(v_lt(best->gap, gap)))
+            continue;
+        *best = (struct best_edge){gap, best->second, vi_set(first + at), n};
+        found->corner = closest;
+        is_best = true;
+    }
+    return is_best;
+}
+
+INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
+    const struct pose pose = get_pose(queue, k);
+    const vec2 axis = get_vec2(queue, AXIS, k), t = pose.position, q = pose.rotation;
+    const vf core = get(queue, CORE, k), room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k)),
+             none = v_set(-INFINITY);
+    const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
+    int32_t base[2], count[2];
+    vi_store(&base[0], ring_a.base);
+    vi_store(&base[1], ring_b.base);
+    vi_store(&count[0], ring_a.count);
+    vi_store(&count[1], ring_b.count);
+    const narc_record *const a = &records[(uint32_t)base[0]], *const b = &records[(uint32_t)base[1]];
+    const vf radii = v_add(v_mul(v_load(&a->arc.radius), pose.scale_a), v_mul(v_load(&b->arc.radius), pose.scale_b));
+    const struct seen_polygon from_a = {a, b, count[0], count[1], pose, axis};
+    const struct seen_polygon from_b = {b,
+                                        a,
+                                        count[1],
+                                        count[0],
+                                        {v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a},
+                                        v2_unrotate_opposite(q, axis)};
+    struct polygon_edge found = {{none, none, vi_set(0), {v_set(0), v_set(0)}}, vi_set(0)};
+    try_seen_edges(&from_a, radii, core, room, 0, &found);
+    if (try_seen_edges(&from_b, radii, core, room, MAX_CORNERS, &found))
+        found.best.normal = v2_rotate_opposite(q, found.best.normal);
     return found;
 }
 
 /* Those of the pairs k ... of a queue. */
 INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k) {
+    if (V_WIDTH == 1)
+        return find_seen_edge(records, queue, k);
     const vi most = vi_set(MAX_CORNERS);
     const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
-    const bool full = BLOCK > 1 && !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
+    const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
     return full ? find_best_of(records, queue, k, true) : find_best_of(records, queue, k, false);
 }
 

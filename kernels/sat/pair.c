@@ -92,7 +92,17 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
     return true;
 }
 
-/* Pairs of polygons and all that is searched for, in the order of rows.c's stages. */
+/* The last stages. */
+NOINLINE int finish_one(const struct call *call, struct queue *queues) {
+    if (queues[DECIDE].count > 0 && !decide_one(call, queues))
+        return UNANSWERED;
+    const bool edges = queues[ANSWER_EDGES].count > 0;
+    if (edges || queues[ANSWER].count > 0)
+        answer_settled(call, queues, 0, edges);
+    return end_one(call->rows);
+}
+
+/* All that is searched for, in the order of rows.c's stages. */
 NOINLINE int search_one(const narc_one_pair *asked) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
@@ -100,34 +110,53 @@ NOINLINE int search_one(const narc_one_pair *asked) {
     struct rows found;
     vf item[FIELDS];
     const struct call *const call = &own;
-    const bool manifold = asked->manifold;
     start_one(asked, &own, &found);
     const struct filter circles = set_up_one(call, asked, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
-    const bool polygons = vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B])),
-               smooth = !polygons && vm_any(both_have(item, NARC_SHAPE_SMOOTH));
+    const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
     for (int s = PROBE; s <= CLIMB; s++)
         start_queue(&queues[s], &arcs);
-    push(&queues[polygons ? POLYGONS : smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
-    if (polygons)
-        compare_edges(call, queues, 0);
-    if (queues[POLYGONS].count > 0)
-        answer_compared(call, queues, 0, manifold);
+    push(&queues[smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
     if (smooth)
         probe_axis(&rows, call, queues, 0);
     if (queues[PROBE_AGAIN].count > 0)
         probe_again(&rows, call, queues, 0);
     if (queues[CLIMB].count > 0)
         climb_from(&rows, call, queues, 0);
-    if (queues[DECIDE].count > 0 && !decide_one(call, queues))
-        return UNANSWERED;
-    const bool edges = queues[ANSWER_EDGES].count > 0;
-    if (edges || queues[ANSWER].count > 0)
-        answer_settled(call, queues, 0, edges);
-    return end_one(&found);
+    return finish_one(call, queues);
+}
+
+/* Two polygons, sharp or each with corners of one radius. Equal radii only take their sum from every gap. */
+NOINLINE int find_of_polygons(const narc_one_pair *asked) {
+    struct queue queues[STAGES];
+    struct call own;
+    struct rows found;
+    vf item[FIELDS];
+    const struct call *const call = &own;
+    start_one(asked, &own, &found);
+    const struct filter circles = set_up_one(call, asked, item);
+    if (vm_any(vm_or(circles.invalid, circles.apart)))
+        return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
+    queues[POLYGONS].count = queues[DECIDE].count = queues[ANSWER].count = queues[ANSWER_EDGES].count = 0;
+    push(&queues[POLYGONS], vm_front(1), item, ROW_FIELDS);
+    compare_edges(call, queues, 0);
+    if (queues[POLYGONS].count > 0)
+        answer_compared(call, queues, 0, asked->manifold);
+    return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
+}
+
+/* Is a shape a polygon of a few corners, which have one radius? */
+INLINE bool has_equal_corners(const narc_shapes *shapes, const narc_shape_header *header) {
+    if (header->count < 3 || header->count > MAX_CORNERS || header->flags & NARC_SHAPE_SMOOTH)
+        return false;
+    const narc_record *const arcs = narc_arcs_of(shapes, header);
+    bool equal = true;
+    for (int i = 1; !(header->flags & NARC_SHAPE_POLYGON) && i < header->count; i++)
+        equal = equal && arcs[i].arc.radius == arcs[0].arc.radius;
+    return equal;
 }
 
 /* Two boxes or two capsules. */
@@ -193,8 +222,11 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
         return find_of_capsules(asked);
-    if (narc_is_piece(&shapes->headers[a]) || narc_is_piece(&shapes->headers[b]))
+    const narc_shape_header *const header_a = &shapes->headers[a], *const header_b = &shapes->headers[b];
+    if (narc_is_piece(header_a) || narc_is_piece(header_b))
         return UNANSWERED;
+    if (has_equal_corners(shapes, header_a) && has_equal_corners(shapes, header_b))
+        return find_of_polygons(asked);
     return search_one(asked);
 }
 
