@@ -17,6 +17,7 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "sat/arc_lookup.inl"
 #include "simd/simd.h"
 #include "store.h"
 
@@ -167,84 +168,99 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
 
 /* ------------------------------------------------------------------------------------------------ one lane
  *
- * With one lane a junction is asked in the frame of the shape whose it is, so that of all others nothing is placed, and
- * those that the inscribed circles rule out are left out, as nearly all are once the edge that faces the other body is
- * known. These values differ from the formula's by as little as others do. Corners may have radii, equal ones. */
+ * With one lane a junction is asked in the frame of the shape whose it is, so that nothing is placed. The edge that faces
+ * the other body is looked up by the axis of the inscribed circles; from there on, on both sides, junctions are asked until
+ * these circles rule them out, and so all beyond. The other shape's corner is looked up, too, by 16 bits: a gap is too
+ * large if that is the wrong one, and if the largest is, F does not lie within that corner's sector (polygon_contact.inl).
+ * Otherwise values differ from the formula's by as little as those of lanes. Corners may have radii, equal ones. */
 
-/* The other shape, seen from the one whose junctions are tried. */
-struct seen_polygon {
-    const narc_record *own, *other; /* their first arcs */
-    int own_count, other_count;
-    struct pose pose; /* scale_a: of its own */
+/* Two polygons, seen from the one whose junctions are asked. */
+struct seen_polygons {
+    const narc_record *records;
+    struct ring own, other;
+    vi first, info;   /* of the other one's header */
+    struct pose pose; /* of the other one; scale_a: of the own one */
     vec2 axis;        /* from the centre of the own inscribed circle to that of the other one */
+    vf radii, core, room;
 };
 
-/* Takes the junctions of `own`; the number of its first one is `first`. Returns whether the best is among them. */
-INLINE bool try_seen_edges(const struct seen_polygon *p, vf radii, vf core, vf room, int first,
-                           struct polygon_edge *found) {
-    struct best_edge *const best = &found->best;
-    float along[MAX_CORNERS];
-    vf most = v_set(-INFINITY);
-    vi facing = vi_set(0);
-    int32_t at;
-    bool is_best = false;
-    for (int i = 0; i < p->own_count; i++) {
-        const narc_stored_arc *const arc = &p->own[i].arc;
-        const vf here = v2_dot(p->axis, (vec2){v_load(&arc->start_x), v_load(&arc->start_y)});
-        facing = vi_select(v_lt(most, here), vi_set(i), facing);
-        most = v_max(most, here);
-        v_store(along + i, here);
-    }
-    vi_store(&at, facing);
-    for (int tried = 0; tried < p->own_count; tried++, at = at + 1 < p->own_count ? at + 1 : 0) {
-        if (!vm_any(v_le(v_sub(best->gap, room), v_sub(v_load(along + at), core))))
+INLINE const narc_stored_arc *get_stored_arc(const narc_record *records, vi record) {
+    int32_t index;
+    vi_store(&index, record);
+    return &records[(uint32_t)index].arc;
+}
+
+/* Asks the junctions of the own shape that count, beside the arc `facing`; the number of its first one is `first`. */
+SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, struct best_edge *best, vi *corner) {
+    int32_t count, start;
+    vi_store(&count, p->own.count);
+    vi_store(&start, vi_sub(facing, p->own.base));
+    const narc_stored_arc *const arc = get_stored_arc(p->records, facing);
+    const vf before = v2_dot(p->axis, (vec2){v_load(&arc->start_x), v_load(&arc->start_y)}),
+             behind = v2_dot(p->axis, (vec2){v_load(&arc->end_x), v_load(&arc->end_y)});
+    const int end = start + 1 < count ? start + 1 : 0;
+    bool up = vm_any(v_lt(before, behind)), turned = false;
+    int at = up ? end : start;
+    for (int asked = 0; asked < count;) {
+        const narc_stored_arc *const own = get_stored_arc(p->records, vi_add(p->own.base, vi_set(at)));
+        const vec2 n = {v_load(&own->start_x), v_load(&own->start_y)};
+        if (!vm_any(v_le(v_sub(best->gap, p->room), v_sub(v2_dot(p->axis, n), p->core)))) {
+            if (asked == 0 || turned)
+                return;
+            turned = true;
+            up = !up;
+            at = up ? end : start;
             continue;
-        const narc_stored_arc *const arc = &p->own[at].arc;
-        const vec2 n = {v_load(&arc->start_x), v_load(&arc->start_y)}, m = v2_unrotate(p->pose.rotation, n);
-        vf least = v_set(INFINITY);
-        vi closest = vi_set(0);
-        for (int j = 0; j < p->other_count; j++) {
-            const narc_stored_arc *const other = &p->other[j].arc;
-            const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)});
-            closest = vi_select(v_lt(there, least), vi_set(j), closest);
-            least = v_min(there, least);
         }
-        const vec2 own = {v_load(&arc->center_x), v_load(&arc->center_y)};
-        const vf reach = v_add(v_mul(p->pose.scale_a, v2_dot(n, own)), radii);
-        const vf gap = v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, least)), reach);
-        best->second = v_max(best->second, v_min(best->gap, gap));
-        if (!vm_any(v_lt(best->gap, gap)))
-            continue;
-        *best = (struct best_edge){gap, best->second, vi_set(first + at), n};
-        found->corner = closest;
-        is_best = true;
+        const vec2 m = v2_unrotate(p->pose.rotation, n);
+        const vi record = find_arc(p->records, p->first, p->info, (vec2){v_neg(m.x), v_neg(m.y)});
+        const narc_stored_arc *const other = get_stored_arc(p->records, record);
+        const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)}),
+                 here = v2_dot(n, (vec2){v_load(&own->center_x), v_load(&own->center_y)});
+        const vf gap = v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, there)),
+                             v_add(v_mul(p->pose.scale_a, here), p->radii));
+        if (vm_any(v_lt(best->gap, gap))) {
+            *best = (struct best_edge){gap, best->gap, vi_set(first + at), n};
+            *corner = vi_sub(record, p->other.base);
+        } else {
+            best->second = v_max(best->second, gap);
+        }
+        at = up ? (at + 1 < count ? at + 1 : 0) : (at > 0 ? at : count) - 1;
+        asked++;
     }
-    return is_best;
 }
 
 INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
     const struct pose pose = get_pose(queue, k);
     const vec2 axis = get_vec2(queue, AXIS, k), t = pose.position, q = pose.rotation;
-    const vf core = get(queue, CORE, k), room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k)),
-             none = v_set(-INFINITY);
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
-    int32_t base[2], count[2];
-    vi_store(&base[0], ring_a.base);
-    vi_store(&base[1], ring_b.base);
-    vi_store(&count[0], ring_a.count);
-    vi_store(&count[1], ring_b.count);
-    const narc_record *const a = &records[(uint32_t)base[0]], *const b = &records[(uint32_t)base[1]];
-    const vf radii = v_add(v_mul(v_load(&a->arc.radius), pose.scale_a), v_mul(v_load(&b->arc.radius), pose.scale_b));
-    const struct seen_polygon from_a = {a, b, count[0], count[1], pose, axis};
-    const struct seen_polygon from_b = {b,
-                                        a,
-                                        count[1],
-                                        count[0],
-                                        {v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a},
-                                        v2_unrotate_opposite(q, axis)};
+    const vf none = v_set(-INFINITY);
+    const vf radius_a = v_mul(v_load(&get_stored_arc(records, ring_a.base)->radius), pose.scale_a),
+             radius_b = v_mul(v_load(&get_stored_arc(records, ring_b.base)->radius), pose.scale_b);
     struct polygon_edge found = {{none, none, vi_set(0), {v_set(0), v_set(0)}}, vi_set(0)};
-    try_seen_edges(&from_a, radii, core, room, 0, &found);
-    if (try_seen_edges(&from_b, radii, core, room, MAX_CORNERS, &found))
+    vi facing_a, facing_b;
+    int32_t edge;
+    find_arcs(records, queue, k, axis, &facing_a, &facing_b);
+    struct seen_polygons seen = {.records = records,
+                                 .own = ring_a,
+                                 .other = ring_b,
+                                 .first = get_bits(queue, FIRST_RECORD_B, k),
+                                 .info = get_bits(queue, INFO_B, k),
+                                 .pose = pose,
+                                 .axis = axis,
+                                 .radii = v_add(radius_a, radius_b),
+                                 .core = get(queue, CORE, k),
+                                 .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
+    ask_junctions(&seen, facing_a, 0, &found.best, &found.corner);
+    seen.own = ring_b;
+    seen.other = ring_a;
+    seen.first = get_bits(queue, FIRST_RECORD_A, k);
+    seen.info = get_bits(queue, INFO_A, k);
+    seen.pose = (struct pose){v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
+    seen.axis = v2_unrotate_opposite(q, axis);
+    ask_junctions(&seen, facing_b, MAX_CORNERS, &found.best, &found.corner);
+    vi_store(&edge, found.best.edge);
+    if (edge >= MAX_CORNERS)
         found.best.normal = v2_rotate_opposite(q, found.best.normal);
     return found;
 }

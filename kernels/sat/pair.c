@@ -78,6 +78,13 @@ INLINE struct filter set_up_one(const struct call *call, const narc_one_pair *as
     return set_up_pairs(call, &in, 0, &placement, vm_front(1), 0, item);
 }
 
+INLINE void fill_one(struct queue *queue, const vf item[FIELDS]) {
+    UNROLL
+    for (int f = 0; f < ROW_FIELDS; f++)
+        v_store(queue->item[f], item[f]);
+    queue->count = 1;
+}
+
 /* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
 INLINE bool decide_one(const struct call *call, struct queue *queues) {
     const struct queue *const queue = &queues[DECIDE];
@@ -119,7 +126,7 @@ NOINLINE int search_one(const narc_one_pair *asked) {
     const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
     for (int s = PROBE; s <= CLIMB; s++)
         start_queue(&queues[s], &arcs);
-    push(&queues[smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
+    fill_one(&queues[smooth ? PROBE : CLIMB], item);
     if (smooth)
         probe_axis(&rows, call, queues, 0);
     if (queues[PROBE_AGAIN].count > 0)
@@ -141,22 +148,11 @@ NOINLINE int find_of_polygons(const narc_one_pair *asked) {
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     queues[POLYGONS].count = queues[DECIDE].count = queues[ANSWER].count = queues[ANSWER_EDGES].count = 0;
-    push(&queues[POLYGONS], vm_front(1), item, ROW_FIELDS);
+    fill_one(&queues[POLYGONS], item);
     compare_edges(call, queues, 0);
     if (queues[POLYGONS].count > 0)
         answer_compared(call, queues, 0, asked->manifold);
     return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
-}
-
-/* Is a shape a polygon of a few corners, which have one radius? */
-INLINE bool has_equal_corners(const narc_shapes *shapes, const narc_shape_header *header) {
-    if (header->count < 3 || header->count > MAX_CORNERS || header->flags & NARC_SHAPE_SMOOTH)
-        return false;
-    const narc_record *const arcs = narc_arcs_of(shapes, header);
-    bool equal = true;
-    for (int i = 1; !(header->flags & NARC_SHAPE_POLYGON) && i < header->count; i++)
-        equal = equal && arcs[i].arc.radius == arcs[0].arc.radius;
-    return equal;
 }
 
 /* Two boxes or two capsules. */
@@ -172,7 +168,7 @@ INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
     const vm taken = capsules ? take_capsules(&call, &a, &b, &placement, placement.in_range, 0, &queue)
                               : take_boxes(&call, &a, &b, &placement, placement.in_range, 0, &queue);
     if (!vm_any(taken))
-        return search_one(asked);
+        return capsules ? search_one(asked) : find_of_polygons(asked);
     if (queue.count > 0 && !answer_boxes(&call, &queue, 0, 1, capsules, asked->manifold))
         return UNANSWERED;
     return end_one(&found);
@@ -216,17 +212,17 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
     const uint32_t form_a = shapes->boxes[a].info, form_b = shapes->boxes[b].info;
     if (form_a & form_b & NARC_IS_CIRCLE)
         return find_of_circles(asked);
-    if (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE)
-        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & form_b & NARC_IS_BOX)
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
         return find_of_capsules(asked);
+    if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
+        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
+    if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))
+        return find_of_polygons(asked);
     const narc_shape_header *const header_a = &shapes->headers[a], *const header_b = &shapes->headers[b];
     if (narc_is_piece(header_a) || narc_is_piece(header_b))
         return UNANSWERED;
-    if (has_equal_corners(shapes, header_a) && has_equal_corners(shapes, header_b))
-        return find_of_polygons(asked);
     return search_one(asked);
 }
 
