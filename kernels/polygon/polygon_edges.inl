@@ -190,6 +190,56 @@ INLINE const narc_stored_arc *get_stored_arc(const narc_record *records, vi reco
     return &records[(uint32_t)index].arc;
 }
 
+/* Junctions of the own shape: the larger gap of those that were asked and the other one; of the larger, the number of the
+ * arc behind it, and the corner closest to it; and the most that the gap may be at those beside them. */
+struct asked_junctions {
+    vf gap, second, beside;
+    vi edge, corner;
+    vec2 normal;
+};
+
+/* The gap along n, at a junction of the arc `own`, and the corner of the other shape that is closest. */
+INLINE vf ask_gap(const struct seen_polygons *p, const narc_stored_arc *own, vec2 n, vi *out_corner) {
+    const vec2 m = v2_unrotate(p->pose.rotation, n);
+    const vi record = find_arc(p->records, p->first, p->info, (vec2){v_neg(m.x), v_neg(m.y)});
+    const narc_stored_arc *const other = get_stored_arc(p->records, record);
+    const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)}),
+             here = v2_dot(n, (vec2){v_load(&own->center_x), v_load(&own->center_y)});
+    *out_corner = vi_sub(record, p->other.base);
+    return v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, there)),
+                 v_add(v_mul(p->pose.scale_a, here), p->radii));
+}
+
+/* Asks those at the ends of the arc `facing`: the one that faces the other body, and the other one if it counts. */
+INLINE struct asked_junctions ask_facing(const struct seen_polygons *p, vi facing) {
+    const vi one = vi_set(1), back = vi_set(-1);
+    const narc_stored_arc *const arc = get_stored_arc(p->records, facing);
+    const vec2 start = {v_load(&arc->start_x), v_load(&arc->start_y)}, end = {v_load(&arc->end_x), v_load(&arc->end_y)};
+    const vf at_start = v2_dot(p->axis, start), at_end = v2_dot(p->axis, end);
+    const vm ahead = v_lt(at_start, at_end);
+    const vi next = step_record(p->own, facing, one), before = step_record(p->own, facing, back);
+    const narc_stored_arc *const above = get_stored_arc(p->records, next), *const below =
+                                                                               get_stored_arc(p->records, before);
+    const vf at_above = v2_dot(p->axis, (vec2){v_load(&above->end_x), v_load(&above->end_y)}),
+             at_below = v2_dot(p->axis, (vec2){v_load(&below->start_x), v_load(&below->start_y)});
+    struct asked_junctions asked = {.normal = v2_select(ahead, end, start), .second = v_set(-INFINITY)};
+    asked.edge = vi_sub(vi_select(ahead, next, facing), p->own.base);
+    asked.beside = v_sub(v_max(at_above, at_below), p->core);
+    asked.gap = ask_gap(p, arc, asked.normal, &asked.corner);
+    if (vm_any(v_le(v_sub(asked.gap, p->room), v_sub(v_min(at_start, at_end), p->core)))) {
+        const vec2 n = v2_select(ahead, start, end);
+        vi corner;
+        const vf gap = ask_gap(p, arc, n, &corner);
+        const vm better = v_lt(asked.gap, gap);
+        asked.second = v_min(asked.gap, gap);
+        asked.gap = v_max(asked.gap, gap);
+        asked.edge = vi_select(better, vi_sub(vi_select(ahead, facing, next), p->own.base), asked.edge);
+        asked.corner = vi_select(better, corner, asked.corner);
+        asked.normal = v2_select(better, n, asked.normal);
+    }
+    return asked;
+}
+
 /* Asks the junctions of the own shape that count, beside the arc `facing`; the number of its first one is `first`. */
 SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, struct best_edge *best, vi *corner) {
     int32_t count, start;
@@ -212,16 +262,11 @@ SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, s
             at = up ? end : start;
             continue;
         }
-        const vec2 m = v2_unrotate(p->pose.rotation, n);
-        const vi record = find_arc(p->records, p->first, p->info, (vec2){v_neg(m.x), v_neg(m.y)});
-        const narc_stored_arc *const other = get_stored_arc(p->records, record);
-        const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)}),
-                 here = v2_dot(n, (vec2){v_load(&own->center_x), v_load(&own->center_y)});
-        const vf gap = v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, there)),
-                             v_add(v_mul(p->pose.scale_a, here), p->radii));
+        vi closest;
+        const vf gap = ask_gap(p, own, n, &closest);
         if (vm_any(v_lt(best->gap, gap))) {
             *best = (struct best_edge){gap, best->gap, vi_set(first + at), n};
-            *corner = vi_sub(record, p->other.base);
+            *corner = closest;
         } else {
             best->second = v_max(best->second, gap);
         }
@@ -234,34 +279,41 @@ INLINE struct polygon_edge find_seen_edge(const narc_record *records, const stru
     const struct pose pose = get_pose(queue, k);
     const vec2 axis = get_vec2(queue, AXIS, k), t = pose.position, q = pose.rotation;
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
-    const vf none = v_set(-INFINITY);
     const vf radius_a = v_mul(v_load(&get_stored_arc(records, ring_a.base)->radius), pose.scale_a),
              radius_b = v_mul(v_load(&get_stored_arc(records, ring_b.base)->radius), pose.scale_b);
-    struct polygon_edge found = {{none, none, vi_set(0), {v_set(0), v_set(0)}}, vi_set(0)};
     vi facing_a, facing_b;
-    int32_t edge;
     find_arcs(records, queue, k, axis, &facing_a, &facing_b);
-    struct seen_polygons seen = {.records = records,
-                                 .own = ring_a,
-                                 .other = ring_b,
-                                 .first = get_bits(queue, FIRST_RECORD_B, k),
-                                 .info = get_bits(queue, INFO_B, k),
-                                 .pose = pose,
-                                 .axis = axis,
-                                 .radii = v_add(radius_a, radius_b),
-                                 .core = get(queue, CORE, k),
-                                 .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
-    ask_junctions(&seen, facing_a, 0, &found.best, &found.corner);
-    seen.own = ring_b;
-    seen.other = ring_a;
-    seen.first = get_bits(queue, FIRST_RECORD_A, k);
-    seen.info = get_bits(queue, INFO_A, k);
-    seen.pose = (struct pose){v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
-    seen.axis = v2_unrotate_opposite(q, axis);
-    ask_junctions(&seen, facing_b, MAX_CORNERS, &found.best, &found.corner);
-    vi_store(&edge, found.best.edge);
-    if (edge >= MAX_CORNERS)
-        found.best.normal = v2_rotate_opposite(q, found.best.normal);
+    const struct seen_polygons from_a = {.records = records,
+                                         .own = ring_a,
+                                         .other = ring_b,
+                                         .first = get_bits(queue, FIRST_RECORD_B, k),
+                                         .info = get_bits(queue, INFO_B, k),
+                                         .pose = pose,
+                                         .axis = axis,
+                                         .radii = v_add(radius_a, radius_b),
+                                         .core = get(queue, CORE, k),
+                                         .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
+    struct seen_polygons from_b = from_a;
+    from_b.own = ring_b;
+    from_b.other = ring_a;
+    from_b.first = get_bits(queue, FIRST_RECORD_A, k);
+    from_b.info = get_bits(queue, INFO_A, k);
+    from_b.pose = (struct pose){v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
+    from_b.axis = v2_unrotate_opposite(q, axis);
+    const struct asked_junctions a = ask_facing(&from_a, facing_a), b = ask_facing(&from_b, facing_b);
+    const vm of_b = v_lt(a.gap, b.gap);
+    const vi edge_b = vi_add(b.edge, vi_set(MAX_CORNERS));
+    struct polygon_edge found = {{v_max(a.gap, b.gap), v_max(v_min(a.gap, b.gap), v_max(a.second, b.second)),
+                                  vi_select(of_b, edge_b, a.edge),
+                                  v2_select(of_b, v2_rotate_opposite(q, b.normal), a.normal)},
+                                 vi_select(of_b, b.corner, a.corner)};
+    if (vm_any(v_le(v_sub(found.best.gap, from_a.room), v_max(a.beside, b.beside)))) { /* others count, too */
+        found.best.gap = found.best.second = v_set(-INFINITY);
+        ask_junctions(&from_a, facing_a, 0, &found.best, &found.corner);
+        ask_junctions(&from_b, facing_b, MAX_CORNERS, &found.best, &found.corner);
+        if (vm_any(vi_lt(vi_set(MAX_CORNERS - 1), found.best.edge)))
+            found.best.normal = v2_rotate_opposite(q, found.best.normal);
+    }
     return found;
 }
 
