@@ -493,6 +493,8 @@ static void place_beside(struct test_random *random, size_t shapes, narc_body tw
     for (int side = 0; side < 2; side++) {
         const double angle = side ? turn + tilt : random_below(random, 2) ? 0 : turn;
         two[side] = (narc_body){0, 0, (float)cos(angle), (float)sin(angle), 1, (uint32_t)random_below(random, shapes)};
+        if (angle == 0 && random_below(random, 2))
+            two[side].sine = -0.0f;
         if (random_below(random, 3) == 0)
             two[side].scale = (float)random_log_between(random, 0.25, 4);
     }
