@@ -31,6 +31,9 @@ narc_status narc_check_reserved(void *const *reserved, size_t count, const char 
 /* Are there no more than `most`? `items` are named in the message. */
 narc_status narc_check_count(size_t count, size_t most, const char *items, narc_error *error);
 
+/* Is `owner`.origin finite? NULL is fine. */
+narc_status narc_check_origin(const narc_point *origin, const char *owner, narc_error *error);
+
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
 
@@ -81,6 +84,11 @@ size_t narc_find_bad_pair(const narc_batch *batch);
 /* The first of items first .. first + count - 1 of a column that is not below `limit`; first + count if all are. */
 size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
                            const narc_workers *workers);
+
+/* Are there the bodies, and their shapes, that `count` items name in a column, or without one items themselves? `item` is what
+ * a message calls one. */
+narc_status narc_check_named(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column column,
+                             size_t count, const char *item, const narc_workers *workers, narc_error *error);
 
 /* Checks a set of bodies by itself: their number and columns. */
 narc_status narc_check_set(const narc_bodies *bodies, narc_error *error);

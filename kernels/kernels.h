@@ -143,6 +143,7 @@ typedef struct narc_box_batch {
     const narc_bodies *bodies;
     float margin;
     narc_float_column motion_x, motion_y; /* base NULL: none */
+    const narc_point *origin;             /* NULL: (0, 0) */
 } narc_box_batch;
 
 /* What the kernel of parts works on. */
@@ -174,6 +175,7 @@ typedef struct narc_ray_batch {
     const narc_ray_options *options;
     size_t most; /* rows of each ray, at least 1 */
     narc_ray_hit *out;
+    narc_index_column body; /* of pairs: the body of each ray; base NULL: ray k has body k */
 } narc_ray_batch;
 
 /* What the kernel of regions works on. */

@@ -274,7 +274,7 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     for (int side = 0; side < 2; side++) {
         struct narc_cast_side *const its = &casts->side[side];
         const narc_motions *const motions = &given->motions[side];
-        const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], item[side]);
+        const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], NULL, item[side]);
         const vi pairs = vi_load(number);
         vi_store(body[side], call->own ? vi_add(vi_add(pairs, pairs), vi_set(side)) : vi_load(item[side]));
         memcpy(its->shape + to, shape[side], V_WIDTH * sizeof(int32_t));
