@@ -213,14 +213,6 @@ static void find_bounds(void *argument, size_t part, size_t first, size_t end) {
     s->part[part].bounds = all;
 }
 
-/* Puts a 0 before each of 16 bits. */
-static uint32_t spread_bits(uint32_t k) {
-    k = (k | k << 8) & 0x00ff00ff;
-    k = (k | k << 4) & 0x0f0f0f0f;
-    k = (k | k << 2) & 0x33333333;
-    return (k | k << 1) & 0x55555555;
-}
-
 static void list_on_curve(void *argument, size_t part, size_t first, size_t end) {
     const sorting *const s = argument;
     const float min_x = s->min_x, min_y = s->min_y, scale = s->scale;
@@ -231,7 +223,7 @@ static void list_on_curve(void *argument, size_t part, size_t first, size_t end)
         const float x = (halve_centre(box->min_x, box->max_x) - min_x) * scale;
         const float y = (halve_centre(box->min_y, box->max_y) - min_y) * scale;
         const uint32_t key =
-            fine ? spread_bits((uint32_t)(int32_t)x) | spread_bits((uint32_t)(int32_t)y) << 1 : UINT32_MAX;
+            fine ? narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1 : UINT32_MAX;
         s->from[k] = (entry){key, (uint32_t)k};
     }
 }

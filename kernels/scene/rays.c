@@ -65,19 +65,6 @@ struct walk {
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
 
-/* The box around all. Empty boxes change nothing. */
-static narc_box find_scene_box(const narc_index *index) {
-    narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    const narc_index_node *const root = &index->nodes[index->first_node[index->level_count - 1]];
-    for (int k = 0; k < NARC_NODE_SLOTS; k++) {
-        box.min_x = root->min_x[k] < box.min_x ? root->min_x[k] : box.min_x;
-        box.min_y = root->min_y[k] < box.min_y ? root->min_y[k] : box.min_y;
-        box.max_x = root->max_x[k] > box.max_x ? root->max_x[k] : box.max_x;
-        box.max_y = root->max_y[k] > box.max_y ? root->max_y[k] : box.max_y;
-    }
-    return box;
-}
-
 static float clip_to_float(double a) { return (float)find_most(-(double)FLT_MAX, find_least((double)FLT_MAX, a)); }
 
 /* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
@@ -92,11 +79,12 @@ INLINE void set_limit(struct walk *w, float fraction) {
 enum { READ = 128, READ_ROOM = READ + V_WIDTH };
 
 struct read_axis {
-    float first_start[READ], last_start[READ], inverse[READ_ROOM];
+    float first_start[READ_ROOM], last_start[READ_ROOM], inverse[READ_ROOM];
 };
 
 struct read_rays {
-    size_t first, count;
+    size_t count;
+    uint32_t number[READ];
     double origin_x[READ], origin_y[READ], direction_x[READ_ROOM], direction_y[READ_ROOM];
     double length[READ_ROOM]; /* 0: it has no answer */
     double inverse_length[READ_ROOM];
@@ -137,7 +125,22 @@ INLINE void put_axis(vd start, vd room, vd inverse, size_t k, struct read_axis *
     d_put_floats(out->inverse + k, clip(inverse, (double)LARGEST_INVERSE));
 }
 
-/* Rays first .. first + count - 1, at most READ, set out from where they meet the scene, with room. */
+/* Columns of the rays `number`, the first one again behind the last. */
+INLINE void read_floats(const narc_float_column *column, const uint32_t *number, size_t end, double *out) {
+    for (size_t k = 0; k < end; k++)
+        out[k] = (double)narc_float_at(*column, number[k]);
+}
+
+INLINE void read_positions(const narc_position_column *column, const uint32_t *number, size_t end, double *out) {
+    if (column->precision == NARC_FLOAT64)
+        for (size_t k = 0; k < end; k++)
+            out[k] = narc_double_at(*column, number[k]);
+    else
+        for (size_t k = 0; k < end; k++)
+            out[k] = (double)narc_single_at(*column, number[k]);
+}
+
+/* Rays first .. first + count - 1 in their order, at most READ, set out from where they meet the scene, with room. */
 static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
                       struct read_rays *out) {
     const narc_rays *const rays = batch->rays;
@@ -147,17 +150,19 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
     const double least_touch = size * ((double)ROOM + (double)batch->shapes->largest_ratio * TOUCH_ROOM);
     const bool single = count == 1;
-    out->first = first;
+    const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH, given = single ? 1 : end;
+    const uint32_t *const order = batch->options->out_order;
     out->count = count;
-    const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH;
-    for (size_t k = 0; k < (single ? 1 : end); k++) {
+    for (size_t k = 0; k < given; k++) {
         const size_t i = first + (k < count ? k : 0);
-        out->origin_x[k] = narc_position_at(rays->x, i);
-        out->origin_y[k] = narc_position_at(rays->y, i);
-        out->direction_x[k] = (double)narc_float_at(rays->motion_x, i);
-        out->direction_y[k] = (double)narc_float_at(rays->motion_y, i);
-        out->fraction[k] = rays->fraction.base ? narc_float_at(rays->fraction, i) : 1;
+        out->number[k] = order ? order[i] : (uint32_t)i;
     }
+    read_positions(&rays->x, out->number, given, out->origin_x);
+    read_positions(&rays->y, out->number, given, out->origin_y);
+    read_floats(&rays->motion_x, out->number, given, out->direction_x);
+    read_floats(&rays->motion_y, out->number, given, out->direction_y);
+    for (size_t k = 0; k < given; k++)
+        out->fraction[k] = narc_float_or(rays->fraction, out->number[k], 1);
     for (size_t k = 0; k < end; k += D_WIDTH) {
         const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
         const vd x = get_lanes(out->origin_x + k, single), y = get_lanes(out->origin_y + k, single);
@@ -189,7 +194,8 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         double *const columns[] = {out->direction_x, out->direction_y, out->length, out->inverse_length};
         for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
             memset(columns[k] + end, 0, V_WIDTH * sizeof *columns[k]);
-        float *const others[] = {out->limit, out->x.inverse, out->y.inverse};
+        float *const others[] = {out->limit,         out->x.inverse,    out->y.inverse,   out->x.first_start,
+                                 out->y.first_start, out->x.last_start, out->y.last_start};
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
             memset(others[k] + end, 0, V_WIDTH * sizeof *others[k]);
     }
@@ -206,7 +212,7 @@ INLINE struct axis get_axis(const struct read_axis *axis, size_t k, bool backwar
 
 /* The rows of the k-th of them. */
 INLINE narc_ray_hit *get_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
-    return batch->out + (rays->first + k) * batch->most;
+    return batch->out + (size_t)rays->number[k] * batch->most;
 }
 
 /* The k-th of them; its rows are empty. */
@@ -222,7 +228,7 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
     w->aslant = left != down ? 7 : 0;
     w->base = rays->base[k];
     w->room = rays->room[k];
-    w->chosen = read_chosen(&batch->options->search, rays->first + k);
+    w->chosen = read_chosen(&batch->options->search, rays->number[k]);
     w->found = 0;
     w->rows = get_rows(batch, rays, k);
     w->limit = rays->limit[k];
@@ -421,17 +427,18 @@ INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned l
                 narc_find_flips(index->order[node], w->left, w->aslant));
 }
 
-NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
+/* From a node downwards. Is the ray done? */
+NOINLINE bool walk_below(const narc_ray_batch *batch, struct walk *w, unsigned level, uint32_t below) {
     struct descent d;
-    unsigned slot, level = batch->index->level_count - 1;
-    uint32_t below = 0;
+    unsigned slot;
     d.left = d.above = 0;
     for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         visit_node(batch->index, w, level, below, &d);
         do {
-            if (!take_slot(&d, w->limit, &level, &slot, &is_near) ||
-                (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot)))
-                return;
+            if (!take_slot(&d, w->limit, &level, &slot, &is_near))
+                return false;
+            if (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot))
+                return true;
         } while (!is_near || level == 0);
     }
 }
@@ -851,13 +858,113 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------ packets */
+
+/* Neighbouring rays of one quadrant, in their order, go the upper part of their way together, in lanes. A ray visits what it would
+ * alone, in the same order. */
+struct packet {
+    struct read_rays *rays;
+    size_t first, count;
+    float least_x, least_y; /* the last start of all that lies furthest back along each axis */
+    struct walk walks[MOST_TOGETHER];
+};
+
+/* So many go on together. */
+enum { LEAST_IN_PACKET = 4 };
+
+/* Gathers the rays from `first` on that are in one quadrant, up to where a fan begins; how many are they? */
+INLINE size_t gather_packet(const narc_ray_batch *batch, struct read_rays *rays, size_t first, struct packet *p) {
+    const size_t left = rays->count - first, end = first + (left < MOST_TOGETHER ? left : MOST_TOGETHER);
+    const bool backwards = rays->x.inverse[first] < 0, down = rays->y.inverse[first] < 0;
+    size_t k = first + 1;
+    while (k < end && rays->length[k] > 0 && rays->base[k] >= 0 && (rays->x.inverse[k] < 0) == backwards &&
+           (rays->y.inverse[k] < 0) == down && !(k + 1 < end && joins(rays, k, k + 1)))
+        k++;
+    p->rays = rays;
+    p->first = first;
+    p->count = k - first;
+    p->least_x = rays->x.last_start[first];
+    p->least_y = rays->y.last_start[first];
+    for (size_t i = 0; p->count >= LEAST_IN_PACKET && i < p->count; i++) {
+        const float x = rays->x.last_start[first + i], y = rays->y.last_start[first + i];
+        begin_walk(batch, rays, first + i, &p->walks[i]);
+        p->least_x = (x < p->least_x) != backwards ? x : p->least_x;
+        p->least_y = (y < p->least_y) != down ? y : p->least_y;
+    }
+    return p->count;
+}
+
+/* Which of these rays meet a slot's box: as find_slots(), with a lane for each ray. */
+INLINE uint32_t find_rays_apart(const struct packet *p, const narc_index_node *node, unsigned slot, uint32_t rays) {
+    const struct walk *const w = &p->walks[0];
+    const struct read_axis *const x = &p->rays->x, *const y = &p->rays->y;
+    const float *const planes = (const float *)node + slot, *const limit = p->rays->limit;
+    const vf first_x = v_set(planes[w->x.first]), last_x = v_set(planes[w->x.last]);
+    const vf first_y = v_set(planes[w->y.first]), last_y = v_set(planes[w->y.last]);
+    uint64_t found = 0;
+    for (size_t k = 0; k < p->count; k += V_WIDTH) {
+        const size_t at = p->first + k;
+        if (!(rays >> k & (uint32_t)(((uint64_t)1 << V_WIDTH) - 1)))
+            continue;
+        const vf inverse_x = v_load(x->inverse + at), inverse_y = v_load(y->inverse + at);
+        const vf near_x = v_mul(v_sub(first_x, v_load(x->first_start + at)), inverse_x);
+        const vf near_y = v_mul(v_sub(first_y, v_load(y->first_start + at)), inverse_y);
+        const vf far_x = v_mul(v_sub(last_x, v_load(x->last_start + at)), inverse_x);
+        const vf far_y = v_mul(v_sub(last_y, v_load(y->last_start + at)), inverse_y);
+        const vf near = v_max(v_max(near_x, near_y), v_set(0));
+        const vf far = v_mul(v_min(far_x, far_y), v_set(1 + ROOM));
+        found |= (uint64_t)vm_bits(vm_and(v_le(near, far), v_le(near, v_load(limit + at)))) << k;
+    }
+    return (uint32_t)found & rays;
+}
+
+/* A bit for each slot that lies ahead of some ray, or beside it. */
+INLINE uint32_t find_slots_ahead(const struct packet *p, const narc_index_node *node) {
+    const struct walk *const w = &p->walks[0];
+    const float *const planes = (const float *)node;
+    const vf least_x = v_set(p->least_x), least_y = v_set(p->least_y), inverse_x = v_set(w->x.inverse),
+             inverse_y = v_set(w->y.inverse);
+    uint32_t slots = 0;
+    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
+        const vf x = v_mul(v_sub(v_load(planes + w->x.last + k), least_x), inverse_x);
+        const vf y = v_mul(v_sub(v_load(planes + w->y.last + k), least_y), inverse_y);
+        slots |= vm_bits(v_le(v_set(0), v_min(x, y))) << k;
+    }
+    return slots & ((1u << NARC_NODE_SLOTS) - 1);
+}
+
+/* Rays of a packet at a node above the leaves. */
+static void walk_packet(const narc_ray_batch *batch, struct packet *p, unsigned level, uint32_t at, uint32_t rays) {
+    const narc_index *const index = batch->index;
+    const size_t node = (size_t)index->first_node[level] + at;
+    const unsigned flips = narc_find_flips(index->order[node], p->walks[0].left, p->walks[0].aslant);
+    for (uint32_t slots = flipped[flips][find_slots_ahead(p, &index->nodes[node])]; slots; slots &= slots - 1) {
+        const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
+        const uint32_t below = NARC_NODE_SLOTS * at + slot;
+        uint32_t left = find_rays_apart(p, &index->nodes[node], slot, rays);
+        if (!left)
+            continue;
+        if (level > 1 && COUNT_BITS(left) >= LEAST_IN_PACKET) {
+            walk_packet(batch, p, level - 1, below, left);
+            continue;
+        }
+        for (; left; left &= left - 1) {
+            const unsigned ray = (unsigned)FIND_LOWEST(left);
+            struct walk *const w = &p->walks[ray];
+            const bool done =
+                mask_slots(index, node, 1u << slot, w->chosen.mask) && walk_below(batch, w, level - 1, below);
+            p->rays->limit[p->first + ray] = done ? -1 : w->limit;
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
 static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) {
     struct walk w;
     while (loners->next < loners->count) {
         begin_walk(batch, loners->rays, loners->number[loners->next++], &w);
-        walk_alone(batch, &w);
+        walk_below(batch, &w, batch->index->level_count - 1, 0);
     }
 }
 
@@ -865,7 +972,7 @@ static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) 
 INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
     narc_ray_hit *const rows = get_rows(batch, rays, k);
     for (size_t i = 0; i < batch->most; i++)
-        rows[i] = (narc_ray_hit){.ray = (uint32_t)(rays->first + k)};
+        rows[i] = (narc_ray_hit){.ray = rays->number[k]};
     return rays->length[k] > 0;
 }
 
@@ -873,6 +980,8 @@ INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays
 static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays) {
     struct loners loners;
     struct fan fan;
+    struct packet packet;
+    const bool in_packets = NARC_SHORTCUTS && batch->options->out_order && batch->index->level_count > 1;
     size_t skipped = 0;
     loners.rays = rays;
     loners.next = loners.count = 0;
@@ -883,8 +992,14 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
         if (!(rays->length[k] > 0) || rays->base[k] < 0)
             continue;
         count = gather_fan(batch, scene, rays, k, &fan);
-        if (count >= LEAST_TOGETHER)
+        if (count >= LEAST_TOGETHER) {
             walk_together(batch, &fan);
+            continue;
+        }
+        if (in_packets)
+            count = gather_packet(batch, rays, k, &packet);
+        if (count >= LEAST_IN_PACKET)
+            walk_packet(batch, &packet, batch->index->level_count - 1, 0, UINT32_MAX >> (MOST_TOGETHER - count));
         else
             for (size_t i = k; i < k + count; i++)
                 loners.number[loners.count++] = (uint8_t)i;
@@ -897,9 +1012,7 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
 }
 
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
-    const bool is_empty = batch->index->level_count == 0;
-    const narc_box scene =
-        is_empty ? (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY} : find_scene_box(batch->index);
+    const narc_box scene = narc_find_index_box(batch->index);
     size_t skipped = 0;
     struct read_rays rays;
     for (size_t k = first; k < first + count; k += READ) {
