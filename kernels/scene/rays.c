@@ -44,6 +44,7 @@ struct axis {
  * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
 struct descent {
     uint64_t left, above;
+    unsigned levels;
     uint32_t node[NARC_INDEX_LEVELS];
     unsigned flips[NARC_INDEX_LEVELS];
     float near[NARC_INDEX_LEVELS][NARC_NODE_SLOTS > V_WIDTH ? NARC_NODE_SLOTS : V_WIDTH];
@@ -393,8 +394,22 @@ INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsig
         d->above |= left;
 }
 
-/* The next slot that is left, and its level; whether it is no further than the limit. False if there is none. */
-INLINE bool take_slot(struct descent *d, float limit, unsigned *level, unsigned *slot, bool *is_near) {
+/* Leaves out what is further than a limit that has become less, from a level up. */
+NOINLINE void drop_slots(struct descent *d, unsigned level, float limit) {
+    for (; level < d->levels; level++) {
+        uint32_t far = 0;
+        for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
+            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[level] + k))) << k;
+        const uint64_t dropped = (uint64_t)flipped[d->flips[level]][far & 0xff] << 8 * (level & 7);
+        if (level < 8)
+            d->left &= ~dropped;
+        else
+            d->above &= ~dropped;
+    }
+}
+
+/* The next slot that is left, and its level. False if there is none. */
+INLINE bool take_slot(struct descent *d, unsigned *level, unsigned *slot) {
     unsigned bit;
     if (d->left) {
         bit = (unsigned)FIND_LOWEST_64(d->left);
@@ -407,15 +422,20 @@ INLINE bool take_slot(struct descent *d, float limit, unsigned *level, unsigned 
     }
     *level = bit >> 3;
     *slot = (bit & 7) ^ d->flips[*level];
-    *is_near = d->near[*level][*slot] <= limit;
     return true;
 }
 
 /* Casts a ray at the body in a leaf's slot. Is it done? */
-INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, size_t leaf, unsigned slot) {
+INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, struct descent *d, unsigned slot) {
+    const size_t leaf = d->node[0];
+    const float limit = w->limit;
     struct body_frame frame;
-    return load_slot_frame(batch, leaf, slot, &frame) &&
-           cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]);
+    if (load_slot_frame(batch, leaf, slot, &frame) &&
+        cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]))
+        return true;
+    if (w->limit < limit)
+        drop_slots(d, 0, w->limit);
+    return false;
 }
 
 /* Leaves the slots of a node that the ray meets to be visited. */
@@ -432,14 +452,15 @@ NOINLINE bool walk_below(const narc_ray_batch *batch, struct walk *w, unsigned l
     struct descent d;
     unsigned slot;
     d.left = d.above = 0;
-    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+    d.levels = level + 1;
+    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         visit_node(batch->index, w, level, below, &d);
         do {
-            if (!take_slot(&d, w->limit, &level, &slot, &is_near))
+            if (!take_slot(&d, &level, &slot))
                 return false;
-            if (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot))
+            if (level == 0 && visit_slot(batch, w, &d, slot))
                 return true;
-        } while (!is_near || level == 0);
+        } while (level == 0);
     }
 }
 
@@ -738,7 +759,8 @@ NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct 
     }
 }
 
-INLINE void visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size_t leaf, uint32_t slots,
+/* Is the largest limit less now? */
+INLINE bool visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size_t leaf, uint32_t slots,
                                 const float *near) {
     const narc_index *const index = batch->index;
     unsigned slot;
@@ -757,7 +779,9 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size
                 cast_one(batch, f, &frame, index->body[number], k);
         }
     }
+    const float limit = f->limit;
     f->limit = find_largest_limit(f);
+    return f->limit < limit;
 }
 
 static void walk_together(const narc_ray_batch *batch, struct fan *f) {
@@ -767,24 +791,22 @@ static void walk_together(const narc_ray_batch *batch, struct fan *f) {
     unsigned slot, level = index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
+    d.levels = index->level_count;
     begin_fan(batch, f);
-    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
             mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), f->mask);
         d.node[level] = below;
         if (level > 0)
             leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->left, first->aslant));
-        else
-            visit_leaf_together(batch, f, node, slots, d.near[0]);
-        do {
-            if (!take_slot(&d, f->limit, &level, &slot, &is_near)) {
-                if (goes_in_lanes(f))
-                    put_hits(batch, f, UINT32_MAX);
-                return;
-            }
-        } while (!is_near);
+        else if (visit_leaf_together(batch, f, node, slots, d.near[0]))
+            drop_slots(&d, 1, f->limit);
+        if (!take_slot(&d, &level, &slot))
+            break;
     }
+    if (goes_in_lanes(f))
+        put_hits(batch, f, UINT32_MAX);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays side by side */
@@ -801,11 +823,8 @@ struct stepper {
 
 /* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
 INLINE bool find_step(struct stepper *s) {
-    bool is_near;
-    do {
-        if (!take_slot(&s->d, s->walk.limit, &s->level, &s->slot, &is_near))
-            return false;
-    } while (!is_near);
+    if (!take_slot(&s->d, &s->level, &s->slot))
+        return false;
     s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
     return true;
 }
@@ -824,7 +843,7 @@ INLINE bool begin_steps(const narc_ray_batch *batch, struct loners *loners, stru
     begin_walk(batch, loners->rays, loners->number[loners->next++], &out->walk);
     out->d.left = out->d.above = 0;
     out->below = 0;
-    out->level = batch->index->level_count;
+    out->level = out->d.levels = batch->index->level_count;
     return true;
 }
 
@@ -850,7 +869,7 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
             struct stepper *const s = at_body[k];
             bool goes_on;
             do {
-                goes_on = !visit_slot(batch, &s->walk, s->d.node[0], s->slot) && find_step(s);
+                goes_on = !visit_slot(batch, &s->walk, &s->d, s->slot) && find_step(s);
             } while (goes_on && s->level == 0);
             if (goes_on || begin_steps(batch, loners, s))
                 at_node[node_count++] = s;
