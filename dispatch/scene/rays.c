@@ -31,22 +31,22 @@ static void cast_part(void *argument, size_t part, size_t first, size_t end) {
 
 /* ------------------------------------------------------------------------------------------------ order */
 
-/* Rays are sorted by the quadrants of their directions, and in each by the cells of a grid over the scene that they start
- * in, along Morton's curve. Numbers of buckets, and then how many rays are in each, wait where rows will be. */
+/* Rays are sorted by the cells of a grid over the scene that they start in, along Morton's curve. Where rows will be, the
+ * cells' numbers wait, and where the rays of each begin. */
 struct ordering {
     const narc_rays *rays;
     double min_x, min_y, cells_x, cells_y; /* the latter in a unit of length */
     uint32_t cells;                        /* along each axis */
-    uint32_t *key;
+    uint32_t *cell;
 };
 
-enum { KEYS = 4096, RAYS_IN_CELL = 8, MOST_CELLS = 4096 };
+enum { CELLS = 4096, RAYS_IN_CELL = 2, MOST_CELLS = 4096 };
 
 static uint32_t find_cell(double at, uint32_t cells) {
     return at < (double)cells ? at >= 1 ? (uint32_t)(int32_t)at : 0 : cells - 1;
 }
 
-static void find_keys(void *argument, size_t part, size_t first, size_t end) {
+static void find_cells(void *argument, size_t part, size_t first, size_t end) {
     const struct ordering *const o = argument;
     const narc_rays *const rays = o->rays;
     (void)part;
@@ -54,8 +54,7 @@ static void find_keys(void *argument, size_t part, size_t first, size_t end) {
         const double x = narc_position_at(rays->x, k), y = narc_position_at(rays->y, k);
         const uint32_t cell_x = find_cell((x - o->min_x) * o->cells_x, o->cells);
         const uint32_t cell_y = find_cell((y - o->min_y) * o->cells_y, o->cells);
-        const uint32_t left = narc_float_at(rays->motion_x, k) < 0, down = narc_float_at(rays->motion_y, k) < 0;
-        o->key[k] = (2 * left + down) * (o->cells * o->cells) + narc_spread_bits(cell_x) + 2 * narc_spread_bits(cell_y);
+        o->cell[k] = narc_spread_bits(cell_x) + 2 * narc_spread_bits(cell_y);
     }
 }
 
@@ -63,19 +62,19 @@ static void order_rays(const narc_index *index, const narc_rays *rays, const nar
                        uint32_t *out) {
     const narc_box scene = narc_find_index_box(index);
     struct ordering o = {rays, (double)scene.min_x, (double)scene.min_y, 0, 0, 1, room};
-    uint32_t *const place = o.key + rays->count;
+    uint32_t *const place = o.cell + rays->count;
     while (4 * o.cells * o.cells * RAYS_IN_CELL <= rays->count && o.cells < MOST_CELLS)
         o.cells *= 2;
     o.cells_x = o.cells / ((double)scene.max_x - (double)scene.min_x);
     o.cells_y = o.cells / ((double)scene.max_y - (double)scene.min_y);
-    const size_t buckets = 4 * (size_t)o.cells * o.cells;
-    narc_run_ranges(workers, rays->count, KEYS, find_keys, &o);
-    memset(place, 0, buckets * sizeof *place);
+    const size_t cells = (size_t)o.cells * o.cells;
+    narc_run_ranges(workers, rays->count, CELLS, find_cells, &o);
+    memset(place, 0, cells * sizeof *place);
     for (size_t k = 0; k < rays->count; k++)
-        place[o.key[k]]++;
-    narc_begin_places(place, buckets, buckets, 1);
+        place[o.cell[k]]++;
+    narc_begin_places(place, cells, cells, 1);
     for (size_t k = 0; k < rays->count; k++)
-        out[place[o.key[k]]++] = (uint32_t)k;
+        out[place[o.cell[k]]++] = (uint32_t)k;
 }
 
 /* ------------------------------------------------------------------------------------------------ the call */

@@ -80,7 +80,7 @@ INLINE void set_limit(struct walk *w, float fraction) {
 enum { READ = 128, READ_ROOM = READ + V_WIDTH };
 
 struct read_axis {
-    float first_start[READ_ROOM], last_start[READ_ROOM], inverse[READ_ROOM];
+    float first_start[READ], last_start[READ], inverse[READ_ROOM];
 };
 
 struct read_rays {
@@ -195,8 +195,7 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         double *const columns[] = {out->direction_x, out->direction_y, out->length, out->inverse_length};
         for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
             memset(columns[k] + end, 0, V_WIDTH * sizeof *columns[k]);
-        float *const others[] = {out->limit,         out->x.inverse,    out->y.inverse,   out->x.first_start,
-                                 out->y.first_start, out->x.last_start, out->y.last_start};
+        float *const others[] = {out->limit, out->x.inverse, out->y.inverse};
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
             memset(others[k] + end, 0, V_WIDTH * sizeof *others[k]);
     }
@@ -447,19 +446,17 @@ INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned l
                 narc_find_flips(index->order[node], w->left, w->aslant));
 }
 
-/* From a node downwards. Is the ray done? */
-NOINLINE bool walk_below(const narc_ray_batch *batch, struct walk *w, unsigned level, uint32_t below) {
+NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     struct descent d;
-    unsigned slot;
+    unsigned slot, level = batch->index->level_count - 1;
+    uint32_t below = 0;
     d.left = d.above = 0;
     d.levels = level + 1;
     for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         visit_node(batch->index, w, level, below, &d);
         do {
-            if (!take_slot(&d, &level, &slot))
-                return false;
-            if (level == 0 && visit_slot(batch, w, &d, slot))
-                return true;
+            if (!take_slot(&d, &level, &slot) || (level == 0 && visit_slot(batch, w, &d, slot)))
+                return;
         } while (level == 0);
     }
 }
@@ -877,113 +874,13 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ packets */
-
-/* Neighbouring rays of one quadrant, in their order, go the upper part of their way together, in lanes. A ray visits what it would
- * alone, in the same order. */
-struct packet {
-    struct read_rays *rays;
-    size_t first, count;
-    float least_x, least_y; /* the last start of all that lies furthest back along each axis */
-    struct walk walks[MOST_TOGETHER];
-};
-
-/* So many go on together. */
-enum { LEAST_IN_PACKET = 4 };
-
-/* Gathers the rays from `first` on that are in one quadrant, up to where a fan begins; how many are they? */
-INLINE size_t gather_packet(const narc_ray_batch *batch, struct read_rays *rays, size_t first, struct packet *p) {
-    const size_t left = rays->count - first, end = first + (left < MOST_TOGETHER ? left : MOST_TOGETHER);
-    const bool backwards = rays->x.inverse[first] < 0, down = rays->y.inverse[first] < 0;
-    size_t k = first + 1;
-    while (k < end && rays->length[k] > 0 && rays->base[k] >= 0 && (rays->x.inverse[k] < 0) == backwards &&
-           (rays->y.inverse[k] < 0) == down && !(k + 1 < end && joins(rays, k, k + 1)))
-        k++;
-    p->rays = rays;
-    p->first = first;
-    p->count = k - first;
-    p->least_x = rays->x.last_start[first];
-    p->least_y = rays->y.last_start[first];
-    for (size_t i = 0; p->count >= LEAST_IN_PACKET && i < p->count; i++) {
-        const float x = rays->x.last_start[first + i], y = rays->y.last_start[first + i];
-        begin_walk(batch, rays, first + i, &p->walks[i]);
-        p->least_x = (x < p->least_x) != backwards ? x : p->least_x;
-        p->least_y = (y < p->least_y) != down ? y : p->least_y;
-    }
-    return p->count;
-}
-
-/* Which of these rays meet a slot's box: as find_slots(), with a lane for each ray. */
-INLINE uint32_t find_rays_apart(const struct packet *p, const narc_index_node *node, unsigned slot, uint32_t rays) {
-    const struct walk *const w = &p->walks[0];
-    const struct read_axis *const x = &p->rays->x, *const y = &p->rays->y;
-    const float *const planes = (const float *)node + slot, *const limit = p->rays->limit;
-    const vf first_x = v_set(planes[w->x.first]), last_x = v_set(planes[w->x.last]);
-    const vf first_y = v_set(planes[w->y.first]), last_y = v_set(planes[w->y.last]);
-    uint64_t found = 0;
-    for (size_t k = 0; k < p->count; k += V_WIDTH) {
-        const size_t at = p->first + k;
-        if (!(rays >> k & (uint32_t)(((uint64_t)1 << V_WIDTH) - 1)))
-            continue;
-        const vf inverse_x = v_load(x->inverse + at), inverse_y = v_load(y->inverse + at);
-        const vf near_x = v_mul(v_sub(first_x, v_load(x->first_start + at)), inverse_x);
-        const vf near_y = v_mul(v_sub(first_y, v_load(y->first_start + at)), inverse_y);
-        const vf far_x = v_mul(v_sub(last_x, v_load(x->last_start + at)), inverse_x);
-        const vf far_y = v_mul(v_sub(last_y, v_load(y->last_start + at)), inverse_y);
-        const vf near = v_max(v_max(near_x, near_y), v_set(0));
-        const vf far = v_mul(v_min(far_x, far_y), v_set(1 + ROOM));
-        found |= (uint64_t)vm_bits(vm_and(v_le(near, far), v_le(near, v_load(limit + at)))) << k;
-    }
-    return (uint32_t)found & rays;
-}
-
-/* A bit for each slot that lies ahead of some ray, or beside it. */
-INLINE uint32_t find_slots_ahead(const struct packet *p, const narc_index_node *node) {
-    const struct walk *const w = &p->walks[0];
-    const float *const planes = (const float *)node;
-    const vf least_x = v_set(p->least_x), least_y = v_set(p->least_y), inverse_x = v_set(w->x.inverse),
-             inverse_y = v_set(w->y.inverse);
-    uint32_t slots = 0;
-    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
-        const vf x = v_mul(v_sub(v_load(planes + w->x.last + k), least_x), inverse_x);
-        const vf y = v_mul(v_sub(v_load(planes + w->y.last + k), least_y), inverse_y);
-        slots |= vm_bits(v_le(v_set(0), v_min(x, y))) << k;
-    }
-    return slots & ((1u << NARC_NODE_SLOTS) - 1);
-}
-
-/* Rays of a packet at a node above the leaves. */
-static void walk_packet(const narc_ray_batch *batch, struct packet *p, unsigned level, uint32_t at, uint32_t rays) {
-    const narc_index *const index = batch->index;
-    const size_t node = (size_t)index->first_node[level] + at;
-    const unsigned flips = narc_find_flips(index->order[node], p->walks[0].left, p->walks[0].aslant);
-    for (uint32_t slots = flipped[flips][find_slots_ahead(p, &index->nodes[node])]; slots; slots &= slots - 1) {
-        const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
-        const uint32_t below = NARC_NODE_SLOTS * at + slot;
-        uint32_t left = find_rays_apart(p, &index->nodes[node], slot, rays);
-        if (!left)
-            continue;
-        if (level > 1 && COUNT_BITS(left) >= LEAST_IN_PACKET) {
-            walk_packet(batch, p, level - 1, below, left);
-            continue;
-        }
-        for (; left; left &= left - 1) {
-            const unsigned ray = (unsigned)FIND_LOWEST(left);
-            struct walk *const w = &p->walks[ray];
-            const bool done =
-                mask_slots(index, node, 1u << slot, w->chosen.mask) && walk_below(batch, w, level - 1, below);
-            p->rays->limit[p->first + ray] = done ? -1 : w->limit;
-        }
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
 static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) {
     struct walk w;
     while (loners->next < loners->count) {
         begin_walk(batch, loners->rays, loners->number[loners->next++], &w);
-        walk_below(batch, &w, batch->index->level_count - 1, 0);
+        walk_alone(batch, &w);
     }
 }
 
@@ -999,8 +896,6 @@ INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays
 static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays) {
     struct loners loners;
     struct fan fan;
-    struct packet packet;
-    const bool in_packets = NARC_SHORTCUTS && batch->options->out_order && batch->index->level_count > 1;
     size_t skipped = 0;
     loners.rays = rays;
     loners.next = loners.count = 0;
@@ -1015,13 +910,8 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
             walk_together(batch, &fan);
             continue;
         }
-        if (in_packets)
-            count = gather_packet(batch, rays, k, &packet);
-        if (count >= LEAST_IN_PACKET)
-            walk_packet(batch, &packet, batch->index->level_count - 1, 0, UINT32_MAX >> (MOST_TOGETHER - count));
-        else
-            for (size_t i = k; i < k + count; i++)
-                loners.number[loners.count++] = (uint8_t)i;
+        for (size_t i = k; i < k + count; i++)
+            loners.number[loners.count++] = (uint8_t)i;
     }
     if (IN_LANES && loners.count >= LEAST_TOGETHER)
         walk_apart(batch, &loners);
