@@ -147,7 +147,8 @@ static void check_pointers(void) {
            AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(motion_x, 56) && AT(motion_y, 72) && AT(fraction, 88) &&
                AT(reserved, 104));
     LAYOUT(narc_ray_options, 128,
-           AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(reserved, 96));
+           AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(out_order, 96) &&
+               AT(reserved, 104));
     LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
     LAYOUT(narc_nearest_options, 120,
            AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));
