@@ -775,6 +775,7 @@ struct ray_options : detail::options<ray_options, narc_ray_options> {
     ray_options &any() noexcept { return set(&narc_ray_options::any, 1u); }
     ray_options &most(size_t value) noexcept { return set(&narc_ray_options::most, value); }
     ray_options &skipped(size_t &out) noexcept { return set(&narc_ray_options::out_skipped, &out); }
+    ray_options &order(uint32_t *out) noexcept { return set(&narc_ray_options::out_order, out); }
 };
 
 struct cast_options : detail::options<cast_options, narc_cast_options> {

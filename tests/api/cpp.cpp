@@ -663,14 +663,18 @@ void test_rays_and_points() {
     rays.motion_x = narc::column(along);
     rays.motion_y = narc::column(none);
     const auto options = narc::ray_options().search(search).inside(NARC_INSIDE_IGNORES).most(3).skipped(skipped);
-    const narc_ray_options c = narc::ray_options(options).any();
-    CHECK(c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES && c.any == 1 && c.most == 3);
+    std::array<uint32_t, 2> order = {7, 7};
+    const narc_ray_options c = narc::ray_options(options).any().order(order.data());
+    CHECK(c.out_order == order.data() && c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES && c.any == 1 && c.most == 3);
     std::vector<narc_ray_hit> hits;
     const auto found = narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, hits).value();
     std::vector<narc_ray_hit> expected(6);
     CHECK(!narc_cast_rays(index, scene.shapes, &scene.bodies, &rays, &options, expected.data(), 6, nullptr));
     CHECK(found.size() == 6 && skipped == 0 && found[0].body == 1 && found[1].body == 2 && found[3].body == 4);
     CHECK(std::memcmp(hits.data(), expected.data(), 6 * sizeof expected[0]) == 0);
+    const auto ordered = narc::ray_options(options).order(order.data());
+    CHECK(narc::cast_rays(index, scene.shapes, scene.bodies, rays, ordered, expected).value().size() == 6);
+    CHECK(std::memcmp(hits.data(), expected.data(), 6 * sizeof expected[0]) == 0 && order[0] + order[1] == 1);
     CHECK(status_of(narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, narc::span(hits.data(), 5))) ==
           NARC_ERROR_CAPACITY);
 

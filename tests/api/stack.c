@@ -139,8 +139,12 @@ static narc_status ask_index(narc_error *error) {
     const narc_float_column shift = NARC_ARRAY(shifts);
     const narc_rays rays = {
         .count = BODIES, .x = at.x, .y = at.y, .motion_x = shift, .motion_y = shift, .fraction = NARC_ARRAY(margins)};
-    const narc_ray_options leave = {
-        .search.workers = query.workers, .inside = NARC_INSIDE_LEAVES, .most = 3, .out_skipped = &skipped};
+    static uint32_t order[BODIES];
+    const narc_ray_options leave = {.search.workers = query.workers,
+                                    .inside = NARC_INSIDE_LEAVES,
+                                    .most = 3,
+                                    .out_skipped = &skipped,
+                                    .out_order = query.workers ? order : NULL};
     narc_index *index = NULL;
     narc_pairs met;
     const bool fine =

@@ -135,8 +135,12 @@ static void ask_index(const struct everything *e, const narc_box *boxes, const n
     movers.count = e->movers;
     expect_ok(narc_create_index(&guard_allocator, &index), &error);
     expect_ok(narc_build_index(index, boxes, e->indexed, &(narc_index_options){.workers = workers}, &error), &error);
-    const narc_ray_options through = {
-        .search = search, .inside = e->inside, .most = MOST_HITS, .out_skipped = &counts[7]};
+    uint32_t *const order = guard_allocate(e->rays.count * sizeof *order);
+    const narc_ray_options through = {.search = search,
+                                      .inside = e->inside,
+                                      .most = MOST_HITS,
+                                      .out_skipped = &counts[7],
+                                      .out_order = e->inside == NARC_INSIDE_LEAVES ? order : NULL};
     expect_ok(narc_cast_rays(index, e->shapes, &bodies, &e->rays, &through, add_rows(answers, ANSWER_RAYS, hits), hits,
                              &error),
               &error);
@@ -152,6 +156,7 @@ static void ask_index(const struct everything *e, const narc_box *boxes, const n
     ask_lists(e, index, boxes, workers, answers);
     narc_destroy_index(index);
     guard_release(own);
+    guard_release(order);
 }
 
 struct answers ask_everything(const struct everything *e, const narc_workers *workers) {
