@@ -108,7 +108,8 @@ static void check_pointers(void) {
     LAYOUT(narc_pairs, 96,
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
-    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(reserved, 64));
+    LAYOUT(narc_pair_filter, 96,
+           AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(world, 64) && AT(reserved, 80));
     LAYOUT(narc_contacts_settings, 64,
            AT(rows, 0) && AT(user_size, 8) && AT(row_offset, 16) && AT(allocator, 24) && AT(reserved, 32));
     LAYOUT(narc_step, 216,
