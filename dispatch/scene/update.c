@@ -52,6 +52,10 @@ static uint64_t find_category(const updating *u, uint32_t body) {
     return narc_word_at(u->making.options->category, body);
 }
 
+static uint32_t find_world(const updating *u, uint32_t body) {
+    return narc_index_at(u->making.options->world, body);
+}
+
 /* Puts a body into a slot of a leaf. */
 static void put_body(updating *u, size_t place, uint32_t body) {
     narc_index *const index = u->index;
@@ -60,6 +64,8 @@ static void put_body(updating *u, size_t place, uint32_t body) {
     index->place[body] = (uint32_t)place;
     if (index->masks)
         index->masks[place] = find_category(u, body);
+    if (index->worlds)
+        index->worlds[place].lowest = index->worlds[place].highest = find_world(u, body);
     touch(index, 0, place / NARC_NODE_SLOTS);
 }
 
@@ -73,6 +79,8 @@ static void take_out(updating *u, uint32_t body) {
     index->place[body] = NARC_NO_PLACE;
     if (index->masks)
         index->masks[place] = 0;
+    if (index->worlds)
+        index->worlds[place] = (narc_world_range){UINT32_MAX, 0};
     touch(index, 0, node);
     for (unsigned level = 0; level < index->level_count; level++, node /= NARC_NODE_SLOTS)
         index->filled[index->first_node[level] + node]--;
@@ -91,7 +99,8 @@ static void look_at(updating *u, uint32_t body) {
     if (place == NARC_WAITING_PLACE)
         return;
     const bool is_full = narc_is_full_box(box);
-    if (place != NARC_NO_PLACE && is_full && holds(&index->home[place / NARC_NODE_SLOTS], box)) {
+    if (place != NARC_NO_PLACE && is_full && holds(&index->home[place / NARC_NODE_SLOTS], box) &&
+        (!index->worlds || index->worlds[place].lowest == find_world(u, body))) {
         if (!has_box(&index->nodes[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, box) ||
             (index->masks && index->masks[place] != find_category(u, body)))
             put_body(u, place, body);
@@ -170,6 +179,21 @@ static void spread(updating *u, unsigned level, size_t node, uint32_t body) {
 /* So many bodies that came count one that did not find room in the leaf that it belongs to. */
 enum { MISPLACED = 4 };
 
+/* Of some of a node's slots those that are nearest to a world, such as those that have it. */
+static unsigned find_nearest(const narc_world_range *worlds, uint32_t world, unsigned slots) {
+    unsigned nearest = 0;
+    uint32_t least = UINT32_MAX;
+    for (unsigned k = 0; k < NARC_NODE_SLOTS; k++) {
+        const narc_world_range *const own = &worlds[k];
+        const uint32_t distance = world < own->lowest ? own->lowest - world : world > own->highest ? world - own->highest : 0;
+        if (!(slots >> k & 1) || own->lowest > own->highest || distance > least)
+            continue;
+        nearest = (distance < least ? 0 : nearest) | 1u << k;
+        least = distance;
+    }
+    return nearest;
+}
+
 /* The leaves below a node of level 1 that have room. */
 static unsigned find_room(const narc_index *index, size_t node) {
     const size_t first = node * NARC_NODE_SLOTS;
@@ -186,12 +210,20 @@ static bool insert(updating *u, uint32_t body) {
     unsigned level = index->level_count - 1, worn = 0, cost = 1;
     size_t node[NARC_INDEX_LEVELS] = {0};
     for (; level > 0; level--) {
-        narc_index_node *const boxes = &index->nodes[index->first_node[level] + node[level]];
-        size_t slot = choose_slot(boxes, box, UINT8_MAX);
+        const size_t at = index->first_node[level] + node[level];
+        narc_index_node *const boxes = &index->nodes[at];
+        narc_world_range *const worlds = index->worlds ? index->worlds + NARC_NODE_SLOTS * at : NULL;
+        size_t slot = choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body), UINT8_MAX) : UINT8_MAX);
         if (level == 1 && index->filled[NARC_NODE_SLOTS * node[1] + slot] == NARC_NODE_SLOTS) {
             const unsigned leaves = find_room(index, node[1]);
-            slot = leaves ? choose_slot(boxes, box, leaves) : slot;
+            const unsigned near = worlds ? find_nearest(worlds, find_world(u, body), leaves) : leaves;
+            slot = near ? choose_slot(boxes, box, near) : slot;
             cost = MISPLACED;
+        }
+        if (worlds) {
+            const uint32_t world = find_world(u, body);
+            worlds[slot].lowest = world < worlds[slot].lowest ? world : worlds[slot].lowest;
+            worlds[slot].highest = world > worlds[slot].highest ? world : worlds[slot].highest;
         }
         narc_box grown = {boxes->min_x[slot], boxes->min_y[slot], boxes->max_x[slot], boxes->max_y[slot]};
         grow(&grown, box);
@@ -277,8 +309,8 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
         return narc_fail(error, NARC_ERROR_INDEX, bad, (double)body, "changed[%zu] is %lu, but there are %zu boxes",
                          bad, body, count);
     }
-    if (index->level_count == 0 || count == 0 || !index->masks != !o->category.base ||
-        !narc_has_index_room(index, count, o->category.base))
+    if (index->level_count == 0 || count == 0 || !index->masks != !o->category.base || !index->worlds != !o->world.base ||
+        !narc_has_index_room(index, count, o->category.base, o->world.base))
         return narc_build_index(index, boxes, count, o, error);
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)

@@ -93,7 +93,7 @@ struct bundle {
     bool open;                              /* may others join? */
     float left_x, left_y, right_x, right_y; /* the directions of the outermost rays */
     float limit;                            /* the largest */
-    uint64_t mask;                          /* of all */
+    struct chosen chosen;                   /* one world; all masks together */
     float limits[MOST_TOGETHER + V_WIDTH], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
     struct walk *walks;
     size_t alone; /* those that wait in front of them */
@@ -431,7 +431,7 @@ INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned l
     const size_t node = (size_t)index->first_node[level] + at;
     const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
     d->node[level] = at;
-    leave_slots(d, level, mask_slots(index, node, slots, w->chosen.mask),
+    leave_slots(d, level, mask_slots(index, node, slots, &w->chosen),
                 narc_find_flips(index->order[node], w->x.backwards, w->y.backwards));
 }
 
@@ -472,7 +472,7 @@ static void begin_bundle(const narc_ray_batch *batch, struct bundle *b) {
     const narc_index_query *const search = &batch->options->search;
     size_t left = 0, right = 0;
     b->limit = -INFINITY;
-    b->mask = 0;
+    b->chosen = b->walks[0].chosen;
     for (size_t k = 0; k < MOST_TOGETHER; k++) {
         b->limits[k] = -INFINITY;
         b->inverse_x[k] = b->inverse_y[k] = 0;
@@ -485,7 +485,7 @@ static void begin_bundle(const narc_ray_batch *batch, struct bundle *b) {
         b->inverse_x[k] = w->x.inverse;
         b->inverse_y[k] = w->y.inverse;
         b->limit = w->limit > b->limit ? w->limit : b->limit;
-        b->mask |= w->chosen.mask;
+        b->chosen.mask |= w->chosen.mask;
     }
     b->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
                   !search->mask.base;
@@ -687,7 +687,7 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
     for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
-            mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], d.near[level]), b->mask);
+            mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], d.near[level]), &b->chosen);
         d.node[level] = below;
         if (level > 0)
             leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->x.backwards, first->y.backwards));
