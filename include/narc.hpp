@@ -453,6 +453,19 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
                                        : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
 }
 
+struct box_options : detail::options<box_options, narc_box_options> {
+    box_options &margin(float value) noexcept { return set(&narc_box_options::margin, value); }
+    box_options &motion(narc_float_column x, narc_float_column y) noexcept {
+        return set(&narc_box_options::motion_x, x).set(&narc_box_options::motion_y, y);
+    }
+    box_options &range(size_t from, size_t items) noexcept {
+        return set(&narc_box_options::first, from).set(&narc_box_options::count, items);
+    }
+    box_options &skipped(size_t &out) noexcept { return set(&narc_box_options::out_skipped, &out); }
+    box_options &origin(const narc_point &value) noexcept { return set(&narc_box_options::origin, &value); }
+    box_options &origin(const narc_point &&) = delete;
+};
+
 class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_phase, narc_destroy_broad_phase> {
   public:
     using owner::owner;
@@ -494,6 +507,8 @@ struct step : detail::options<step, narc_step> {
     step &run(narc_index_column value) noexcept { return set(&narc_step::run, value); }
     step &filter(const narc_pair_filter &value) noexcept { return set(&narc_step::filter, &value); }
     step &filter(const narc_pair_filter &&) = delete;
+    step &origin(const narc_point &value) noexcept { return set(&narc_step::origin, &value); }
+    step &origin(const narc_point &&) = delete;
     // These are the pairs that there are; `same`: those of the last step.
     step &pairs(const narc_pairs &value, bool same = false) noexcept {
         return set(&narc_step::pairs, &value).set(&narc_step::same_pairs, same ? 1u : 0u);
@@ -565,6 +580,8 @@ class contacts : public detail::owner<narc_contacts, detail::create_contacts, na
 struct index_options : detail::options<index_options, narc_index_options> {
     index_options &category(narc_word_column value) noexcept { return set(&narc_index_options::category, value); }
     index_options &fast() noexcept { return set(&narc_index_options::fast, 1u); }
+    index_options &origin(const narc_point &value) noexcept { return set(&narc_index_options::origin, &value); }
+    index_options &origin(const narc_point &&) = delete;
 };
 
 struct index_query : detail::options<index_query, narc_index_query> {

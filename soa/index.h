@@ -64,6 +64,7 @@ typedef struct narc_region {
 
 struct narc_index {
     narc_allocator allocator;
+    narc_point origin;                      /* of their coordinates, in the world */
     size_t count;                           /* boxes; those that are empty are in no leaf */
     size_t slots;                           /* of leaves, eight each */
     unsigned level_count;                   /* 0: there are no boxes, and no nodes */
@@ -124,10 +125,10 @@ static inline size_t narc_count_nodes(const narc_index *index) {
     return index->level_count > 0 ? (size_t)index->first_node[index->level_count - 1] + 1 : 0;
 }
 
-/* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; does the ray go left, down? */
-static inline unsigned narc_find_flips(unsigned order, bool left, bool down) {
-    const unsigned backwards_x = left ? 7 : 0, differ = left != down ? 7 : 0;
-    return backwards_x ^ (order & differ) ^ order >> 3;
+/* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; `left`: 7 if the ray goes left, else
+ * 0; `aslant`: 7 if it goes left and up, or right and down, else 0. */
+static inline unsigned narc_find_flips(unsigned order, unsigned left, unsigned aslant) {
+    return left ^ (order & aslant) ^ order >> 3;
 }
 
 #endif

@@ -182,7 +182,9 @@ narc_status narc_check_making(const narc_index *index, const narc_box *boxes, si
                               const narc_index_options *options, narc_error *error) {
     if (!index || (!boxes && count > 0))
         return narc_fail_missing(error, !index ? "index" : "boxes");
-    const narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
+    narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
+    if (status == NARC_OK)
+        status = narc_check_origin(options->origin, "options", error);
     return status == NARC_OK ? narc_check_reserved(options->reserved, 2, "options", error) : status;
 }
 
@@ -202,6 +204,7 @@ narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t co
     index->count = count;
     index->masks = o->category.base ? index->mask_memory : NULL;
     index->worlds = o->world.base ? index->world_memory : NULL;
+    index->origin = o->origin ? *o->origin : (narc_point){0, 0};
     index->perimeter = 0;
     index->level_count = 0;
     if (count > 0)

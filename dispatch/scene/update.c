@@ -316,6 +316,9 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     if (!kernels)
         return status;
     updating u = {{index, kernels, boxes, o}, index, boxes, 0};
+    const narc_point origin = o->origin ? *o->origin : (narc_point){0, 0};
+    const bool all = !changed || origin.x != index->origin.x || origin.y != index->origin.y;
+    index->origin = origin;
     for (size_t k = index->count; k > count; k--)
         if (index->place[k - 1] != NARC_NO_PLACE)
             take_out(&u, (uint32_t)(k - 1));
@@ -323,13 +326,12 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
         index->place[k] = NARC_NO_PLACE;
     const size_t old_count = index->count;
     index->count = count;
-    for (size_t k = 0; k < changed_count; k++)
-        look_at(&u, narc_index_at(list, k));
-    if (changed)
-        for (size_t k = old_count; k < count; k++)
-            look_at(&u, (uint32_t)k);
-    else
+    if (all)
         look_at_all(&u);
+    for (size_t k = 0; k < changed_count && !all; k++)
+        look_at(&u, narc_index_at(list, k));
+    for (size_t k = old_count; k < count && !all; k++)
+        look_at(&u, (uint32_t)k);
     if (!insert_all(&u)) {
         narc_make_index(&u.making, false);
         return NARC_OK;

@@ -216,4 +216,21 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
     return true;
 }
 
+/* What rows say of them, as put_place() has it. */
+struct half_place {
+    vec2d normal, point;
+};
+
+INLINE vec2d d_turn_to_world(const struct body_frame *frame, vec2d a) {
+    const vec2d rotation = d_set2(frame->rotation);
+    return (vec2d){rotation.x * a.x - rotation.y * a.y, rotation.y * a.x + rotation.x * a.y};
+}
+
+INLINE struct half_place find_place_lanes(const struct body_frame *frame, const struct half_met *met) {
+    const vec2d foot = met->foot, v = met->direction;
+    const vd along = met->distance * d_set(frame->inverse_scale) - met->ahead, scale = d_set(frame->scale);
+    const vec2d point = d_turn_to_world(frame, (vec2d){foot.x + along * v.x, foot.y + along * v.y});
+    return (struct half_place){d_turn_to_world(frame, met->normal), {point.x * scale, point.y * scale}};
+}
+
 #endif

@@ -34,12 +34,11 @@
 /* A ray's way along an axis past boxes: the planes that it meets first and last of a node's, as offsets in floats, and
  * the start, moved apart by the room. */
 struct axis {
-    bool backwards;
-    int first, last;
+    size_t first, last;
     float first_start, last_start, inverse;
 };
 
-#define PLANE(name) ((int)(offsetof(narc_index_node, name) / sizeof(float)))
+#define PLANE(name) (offsetof(narc_index_node, name) / sizeof(float))
 
 /* Where a walk is: of each level its node, counted within it, and how far away the slots are. All that is left to visit is
  * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
@@ -54,52 +53,14 @@ struct descent {
 struct walk {
     struct ray ray;
     struct axis x, y;
-    double base; /* where along the ray nears are counted from */
-    float room;  /* of a distance */
-    float limit; /* no body whose near is above is wanted */
+    unsigned left, aslant; /* see narc_find_flips() */
+    double base;           /* where along the ray nears are counted from */
+    float room;            /* of a distance */
+    float limit;           /* no body whose near is above is wanted */
     float limit_fraction;
     struct chosen chosen;
     size_t found;
     narc_ray_hit *rows;
-};
-
-enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, MOST_ALONE = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
-
-/* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
-#if defined(__wasm__)
-#define IN_LANES 0
-#else
-#define IN_LANES (NARC_SHORTCUTS && V_WIDTH > 1)
-#endif
-
-/* The least cosine of the angle between a ray and the first that it goes with. */
-#define COHERENT 0.9
-
-/* Of rays in lanes, each with room for one hit: its nearest, as far as it is not yet in its row. A body is its number less
- * 2^31, and UINT32_MAX there is none. */
-struct nearest {
-    uint32_t waiting; /* a bit for each ray */
-    double direction_x[LANES], direction_y[LANES], length[LANES], inverse_length[LANES];
-    float fraction[LANES];
-    int32_t body[LANES], feature[LANES]; /* the arc, and ON_EDGE */
-    double met[8][LANES];                /* struct meeting: foot, direction, normal, ahead, distance */
-};
-
-/* Rays of one origin whose directions differ little go through the index together: a node is visited if it meets the
- * wedge between the outermost two, and only at a leaf each ray is asked, in a lane of its own. A ray's answer is the same
- * whether it goes alone or not. */
-struct bundle {
-    size_t count;
-    bool open;                              /* may others join? */
-    float left_x, left_y, right_x, right_y; /* the directions of the outermost rays */
-    float limit;                            /* the largest */
-    struct chosen chosen;                   /* one world; all masks together */
-    float limits[MOST_TOGETHER + V_WIDTH], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
-    struct walk *walks;
-    size_t alone; /* those that wait in front of them */
-    struct walk all[MOST_ALONE + LEAST_TOGETHER + MOST_TOGETHER];
-    bool in_lanes;
-    struct nearest nearest;
 };
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
@@ -127,19 +88,20 @@ INLINE void set_limit(struct walk *w, float fraction) {
     w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
 }
 
-/* Rays that are read together, in double lanes. */
-enum { READ = 32 };
+/* Rays that are read together, in double lanes. Vectors may read on behind them. */
+enum { READ = 128, READ_ROOM = READ + V_WIDTH };
 
 struct read_axis {
-    float first_start[READ], last_start[READ], inverse[READ];
+    float first_start[READ], last_start[READ], inverse[READ_ROOM];
 };
 
 struct read_rays {
-    double origin_x[READ], origin_y[READ], direction_x[READ], direction_y[READ];
-    double length[READ]; /* 0: it has no answer */
-    double inverse_length[READ];
+    size_t first, count;
+    double origin_x[READ], origin_y[READ], direction_x[READ_ROOM], direction_y[READ_ROOM];
+    double length[READ_ROOM]; /* 0: it has no answer */
+    double inverse_length[READ_ROOM];
     double base[READ]; /* where it meets the scene; -1: it never does */
-    float fraction[READ], room[READ], limit[READ];
+    float fraction[READ], room[READ], limit[READ_ROOM];
     struct read_axis x, y;
 };
 
@@ -185,6 +147,8 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
     const double least_touch = size * ((double)ROOM + (double)batch->shapes->largest_ratio * TOUCH_ROOM);
     const bool single = count == 1;
+    out->first = first;
+    out->count = count;
     const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH;
     for (size_t k = 0; k < (single ? 1 : end); k++) {
         const size_t i = first + (k < count ? k : 0);
@@ -196,7 +160,8 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
     }
     for (size_t k = 0; k < end; k += D_WIDTH) {
         const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
-        const vd x = get_lanes(out->origin_x + k, single), y = get_lanes(out->origin_y + k, single);
+        const vd x = get_lanes(out->origin_x + k, single) - d_set(batch->index->origin.x);
+        const vd y = get_lanes(out->origin_y + k, single) - d_set(batch->index->origin.y);
         const vd motion_x = get_lanes(out->direction_x + k, single), motion_y = get_lanes(out->direction_y + k, single);
         const vd length = d_sqrt(motion_x * motion_x + motion_y * motion_y), inverse_length = one / length;
         const vl is_finite = d_le(d_abs(x), largest) & d_le(d_abs(y), largest) & d_le(length, largest);
@@ -221,32 +186,46 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         put_axis(start_x, room, inverse_x, k, &out->x);
         put_axis(start_y, room, inverse_y, k, &out->y);
     }
+    if (NARC_SHORTCUTS && V_WIDTH > 1 && !single) {
+        double *const columns[] = {out->direction_x, out->direction_y, out->length, out->inverse_length};
+        for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
+            memset(columns[k] + end, 0, V_WIDTH * sizeof *columns[k]);
+        float *const others[] = {out->limit, out->x.inverse, out->y.inverse};
+        for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+            memset(others[k] + end, 0, V_WIDTH * sizeof *others[k]);
+    }
 }
 
 /* Planes of greatest coordinates lie so many floats behind those of the least. */
 enum { PLANES_APART = PLANE(max_x) - PLANE(min_x) };
 
-INLINE struct axis get_axis(const struct read_axis *axis, size_t k, int min) {
-    const bool backwards = axis->inverse[k] < 0;
-    const int first = min + PLANES_APART * backwards;
-    return (struct axis){backwards,           first,           2 * min + PLANES_APART - first, axis->first_start[k],
-                         axis->last_start[k], axis->inverse[k]};
+INLINE struct axis get_axis(const struct read_axis *axis, size_t k, bool backwards, size_t min) {
+    const size_t first = min + PLANES_APART * backwards;
+    return (struct axis){first, 2 * min + PLANES_APART - first, axis->first_start[k], axis->last_start[k],
+                         axis->inverse[k]};
 }
 
-/* The k-th of them; its hits go to the rows, which are empty. */
-INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays, size_t k, narc_ray_hit *rows,
-                       struct walk *w) {
+/* The rows of the k-th of them. */
+INLINE narc_ray_hit *get_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
+    return batch->out + (rays->first + k) * batch->most;
+}
+
+/* The k-th of them; its rows are empty. */
+INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays, size_t k, struct walk *w) {
     w->ray = (struct ray){{rays->origin_x[k], rays->origin_y[k]},
                           {rays->direction_x[k], rays->direction_y[k]},
                           rays->length[k],
                           rays->inverse_length[k]};
-    w->x = get_axis(&rays->x, k, PLANE(min_x));
-    w->y = get_axis(&rays->y, k, PLANE(min_y));
+    const bool left = rays->x.inverse[k] < 0, down = rays->y.inverse[k] < 0;
+    w->x = get_axis(&rays->x, k, left, PLANE(min_x));
+    w->y = get_axis(&rays->y, k, down, PLANE(min_y));
+    w->left = left ? 7 : 0;
+    w->aslant = left != down ? 7 : 0;
     w->base = rays->base[k];
     w->room = rays->room[k];
-    w->chosen = read_chosen(&batch->options->search, rows->ray);
+    w->chosen = read_chosen(&batch->options->search, rays->first + k);
     w->found = 0;
-    w->rows = rows;
+    w->rows = get_rows(batch, rays, k);
     w->limit = rays->limit[k];
     w->limit_fraction = rays->fraction[k];
 }
@@ -271,13 +250,21 @@ INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, fl
     return slots & ((1u << NARC_NODE_SLOTS) - 1);
 }
 
-/* Bit k becomes bit k ^ flips. */
-INLINE uint32_t flip_slots(uint32_t slots, unsigned flips) {
-    const unsigned one = flips & 1, two = flips & 2, four = flips & 4;
-    slots = (slots & 0x55) << one | (slots & 0xaa) >> one;
-    slots = (slots & 0x33) << two | (slots & 0xcc) >> two;
-    return (slots & 0x0f) << four | (slots & 0xf0) >> four;
-}
+/* Of each set of slots and each flips: bit k becomes bit k ^ flips. */
+#define FLIP_1(set, flips) ((flips)&1 ? ((set)&0x55) << 1 | ((set)&0xaa) >> 1 : (set))
+#define FLIP_2(set, flips) ((flips)&2 ? ((set)&0x33) << 2 | ((set)&0xcc) >> 2 : (set))
+#define FLIP_4(set, flips) ((flips)&4 ? ((set)&0x0f) << 4 | ((set)&0xf0) >> 4 : (set))
+#define FLIP(set, flips)   FLIP_4(FLIP_2(FLIP_1(set, flips), flips), flips)
+#define FLIP_8(set, f)                                                                                                 \
+    FLIP(set, f), FLIP(set + 1, f), FLIP(set + 2, f), FLIP(set + 3, f), FLIP(set + 4, f), FLIP(set + 5, f),            \
+        FLIP(set + 6, f), FLIP(set + 7, f)
+#define FLIP_64(set, f)                                                                                                \
+    FLIP_8(set, f), FLIP_8(set + 8, f), FLIP_8(set + 16, f), FLIP_8(set + 24, f), FLIP_8(set + 32, f),                 \
+        FLIP_8(set + 40, f), FLIP_8(set + 48, f), FLIP_8(set + 56, f)
+#define FLIP_ALL(f)                                                                                                    \
+    { FLIP_64(0, f), FLIP_64(64, f), FLIP_64(128, f), FLIP_64(192, f) }
+static const uint8_t flipped[8][256] = {FLIP_ALL(0), FLIP_ALL(1), FLIP_ALL(2), FLIP_ALL(3),
+                                        FLIP_ALL(4), FLIP_ALL(5), FLIP_ALL(6), FLIP_ALL(7)};
 
 INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
     return a->fraction < b->fraction || (a->fraction == b->fraction && a->body < b->body);
@@ -393,7 +380,7 @@ INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned s
 }
 
 INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsigned flips) {
-    const uint64_t left = (uint64_t)flip_slots(slots, flips) << 8 * (level & 7);
+    const uint64_t left = (uint64_t)flipped[flips][slots] << 8 * (level & 7);
     d->flips[level] = flips;
     if (level < 8)
         d->left |= left;
@@ -432,7 +419,7 @@ INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned l
     const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
     d->node[level] = at;
     leave_slots(d, level, mask_slots(index, node, slots, &w->chosen),
-                narc_find_flips(index->order[node], w->x.backwards, w->y.backwards));
+                narc_find_flips(index->order[node], w->left, w->aslant));
 }
 
 NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
@@ -450,63 +437,144 @@ NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ rays together */
+/* ------------------------------------------------------------------------------------------------ fans */
 
-INLINE bool goes_in_lanes(const struct bundle *b) { return IN_LANES && b->in_lanes; }
+enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
 
-INLINE void begin_lanes(struct bundle *b) {
-    struct nearest *const nearest = &b->nearest;
-    nearest->waiting = 0;
-    for (size_t k = 0; k < b->count + V_WIDTH; k++) {
-        const struct walk *const w = &b->walks[k < b->count ? k : 0];
-        nearest->direction_x[k] = w->ray.direction.x;
-        nearest->direction_y[k] = w->ray.direction.y;
-        nearest->length[k] = w->ray.length;
-        nearest->inverse_length[k] = w->ray.inverse_length;
-        nearest->fraction[k] = k < b->count ? w->limit_fraction : -1;
-        nearest->body[k] = INT32_MAX;
-    }
+/* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
+#if defined(__wasm__)
+#define IN_LANES 0
+#else
+#define IN_LANES (NARC_SHORTCUTS && V_WIDTH > 1)
+#endif
+
+/* The least cosine of the angle between a ray and the first that it goes with. */
+#define COHERENT 0.8
+
+/* Of rays in lanes, each with room for one hit: its nearest, as far as it is not yet in its row. A body is its number less
+ * 2^31, and UINT32_MAX there is none. */
+struct nearest {
+    uint32_t waiting; /* a bit for each ray */
+    int32_t body[LANES];
+    float fraction[LANES], normal_x[LANES], normal_y[LANES], point_x[LANES], point_y[LANES];
+    int32_t feature[LANES]; /* the arc, and ON_EDGE */
+    int32_t word[LANES];    /* that and the count as rows have them, */
+    float radius[LANES];    /* and this, when they are written */
+};
+
+/* Rays of one origin whose directions differ little go through the index together: a node is visited if it meets the
+ * wedge between the outermost two, and only at a leaf each ray is asked, in a lane of its own. A ray's answer is the same
+ * whether it goes alone or not. */
+struct fan {
+    struct read_rays *rays;
+    size_t first, count;
+    size_t left, right;                     /* the outermost */
+    float left_x, left_y, right_x, right_y; /* their directions */
+    float limit;                            /* the largest */
+    struct chosen chosen;                   /* their world, all masks together */
+    float *limits;
+    bool in_lanes;
+    struct walk walks[MOST_TOGETHER]; /* in lanes: the first, and those that are asked alone */
+    struct nearest nearest;
+};
+
+INLINE bool goes_in_lanes(const struct fan *f) { return IN_LANES && f->in_lanes; }
+
+/* Does a ray go the way of another one? */
+INLINE bool joins(const struct read_rays *rays, size_t first, size_t k) {
+    return rays->origin_x[k] == rays->origin_x[first] && rays->origin_y[k] == rays->origin_y[first] &&
+           rays->length[k] > 0 && (rays->x.inverse[k] < 0) == (rays->x.inverse[first] < 0) &&
+           (rays->y.inverse[k] < 0) == (rays->y.inverse[first] < 0);
 }
 
-static void begin_bundle(const narc_ray_batch *batch, struct bundle *b) {
+INLINE bool have_one_world(const narc_ray_batch *batch, const struct read_rays *rays, size_t first, size_t k) {
+    const narc_index_column world = batch->options->search.world;
+    return !world.base || narc_index_at(world, rays->first + first) == narc_index_at(world, rays->first + k);
+}
+
+/* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
+ * any hit will do: which is found depends on the way. */
+INLINE bool is_open(const narc_ray_batch *batch, const narc_box *scene, const struct read_rays *rays, size_t k) {
+    const narc_point *const origin = &batch->index->origin;
+    const place o = {rays->origin_x[k] - origin->x, rays->origin_y[k] - origin->y};
+    return (double)scene->min_x <= o.x && o.x <= (double)scene->max_x && (double)scene->min_y <= o.y &&
+           o.y <= (double)scene->max_y && rays->room[k] <= 0x1p80f && !batch->options->any;
+}
+
+/* Gathers the rays from `first` on that go together; how many are they? */
+INLINE size_t gather_fan(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays, size_t first,
+                         struct fan *f) {
+    const place direction = {rays->direction_x[first], rays->direction_y[first]};
+    const size_t left = rays->count - first, end = first + (left < MOST_TOGETHER ? left : MOST_TOGETHER);
+    double most = 0, least = 0;
+    size_t k = first + 1;
+    if (!NARC_SHORTCUTS || k == end || !joins(rays, first, k) || !is_open(batch, scene, rays, first))
+        return 1;
+    f->left = f->right = first;
+    for (; k < end && joins(rays, first, k) && have_one_world(batch, rays, first, k); k++) {
+        const place other = {rays->direction_x[k], rays->direction_y[k]};
+        const double sine = find_cross(direction, other);
+        if (find_dot(direction, other) <= COHERENT)
+            break;
+        f->left = sine > most ? k : f->left;
+        f->right = sine < least ? k : f->right;
+        most = find_most(most, sine);
+        least = find_least(least, sine);
+    }
+    f->rays = rays;
+    f->first = first;
+    f->count = k - first;
+    return f->count;
+}
+
+/* The largest limit of all. */
+INLINE float find_largest_limit(const struct fan *f) {
+    vf largest = v_set(-INFINITY);
+    float lanes[V_WIDTH];
+    for (int k = 0; k < (int)f->count; k += V_WIDTH)
+        largest = v_max(v_select(vm_front((int)f->count - k), v_load(f->limits + k), v_set(-INFINITY)), largest);
+    v_store(lanes, largest);
+    for (int l = 1; l < V_WIDTH; l++)
+        lanes[0] = lanes[l] > lanes[0] ? lanes[l] : lanes[0];
+    return lanes[0];
+}
+
+INLINE void begin_fan(const narc_ray_batch *batch, struct fan *f) {
     const narc_index_query *const search = &batch->options->search;
-    size_t left = 0, right = 0;
-    b->limit = -INFINITY;
-    b->chosen = b->walks[0].chosen;
-    for (size_t k = 0; k < MOST_TOGETHER; k++) {
-        b->limits[k] = -INFINITY;
-        b->inverse_x[k] = b->inverse_y[k] = 0;
-    }
-    for (size_t k = 0; k < b->count; k++) {
-        const struct walk *const w = &b->walks[k];
-        left = find_cross(b->walks[left].ray.direction, w->ray.direction) > 0 ? k : left;
-        right = find_cross(b->walks[right].ray.direction, w->ray.direction) < 0 ? k : right;
-        b->limits[k] = w->limit;
-        b->inverse_x[k] = w->x.inverse;
-        b->inverse_y[k] = w->y.inverse;
-        b->limit = w->limit > b->limit ? w->limit : b->limit;
-        b->chosen.mask |= w->chosen.mask;
-    }
-    b->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
+    struct read_rays *const rays = f->rays;
+    f->limits = rays->limit + f->first;
+    f->limit = find_largest_limit(f);
+    f->left_x = (float)rays->direction_x[f->left];
+    f->left_y = (float)rays->direction_y[f->left];
+    f->right_x = (float)rays->direction_x[f->right];
+    f->right_y = (float)rays->direction_y[f->right];
+    f->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
                   !search->mask.base;
-    if (goes_in_lanes(b))
-        begin_lanes(b);
-    b->left_x = (float)b->walks[left].ray.direction.x;
-    b->left_y = (float)b->walks[left].ray.direction.y;
-    b->right_x = (float)b->walks[right].ray.direction.x;
-    b->right_y = (float)b->walks[right].ray.direction.y;
+    f->chosen = read_chosen(search, rays->first + f->first);
+    for (size_t k = 0; k < (goes_in_lanes(f) ? 1 : f->count); k++) {
+        begin_walk(batch, rays, f->first + k, &f->walks[k]);
+        f->chosen.mask |= f->walks[k].chosen.mask;
+    }
+    if (!goes_in_lanes(f))
+        return;
+    f->nearest.waiting = 0;
+    for (int k = 0; k < (int)f->count + V_WIDTH; k += V_WIDTH) {
+        v_store(f->nearest.fraction + k, v_set(-1));
+        vi_store(f->nearest.body + k, vi_set(INT32_MAX));
+    }
+    memcpy(f->nearest.fraction, rays->fraction + f->first, f->count * sizeof *rays->fraction);
 }
 
 /* A bit for each slot that the wedge may meet, and how far away it is at least: boxes have corners to the left of the
  * rightmost ray and to the right of the leftmost one; which corner decides is known by the quadrant. Boxes are larger by
  * the room on every side, and a cross product errs by less than half of it. */
-INLINE uint32_t find_wedge_slots(const struct bundle *b, const narc_index_node *node, float *out_near) {
-    const struct walk *const w = &b->walks[0];
+INLINE uint32_t find_wedge_slots(const struct fan *f, const narc_index_node *node, float *out_near) {
+    const struct walk *const w = &f->walks[0];
     const float *const planes = (const float *)node;
-    const bool aslant = w->x.backwards != w->y.backwards;
-    const vf zero = v_set(0), limit = v_set(b->limit), right_x = v_set(b->right_x), right_y = v_set(b->right_y);
-    const vf outer_x = aslant ? right_x : v_set(b->left_x), outer_y = aslant ? right_y : v_set(b->left_y);
-    const vf other_x = aslant ? v_set(b->left_x) : right_x, other_y = aslant ? v_set(b->left_y) : right_y;
+    const bool aslant = w->aslant;
+    const vf zero = v_set(0), limit = v_set(f->limit), right_x = v_set(f->right_x), right_y = v_set(f->right_y);
+    const vf outer_x = aslant ? right_x : v_set(f->left_x), outer_y = aslant ? right_y : v_set(f->left_y);
+    const vf other_x = aslant ? v_set(f->left_x) : right_x, other_y = aslant ? v_set(f->left_y) : right_y;
     uint32_t slots = 0;
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
         const vf first_x = v_sub(v_load(planes + w->x.first + k), v_set(w->x.first_start));
@@ -525,21 +593,22 @@ INLINE uint32_t find_wedge_slots(const struct bundle *b, const narc_index_node *
 }
 
 /* A bit for each ray that meets a slot's box: as find_slots(), with a lane for each ray. */
-INLINE uint32_t find_rays(const struct bundle *b, const narc_index_node *node, unsigned slot) {
-    const struct walk *const w = &b->walks[0];
+INLINE uint32_t find_rays(const struct fan *f, const narc_index_node *node, unsigned slot) {
+    const struct walk *const w = &f->walks[0];
     const float *const planes = (const float *)node + slot;
+    const float *const all_x = f->rays->x.inverse + f->first, *const all_y = f->rays->y.inverse + f->first;
     const vf first_x = v_set(planes[w->x.first] - w->x.first_start),
              last_x = v_set(planes[w->x.last] - w->x.last_start);
     const vf first_y = v_set(planes[w->y.first] - w->y.first_start),
              last_y = v_set(planes[w->y.last] - w->y.last_start);
-    uint32_t rays = 0;
-    for (size_t k = 0; k < MOST_TOGETHER; k += V_WIDTH) {
-        const vf inverse_x = v_load(b->inverse_x + k), inverse_y = v_load(b->inverse_y + k);
+    uint64_t rays = 0;
+    for (size_t k = 0; k < f->count; k += V_WIDTH) {
+        const vf inverse_x = v_load(all_x + k), inverse_y = v_load(all_y + k);
         const vf near = v_max(v_max(v_mul(first_x, inverse_x), v_mul(first_y, inverse_y)), v_set(0));
         const vf far = v_mul(v_min(v_mul(last_x, inverse_x), v_mul(last_y, inverse_y)), v_set(1 + ROOM));
-        rays |= vm_bits(vm_and(v_le(near, far), v_le(near, v_load(b->limits + k)))) << k;
+        rays |= (uint64_t)vm_bits(vm_and(v_le(near, far), v_le(near, v_load(f->limits + k)))) << k;
     }
-    return rays;
+    return (uint32_t)(rays & (((uint64_t)1 << f->count) - 1));
 }
 
 INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
@@ -550,54 +619,56 @@ INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
 }
 
 /* Writes what waits of these rays to their rows. Neighbours mostly hit the same body, often by the same feature. */
-NOINLINE void put_hits(const narc_ray_batch *batch, struct bundle *b, uint32_t rays) {
-    struct nearest *const nearest = &b->nearest;
-    double(*const from)[LANES] = nearest->met;
-    const narc_ray_hit *last = NULL;
+NOINLINE void put_hits(const narc_ray_batch *batch, struct fan *f, uint32_t rays) {
+    struct nearest *const nearest = &f->nearest;
+    narc_ray_hit told = {.count = 1}, spare;
     struct body_frame frame = {.header = NULL};
-    int32_t loaded = INT32_MAX, feature = 0;
-    for (rays &= nearest->waiting; rays; rays &= rays - 1) {
-        const unsigned k = (unsigned)FIND_LOWEST(rays);
-        struct walk *const w = &b->walks[k];
-        const uint32_t body = (uint32_t)nearest->body[k] ^ 0x80000000u;
-        if (nearest->body[k] != loaded)
-            load_body_frame(batch->shapes, batch->bodies, body, &frame);
-        const bool is_same = last && nearest->body[k] == loaded && nearest->feature[k] == feature;
-        loaded = nearest->body[k];
+    int32_t body = INT32_MAX, feature = -1;
+    const uint64_t put = rays & nearest->waiting;
+    for (uint64_t left = put; left; left &= left - 1) {
+        const unsigned k = (unsigned)FIND_LOWEST_64(left);
+        if (nearest->body[k] != body)
+            load_body_frame(batch->shapes, batch->bodies, (uint32_t)nearest->body[k] ^ 0x80000000u, &frame);
+        if (nearest->body[k] != body || nearest->feature[k] != feature)
+            put_feature(&frame,
+                        &(struct entry){.arc = nearest->feature[k] & (ON_EDGE - 1),
+                                        .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
+                        &told);
+        body = nearest->body[k];
         feature = nearest->feature[k];
-        const struct meeting met = {.foot = {from[0][k], from[1][k]},
-                                    .direction = {from[2][k], from[3][k]},
-                                    .entry = {.normal = {from[4][k], from[5][k]},
-                                              .arc = nearest->feature[k] & (ON_EDGE - 1),
-                                              .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
-                                    .ahead = from[6][k],
-                                    .distance = from[7][k]};
-        put_place(&frame, &w->ray, &met, INFINITY, w->rows);
-        if (is_same) {
-            w->rows->feature = last->feature;
-            w->rows->radius = last->radius;
-        } else {
-            put_feature(&frame, &met.entry, w->rows);
-        }
-        last = w->rows;
-        w->rows->body = body;
-        w->rows->count = 1;
-        w->found = 1;
-        w->limit = b->limits[k];
-        w->limit_fraction = nearest->fraction[k];
-        nearest->waiting &= ~(1u << k);
+        memcpy(&nearest->word[k], &told.feature, sizeof nearest->word[k]);
+        nearest->radius[k] = told.radius;
     }
+    for (size_t k = 0; k < f->count; k += V_WIDTH) {
+        const vf first[4] = {v_of_bits(vi_add(vi_load(nearest->body + k), vi_set(INT32_MIN))),
+                             v_of_bits(vi_load(nearest->word + k)), v_load(nearest->fraction + k),
+                             v_load(nearest->normal_x + k)};
+        const vf second[4] = {v_load(nearest->normal_y + k), v_load(nearest->point_x + k), v_load(nearest->point_y + k),
+                              v_load(nearest->radius + k)};
+        char *row[V_WIDTH];
+        for (size_t l = 0; l < V_WIDTH; l++)
+            row[l] = (char *)(put >> (k + l) & 1 ? get_rows(batch, f->rays, f->first + k + l) : &spare);
+        v_put_rows(row, offsetof(narc_ray_hit, body), first);
+        v_put_rows(row, offsetof(narc_ray_hit, normal_y), second);
+    }
+    nearest->waiting &= ~rays;
 }
 
-INLINE void select_doubles(vl m, double *p, vd a) { d_store(p, d_select(m, a, d_load(p))); }
+_Static_assert(offsetof(narc_ray_hit, feature) == 8 && offsetof(narc_ray_hit, count) == 10 &&
+                   offsetof(narc_ray_hit, fraction) == 12 && offsetof(narc_ray_hit, point_x) == 24 &&
+                   offsetof(narc_ray_hit, radius) == 32,
+               "a row is the ray's number, and two times four words");
+
 INLINE void select_ints(vm m, int32_t *p, vi a) { vi_store(p, vi_select(m, a, vi_load(p))); }
 INLINE void select_floats(vm m, float *p, vf a) { v_store(p, v_select(m, a, v_load(p))); }
 
 /* Casts rays k, k + 1 ... at a body, which has a hit for each ray that it tells nothing of. */
-INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uint32_t body, bool ignores, unsigned k) {
-    struct nearest *const nearest = &b->nearest;
-    const struct lane_rays rays = {b->walks[0].ray.origin, nearest->direction_x + k, nearest->direction_y + k,
-                                   nearest->inverse_length + k};
+INLINE uint32_t cast_lanes(struct fan *f, const struct body_frame *frame, uint32_t body, bool ignores, unsigned k) {
+    struct nearest *const nearest = &f->nearest;
+    const struct read_rays *const all = f->rays;
+    const size_t at = f->first + k;
+    const struct lane_rays rays = {f->walks[0].ray.origin, all->direction_x + at, all->direction_y + at,
+                                   all->inverse_length + at};
     struct entry_lanes entries;
     struct half_met met[LANE_HALVES];
     float lanes[V_WIDTH];
@@ -608,95 +679,108 @@ INLINE uint32_t cast_lanes(struct bundle *b, const struct body_frame *frame, uin
     const vm is_before = vm_or(v_lt(fraction, least), vi_lt(number, vi_load(nearest->body + k)));
     const vm hits = vm_and(vm_and(v_le(v_set(0), fraction), v_le(fraction, least)), is_before);
     if (vm_any(hits)) {
-        nearest->waiting |= vm_bits(hits) << k;
-        select_floats(hits, nearest->fraction + k, fraction);
-        select_ints(hits, nearest->body + k, number);
-        const vi edge = vi_select(entries.on_edge, vi_set(ON_EDGE), vi_set(0));
-        select_ints(hits, nearest->feature + k, vi_add(vi_load(entries.arc), edge));
-        float limits[V_WIDTH];
+        float limits[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], point_x[V_WIDTH], point_y[V_WIDTH];
         UNROLL
         for (int h = 0; h < LANE_HALVES; h++) {
             const int l = h * D_WIDTH;
-            const vl m = d_of_lanes(hits, l);
-            const vd values[8] = {met[h].foot.x,   met[h].foot.y,   met[h].direction.x, met[h].direction.y,
-                                  met[h].normal.x, met[h].normal.y, met[h].ahead,       met[h].distance};
-            UNROLL
-            for (int i = 0; i < 8; i++)
-                select_doubles(m, nearest->met[i] + k + l, values[i]);
-            d_put_floats(limits + l, find_limit(d_of_floats(lanes + l), d_load(nearest->length + k + l), d_set(0),
-                                                d_set((double)b->walks[0].room)));
+            const struct half_place at_place = find_place_lanes(frame, &met[h]);
+            d_put_floats(normal_x + l, at_place.normal.x);
+            d_put_floats(normal_y + l, at_place.normal.y);
+            d_put_floats(point_x + l, at_place.point.x);
+            d_put_floats(point_y + l, at_place.point.y);
+            d_put_floats(limits + l, find_limit(d_of_floats(lanes + l), d_load(all->length + at + l), d_set(0),
+                                                d_set((double)f->walks[0].room)));
         }
-        select_floats(hits, b->limits + k, v_load(limits));
+        nearest->waiting |= vm_bits(hits) << k;
+        select_floats(hits, nearest->fraction + k, fraction);
+        select_ints(hits, nearest->body + k, number);
+        select_ints(hits, nearest->feature + k,
+                    vi_add(vi_load(entries.arc), vi_select(entries.on_edge, vi_set(ON_EDGE), vi_set(0))));
+        select_floats(hits, nearest->normal_x + k, v_load(normal_x));
+        select_floats(hits, nearest->normal_y + k, v_load(normal_y));
+        select_floats(hits, nearest->point_x + k, v_load(point_x));
+        select_floats(hits, nearest->point_y + k, v_load(point_y));
+        select_floats(hits, f->limits + k, v_load(limits));
     }
     return vm_bits(v_lt(fraction, v_set(0)));
 }
 
 /* Casts rays at a body; which are to be asked alone? */
-INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct bundle *b, const struct body_frame *frame,
-                              uint32_t body, uint32_t rays) {
+INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct fan *f, const struct body_frame *frame, uint32_t body,
+                              uint32_t rays) {
     const bool ignores = batch->options->inside == NARC_INSIDE_IGNORES;
     uint32_t alone = 0;
     while (rays) {
         const unsigned k = (unsigned)FIND_LOWEST(rays);
         const uint32_t lanes = (uint32_t)(((uint64_t)1 << V_WIDTH) - 1) << k;
-        alone |= cast_lanes(b, frame, body, ignores, k) << k & rays;
+        alone |= cast_lanes(f, frame, body, ignores, k) << k & rays;
         rays &= ~lanes;
     }
     return alone;
 }
 
-INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, size_t leaf, uint32_t slots,
+/* Casts one ray of a fan at a body, alone. */
+NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct body_frame *frame, uint32_t body,
+                       unsigned k) {
+    struct walk *const w = &f->walks[k];
+    if (goes_in_lanes(f)) {
+        put_hits(batch, f, 1u << k);
+        begin_walk(batch, f->rays, f->first + k, w);
+        w->found = w->rows->count;
+        w->limit = f->limits[k];
+        w->limit_fraction = f->nearest.fraction[k];
+    }
+    cast_at_body(batch, w, frame, body);
+    f->limits[k] = w->limit;
+    if (goes_in_lanes(f) && w->found > 0) {
+        f->nearest.fraction[k] = w->rows->fraction;
+        f->nearest.body[k] = (int32_t)(w->rows->body ^ 0x80000000u);
+    }
+}
+
+INLINE void visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size_t leaf, uint32_t slots,
                                 const float *near) {
     const narc_index *const index = batch->index;
     unsigned slot;
     for (; slots; slots &= ~(1u << slot)) {
         slot = find_nearest_slot(slots, near);
-        uint32_t rays = find_rays(b, &index->nodes[leaf], slot);
+        const size_t number = NARC_NODE_SLOTS * leaf + slot;
+        uint32_t rays = find_rays(f, &index->nodes[leaf], slot);
         struct body_frame frame;
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
             continue;
-        if (goes_in_lanes(b) && !narc_is_piece(frame.header))
-            rays = cast_in_lanes(batch, b, &frame, index->body[NARC_NODE_SLOTS * leaf + slot], rays);
+        if (goes_in_lanes(f) && !narc_is_piece(frame.header))
+            rays = cast_in_lanes(batch, f, &frame, index->body[number], rays);
         for (; rays; rays &= rays - 1) {
             const unsigned k = (unsigned)FIND_LOWEST(rays);
-            struct walk *const w = &b->walks[k];
-            if (goes_in_lanes(b))
-                put_hits(batch, b, 1u << k);
-            if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->chosen.mask)
-                cast_at_body(batch, w, &frame, index->body[NARC_NODE_SLOTS * leaf + slot]);
-            b->limits[k] = w->limit;
-            if (goes_in_lanes(b) && w->found > 0) {
-                b->nearest.fraction[k] = w->rows->fraction;
-                b->nearest.body[k] = (int32_t)(w->rows->body ^ 0x80000000u);
-            }
+            if (goes_in_lanes(f) || (index->masks ? index->masks[number] : UINT64_MAX) & f->walks[k].chosen.mask)
+                cast_one(batch, f, &frame, index->body[number], k);
         }
     }
-    b->limit = -INFINITY;
-    for (size_t k = 0; k < b->count; k++)
-        b->limit = b->limits[k] > b->limit ? b->limits[k] : b->limit;
+    f->limit = find_largest_limit(f);
 }
 
-static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
+static void walk_together(const narc_ray_batch *batch, struct fan *f) {
     const narc_index *const index = batch->index;
-    const struct walk *const first = &b->walks[0];
+    const struct walk *const first = &f->walks[0];
     struct descent d;
     unsigned slot, level = index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
-    begin_bundle(batch, b);
+    begin_fan(batch, f);
     for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
-            mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], d.near[level]), &b->chosen);
+            mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), &f->chosen);
         d.node[level] = below;
         if (level > 0)
-            leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->x.backwards, first->y.backwards));
+            leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->left, first->aslant));
         else
-            visit_leaf_together(batch, b, node, slots, d.near[0]);
+            visit_leaf_together(batch, f, node, slots, d.near[0]);
         do {
-            if (!take_slot(&d, b->limit, &level, &slot, &is_near)) {
-                if (goes_in_lanes(b))
-                    put_hits(batch, b, UINT32_MAX);
+            if (!take_slot(&d, f->limit, &level, &slot, &is_near)) {
+                if (goes_in_lanes(f))
+                    put_hits(batch, f, UINT32_MAX);
                 return;
             }
         } while (!is_near);
@@ -709,7 +793,7 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
 enum { UNDER_WAY = 16 };
 
 struct stepper {
-    struct walk *walk;
+    struct walk walk;
     struct descent d;
     unsigned level, slot;
     uint32_t below;
@@ -719,41 +803,45 @@ struct stepper {
 INLINE bool find_step(struct stepper *s) {
     bool is_near;
     do {
-        if (!take_slot(&s->d, s->walk->limit, &s->level, &s->slot, &is_near))
+        if (!take_slot(&s->d, s->walk.limit, &s->level, &s->slot, &is_near))
             return false;
     } while (!is_near);
     s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
     return true;
 }
 
-INLINE void begin_steps(const narc_index *index, struct walk *w, struct stepper *out) {
-    out->walk = w;
+/* Rays that have no company. */
+struct loners {
+    const struct read_rays *rays;
+    size_t next, count;
+    uint8_t number[READ];
+};
+
+/* The next one begins. False if there is none. */
+INLINE bool begin_steps(const narc_ray_batch *batch, struct loners *loners, struct stepper *out) {
+    if (loners->next == loners->count)
+        return false;
+    begin_walk(batch, loners->rays, loners->number[loners->next++], &out->walk);
     out->d.left = out->d.above = 0;
     out->below = 0;
-    out->level = index->level_count;
+    out->level = batch->index->level_count;
+    return true;
 }
 
-NOINLINE void walk_apart(const narc_ray_batch *batch, struct walk *walks, size_t count) {
-    const narc_index *const index = batch->index;
-    struct walk *const end = walks + count;
+NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
     struct stepper steppers[UNDER_WAY], *at_node[UNDER_WAY], *at_body[UNDER_WAY];
     size_t node_count = 0, body_count;
-    for (; node_count < UNDER_WAY && walks < end; node_count++) {
-        begin_steps(index, walks++, &steppers[node_count]);
+    for (; node_count < UNDER_WAY && begin_steps(batch, loners, &steppers[node_count]); node_count++)
         at_node[node_count] = &steppers[node_count];
-    }
     while (node_count > 0) {
         body_count = 0;
         const size_t nodes = node_count;
         node_count = 0;
         for (size_t k = 0; k < nodes; k++) {
             struct stepper *const s = at_node[k];
-            visit_node(index, s->walk, s->level - 1, s->below, &s->d);
-            if (!find_step(s)) {
-                if (walks == end)
-                    continue;
-                begin_steps(index, walks++, s);
-            }
+            visit_node(batch->index, &s->walk, s->level - 1, s->below, &s->d);
+            if (!find_step(s) && !begin_steps(batch, loners, s))
+                continue;
             at_node[node_count] = at_body[body_count] = s;
             node_count += s->level > 0;
             body_count += s->level == 0;
@@ -762,70 +850,57 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct walk *walks, size_t
             struct stepper *const s = at_body[k];
             bool goes_on;
             do {
-                goes_on = !visit_slot(batch, s->walk, s->d.node[0], s->slot) && find_step(s);
+                goes_on = !visit_slot(batch, &s->walk, s->d.node[0], s->slot) && find_step(s);
             } while (goes_on && s->level == 0);
-            if (!goes_on) {
-                if (walks == end)
-                    continue;
-                begin_steps(index, walks++, s);
-            }
-            at_node[node_count++] = s;
+            if (goes_on || begin_steps(batch, loners, s))
+                at_node[node_count++] = s;
         }
     }
 }
 
-/* Those that are gathered walk together; or, if there are few, they wait for more that go alone. `last`: no more come. */
-static void walk(const narc_ray_batch *batch, struct bundle *b, bool last) {
-    if (NARC_SHORTCUTS && b->count >= LEAST_TOGETHER)
-        walk_together(batch, b);
-    else
-        b->alone += b->count;
-    b->count = 0;
-    if (b->alone >= MOST_ALONE || last) {
-        if (IN_LANES && b->alone >= LEAST_TOGETHER)
-            walk_apart(batch, b->all, b->alone);
-        else
-            for (size_t k = 0; k < b->alone; k++)
-                walk_alone(batch, &b->all[k]);
-        b->alone = 0;
+/* ------------------------------------------------------------------------------------------------ the kernel */
+
+static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) {
+    struct walk w;
+    while (loners->next < loners->count) {
+        begin_walk(batch, loners->rays, loners->number[loners->next++], &w);
+        walk_alone(batch, &w);
     }
-    b->walks = b->all + b->alone;
 }
 
-/* Does a ray go the way of the first one? */
-INLINE bool joins_first(const struct bundle *b, const struct read_rays *rays, size_t k) {
-    const struct walk *const first = &b->walks[0];
-    return NARC_SHORTCUTS && b->count > 0 && b->open && rays->origin_x[k] == first->ray.origin.x &&
-           rays->origin_y[k] == first->ray.origin.y && (rays->x.inverse[k] < 0) == first->x.backwards &&
-           (rays->y.inverse[k] < 0) == first->y.backwards &&
-           find_dot((place){rays->direction_x[k], rays->direction_y[k]}, first->ray.direction) > COHERENT;
-}
-
-/* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
- * any hit will do: which is found depends on the way. */
-INLINE bool is_open(const narc_ray_batch *batch, const narc_box *scene, const struct walk *w) {
-    const place o = w->ray.origin;
-    return (double)scene->min_x <= o.x && o.x <= (double)scene->max_x && (double)scene->min_y <= o.y &&
-           o.y <= (double)scene->max_y && w->room <= 0x1p80f && !batch->options->any;
-}
-
-/* Empties a ray's rows and gathers it. False if it has no answer. */
-INLINE bool gather(const narc_ray_batch *batch, const narc_box *scene, const struct read_rays *rays, size_t k,
-                   size_t number, struct bundle *b) {
-    narc_ray_hit *const rows = batch->out + number * batch->most;
+/* Empties a ray's rows. Has it an answer? */
+INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
+    narc_ray_hit *const rows = get_rows(batch, rays, k);
     for (size_t i = 0; i < batch->most; i++)
-        rows[i] = (narc_ray_hit){.ray = (uint32_t)number};
-    if (!(rays->length[k] > 0) || rays->base[k] < 0)
-        return rays->length[k] > 0;
-    const bool joins = joins_first(b, rays, k);
-    if (!joins)
-        walk(batch, b, false);
-    begin_walk(batch, rays, k, rows, &b->walks[b->count]);
-    if (!joins)
-        b->open = is_open(batch, scene, &b->walks[0]);
-    if (++b->count == MOST_TOGETHER)
-        walk(batch, b, false);
-    return true;
+        rows[i] = (narc_ray_hit){.ray = (uint32_t)(rays->first + k)};
+    return rays->length[k] > 0;
+}
+
+/* Casts rays that are read; how many have no answer? */
+static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays) {
+    struct loners loners;
+    struct fan fan;
+    size_t skipped = 0;
+    loners.rays = rays;
+    loners.next = loners.count = 0;
+    for (size_t k = 0; k < rays->count; k++)
+        skipped += !empty_rows(batch, rays, k);
+    for (size_t k = 0, count; k < rays->count; k += count) {
+        count = 1;
+        if (!(rays->length[k] > 0) || rays->base[k] < 0)
+            continue;
+        count = gather_fan(batch, scene, rays, k, &fan);
+        if (count >= LEAST_TOGETHER)
+            walk_together(batch, &fan);
+        else
+            for (size_t i = k; i < k + count; i++)
+                loners.number[loners.count++] = (uint8_t)i;
+    }
+    if (IN_LANES && loners.count >= LEAST_TOGETHER)
+        walk_apart(batch, &loners);
+    else
+        walk_one_by_one(batch, &loners);
+    return skipped;
 }
 
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
@@ -834,15 +909,10 @@ size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count)
         is_empty ? (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY} : find_scene_box(batch->index);
     size_t skipped = 0;
     struct read_rays rays;
-    struct bundle bundle;
-    bundle.count = bundle.alone = 0;
-    bundle.walks = bundle.all;
-    for (size_t k = first; k < first + count; k++) {
-        const size_t at = (k - first) % READ, left = first + count - k;
-        if (at == 0)
-            read_rays(batch, &scene, k, left < READ ? left : READ, &rays);
-        skipped += !gather(batch, &scene, &rays, at, k, &bundle);
+    for (size_t k = first; k < first + count; k += READ) {
+        const size_t left = first + count - k;
+        read_rays(batch, &scene, k, left < READ ? left : READ, &rays);
+        skipped += cast_rays(batch, &scene, &rays);
     }
-    walk(batch, &bundle, true);
     return skipped;
 }

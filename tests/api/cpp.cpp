@@ -562,6 +562,11 @@ void test_index() {
     const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
     const narc_index_options &c = options;
     CHECK(c.category.base == category.data() && c.fast == 1 && c.workers == &workers);
+    const narc_point far = {1e9, 0};
+    std::vector<narc_box> there(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, there, narc::box_options().origin(far)));
+    CHECK(there[0].max_x < -0.99e9f && narc::index_options().origin(far).narc_index_options::origin == &far);
+    CHECK(narc::step().origin(far).narc_step::origin == &far);
     CHECK(index.build(boxes, options));
     CHECK(index.update(boxes, options) && index.describe().value().bodies == 10);
     const std::vector<uint32_t> changed = {9};

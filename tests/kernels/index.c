@@ -313,9 +313,9 @@ TEST(knows_how_halves_lie) {
             if (index->nodes[k].min_x[0] <= index->nodes[k].max_x[0])
                 check_order(&index->nodes[k], index->order[k]);
     }
-    assert_int_equal(narc_find_flips(0, false, true), 0);
-    assert_int_equal(narc_find_flips(0, true, false), 7);
-    assert_int_equal(narc_find_flips(NARC_ORDER_ALONG_Y(1) | NARC_ORDER_DOWNWARD(2), false, true), 6);
+    assert_int_equal(narc_find_flips(0, 0, 7), 0);
+    assert_int_equal(narc_find_flips(0, 7, 7), 7);
+    assert_int_equal(narc_find_flips(NARC_ORDER_ALONG_Y(1) | NARC_ORDER_DOWNWARD(2), 0, 7), 6);
     narc_destroy_index(index);
     free(boxes);
 }

@@ -287,6 +287,10 @@ TEST(refuses_casts_of_pairs) {
             CAST(store, &pairs, NULL, (&(narc_cast_options){.targets = NARC_ARRAY(targets)}), out.impacts, 2));
     REFUSED(ARGUMENT, "tolerance is -2",
             CAST(store, &pairs, NULL, (&(narc_cast_options){.tolerance = -2}), out.impacts, 2));
+    REFUSED(ARGUMENT, "parting is -1",
+            CAST(store, &pairs, NULL, (&(narc_cast_options){.parting = -1}), out.impacts, 2));
+    REFUSED(NOT_FINITE, "parting is",
+            CAST(store, &pairs, NULL, (&(narc_cast_options){.parting = INFINITY}), out.impacts, 2));
     REFUSED(CAPACITY, "2 rows", CAST(store, &pairs, NULL, NULL, out.impacts, 1));
     REFUSED(ARGUMENT, "out_rows is NULL", CAST(store, &pairs, NULL, NULL, NULL, 2));
     expect_untouched();
