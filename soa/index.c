@@ -23,8 +23,9 @@ void narc_destroy_index(narc_index *index) {
     if (!index)
         return;
     const narc_allocator allocator = index->allocator;
-    void *const memory[] = {index->tree_memory, index->mask_memory, index->world_memory, index->build_memory, index->regions,
-                            index->found,       index->rows,        index->sweeps,       index};
+    void *const memory[] = {index->tree_memory,  index->mask_memory, index->world_memory,
+                            index->build_memory, index->regions,     index->found,
+                            index->rows,         index->sweeps,      index};
     for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
         if (memory[k])
             allocator.release(memory[k], allocator.context);

@@ -72,16 +72,16 @@ struct narc_index {
     uint32_t node_count[NARC_INDEX_LEVELS];
     narc_index_node *nodes; /* at cache lines */
     uint8_t *order;         /* of each node */
-    uint64_t *masks;   /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
+    uint64_t *masks; /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
     narc_world_range *worlds; /* for each slot of each node; NULL: there is one world */
-    uint32_t *body;    /* for each slot of each leaf; UINT32_MAX: none */
-    uint32_t *place;   /* of each body the slot of a leaf, or NARC_..._PLACE */
-    uint32_t *filled;  /* of each node: how many bodies are below, */
-    uint32_t *changes; /* how many came since they were spread over its slots, */
-    uint8_t *touched;  /* and while the index is updated a bit for each child of which something has changed */
-    narc_box *home;    /* of each leaf: a body that moves within this stays */
-    uint32_t *waiting; /* while the index is updated: bodies that are to go to a leaf */
-    double perimeter;  /* of all nodes together, when it was built */
+    uint32_t *body;           /* for each slot of each leaf; UINT32_MAX: none */
+    uint32_t *place;          /* of each body the slot of a leaf, or NARC_..._PLACE */
+    uint32_t *filled;         /* of each node: how many bodies are below, */
+    uint32_t *changes;        /* how many came since they were spread over its slots, */
+    uint8_t *touched;         /* and while the index is updated a bit for each child of which something has changed */
+    narc_box *home;           /* of each leaf: a body that moves within this stays */
+    uint32_t *waiting;        /* while the index is updated: bodies that are to go to a leaf */
+    double perimeter;         /* of all nodes together, when it was built */
     /* memory, and for how many boxes */
     void *tree_memory, *mask_memory, *world_memory, *build_memory;
     size_t tree_capacity, mask_capacity, world_capacity, build_capacity;

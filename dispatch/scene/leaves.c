@@ -169,8 +169,8 @@ typedef struct halving {
     const narc_filling *filling;
     const narc_box *boxes;
     uint32_t *by_x, *by_y, *by_world, *spare; /* by_world: NULL if there is one, */
-    uint8_t *second; /* and of each body: is it in the second half? */
-    size_t room;     /* slots of a part */
+    uint8_t *second;                          /* and of each body: is it in the second half? */
+    size_t room;                              /* slots of a part */
 } halving;
 
 /* Those of a list's bodies first .. end - 1 that are in the first half go in front of the others. */

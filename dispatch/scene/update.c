@@ -52,9 +52,7 @@ static uint64_t find_category(const updating *u, uint32_t body) {
     return narc_word_at(u->making.options->category, body);
 }
 
-static uint32_t find_world(const updating *u, uint32_t body) {
-    return narc_index_at(u->making.options->world, body);
-}
+static uint32_t find_world(const updating *u, uint32_t body) { return narc_index_at(u->making.options->world, body); }
 
 /* Puts a body into a slot of a leaf. */
 static void put_body(updating *u, size_t place, uint32_t body) {
@@ -185,7 +183,9 @@ static unsigned find_nearest(const narc_world_range *worlds, uint32_t world, uns
     uint32_t least = UINT32_MAX;
     for (unsigned k = 0; k < NARC_NODE_SLOTS; k++) {
         const narc_world_range *const own = &worlds[k];
-        const uint32_t distance = world < own->lowest ? own->lowest - world : world > own->highest ? world - own->highest : 0;
+        const uint32_t distance = world < own->lowest    ? own->lowest - world
+                                  : world > own->highest ? world - own->highest
+                                                         : 0;
         if (!(slots >> k & 1) || own->lowest > own->highest || distance > least)
             continue;
         nearest = (distance < least ? 0 : nearest) | 1u << k;
@@ -213,7 +213,8 @@ static bool insert(updating *u, uint32_t body) {
         const size_t at = index->first_node[level] + node[level];
         narc_index_node *const boxes = &index->nodes[at];
         narc_world_range *const worlds = index->worlds ? index->worlds + NARC_NODE_SLOTS * at : NULL;
-        size_t slot = choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body), UINT8_MAX) : UINT8_MAX);
+        size_t slot =
+            choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body), UINT8_MAX) : UINT8_MAX);
         if (level == 1 && index->filled[NARC_NODE_SLOTS * node[1] + slot] == NARC_NODE_SLOTS) {
             const unsigned leaves = find_room(index, node[1]);
             const unsigned near = worlds ? find_nearest(worlds, find_world(u, body), leaves) : leaves;
@@ -309,8 +310,8 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
         return narc_fail(error, NARC_ERROR_INDEX, bad, (double)body, "changed[%zu] is %lu, but there are %zu boxes",
                          bad, body, count);
     }
-    if (index->level_count == 0 || count == 0 || !index->masks != !o->category.base || !index->worlds != !o->world.base ||
-        !narc_has_index_room(index, count, o->category.base, o->world.base))
+    if (index->level_count == 0 || count == 0 || !index->masks != !o->category.base ||
+        !index->worlds != !o->world.base || !narc_has_index_room(index, count, o->category.base, o->world.base))
         return narc_build_index(index, boxes, count, o, error);
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)

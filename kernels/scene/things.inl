@@ -23,7 +23,8 @@ struct chosen {
 INLINE struct chosen read_chosen(const narc_index_query *query, size_t k) {
     const narc_owners *const owners = query->owners;
     const uint32_t world = query->world.base ? narc_index_at(query->world, k) : 0;
-    return (struct chosen){owners, query->mask.base ? narc_word_at(query->mask, k) : UINT64_MAX,
+    return (struct chosen){owners,
+                           query->mask.base ? narc_word_at(query->mask, k) : UINT64_MAX,
                            query->ignored.base ? narc_index_at(query->ignored, k) : UINT32_MAX,
                            owners && owners->ignored.base ? narc_index_at(owners->ignored, k) : UINT32_MAX,
                            {world, query->world.base ? world : UINT32_MAX}};
