@@ -120,7 +120,7 @@ narc_status narc_reserve_index(narc_index *index, size_t count, bool masks, bool
         {&index->build_memory, NULL, &index->build_capacity, count, n * NARC_INDEX_BUILD_BYTES},
         {&index->mask_memory, NULL, &index->mask_capacity, masks ? count : 0, count_all_slots(n) * sizeof(uint64_t)},
         {&index->world_memory, NULL, &index->world_capacity, worlds ? count : 0,
-         count_all_slots(n) * sizeof(narc_world_range)},
+         count_all_slots(n) / NARC_NODE_SLOTS * sizeof(narc_node_worlds) + NARC_NODE_PADDING * sizeof(int32_t)},
     };
     enum { PIECES = sizeof pieces / sizeof pieces[0] };
     bool fine = true;
@@ -160,8 +160,9 @@ size_t narc_count_index_bytes(const narc_index *index) {
     if (index->tree_memory)
         bytes += lay_out_tree(index->tree_capacity).end + LINE;
     if (index->mask_memory)
-        bytes +=
-            count_all_nodes(narc_count_index_slots(index->mask_capacity, false)) * NARC_NODE_SLOTS * sizeof(uint64_t);
+        bytes += count_all_slots(index->mask_capacity) * sizeof(uint64_t);
+    if (index->world_memory)
+        bytes += count_all_slots(index->world_capacity) / NARC_NODE_SLOTS * sizeof(narc_node_worlds);
     bytes += index->build_capacity * NARC_INDEX_BUILD_BYTES + index->region_capacity * sizeof *index->regions;
     bytes += index->found_capacity * sizeof *index->found + 2 * index->row_capacity * sizeof *index->rows;
     return bytes + index->sweep_capacity * sizeof *index->sweeps;

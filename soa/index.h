@@ -45,11 +45,34 @@ static inline bool narc_is_full_box(const narc_box *box) {
 /* What building takes for each box: two numbers of 32 bits twice, and of one kind three lists. */
 enum { NARC_INDEX_BUILD_BYTES = 28 };
 
-/* The worlds of what is below a slot, from the lowest to the highest; in an empty one, or without bodies, from UINT32_MAX to
- * 0. */
+/* The worlds of what is below each slot of a node, from the lowest to the highest, as narc_order_world() has them; without
+ * bodies from the last to the first. */
+typedef struct narc_node_worlds {
+    int32_t lowest[NARC_NODE_SLOTS], highest[NARC_NODE_SLOTS];
+} narc_node_worlds;
+
 typedef struct narc_world_range {
-    uint32_t lowest, highest;
+    int32_t lowest, highest;
 } narc_world_range;
+
+/* A signed number in the order of worlds. */
+static inline int32_t narc_order_world(uint32_t world) { return (int32_t)(world ^ 0x80000000u); }
+
+static inline narc_world_range narc_get_worlds(const narc_node_worlds *node, size_t slot) {
+    return (narc_world_range){node->lowest[slot], node->highest[slot]};
+}
+
+static inline void narc_put_worlds(narc_node_worlds *node, size_t slot, narc_world_range worlds) {
+    node->lowest[slot] = worlds.lowest;
+    node->highest[slot] = worlds.highest;
+}
+
+/* Both together. */
+static inline narc_world_range narc_join_worlds(narc_world_range a, narc_world_range b) {
+    return (narc_world_range){a.lowest < b.lowest ? a.lowest : b.lowest, a.highest > b.highest ? a.highest : b.highest};
+}
+
+static const narc_world_range narc_no_worlds = {INT32_MAX, INT32_MIN};
 
 /* In narc_index.place: the body is in no leaf; or it waits for one, while the index is updated. */
 #define NARC_NO_PLACE      UINT32_MAX
@@ -73,7 +96,7 @@ struct narc_index {
     narc_index_node *nodes; /* at cache lines */
     uint8_t *order;         /* of each node */
     uint64_t *masks; /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
-    narc_world_range *worlds; /* for each slot of each node; NULL: there is one world */
+    narc_node_worlds *worlds; /* of each node; NULL: there is one world */
     uint32_t *body;           /* for each slot of each leaf; UINT32_MAX: none */
     uint32_t *place;          /* of each body the slot of a leaf, or NARC_..._PLACE */
     uint32_t *filled;         /* of each node: how many bodies are below, */

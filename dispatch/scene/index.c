@@ -56,18 +56,15 @@ static void join_masks(void *argument, size_t part, size_t first, size_t end) {
 static void join_worlds(void *argument, size_t part, size_t first, size_t end) {
     const fitting *const f = argument;
     const narc_index *const index = f->index;
-    narc_world_range *const worlds = index->worlds + (size_t)index->first_node[f->level] * NARC_NODE_SLOTS;
+    narc_node_worlds *const worlds = index->worlds + index->first_node[f->level];
     (void)part;
     for (size_t k = (f->first + first) * NARC_NODE_SLOTS; k < (f->first + end) * NARC_NODE_SLOTS; k++) {
-        narc_world_range all = {UINT32_MAX, 0};
+        narc_world_range all = narc_no_worlds;
         if (f->level == 0 && index->body[k] != UINT32_MAX)
-            all.lowest = all.highest = narc_index_at(f->world, index->body[k]);
-        for (size_t slot = 0; f->level > 0 && k < index->node_count[f->level - 1] && slot < NARC_NODE_SLOTS; slot++) {
-            const narc_world_range own = index->worlds[(index->first_node[f->level - 1] + k) * NARC_NODE_SLOTS + slot];
-            all.lowest = own.lowest < all.lowest ? own.lowest : all.lowest;
-            all.highest = own.highest > all.highest ? own.highest : all.highest;
-        }
-        worlds[k] = all;
+            all.lowest = all.highest = narc_order_world(narc_index_at(f->world, index->body[k]));
+        for (size_t slot = 0; f->level > 0 && k < index->node_count[f->level - 1] && slot < NARC_NODE_SLOTS; slot++)
+            all = narc_join_worlds(all, narc_get_worlds(&index->worlds[index->first_node[f->level - 1] + k], slot));
+        narc_put_worlds(&worlds[k / NARC_NODE_SLOTS], k % NARC_NODE_SLOTS, all);
     }
 }
 

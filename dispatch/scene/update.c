@@ -52,7 +52,11 @@ static uint64_t find_category(const updating *u, uint32_t body) {
     return narc_word_at(u->making.options->category, body);
 }
 
-static uint32_t find_world(const updating *u, uint32_t body) { return narc_index_at(u->making.options->world, body); }
+/* Of a body, as one that a slot has. */
+static narc_world_range find_world(const updating *u, uint32_t body) {
+    const int32_t world = narc_order_world(narc_index_at(u->making.options->world, body));
+    return (narc_world_range){world, world};
+}
 
 /* Puts a body into a slot of a leaf. */
 static void put_body(updating *u, size_t place, uint32_t body) {
@@ -63,7 +67,7 @@ static void put_body(updating *u, size_t place, uint32_t body) {
     if (index->masks)
         index->masks[place] = find_category(u, body);
     if (index->worlds)
-        index->worlds[place].lowest = index->worlds[place].highest = find_world(u, body);
+        narc_put_worlds(&index->worlds[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, find_world(u, body));
     touch(index, 0, place / NARC_NODE_SLOTS);
 }
 
@@ -78,7 +82,7 @@ static void take_out(updating *u, uint32_t body) {
     if (index->masks)
         index->masks[place] = 0;
     if (index->worlds)
-        index->worlds[place] = (narc_world_range){UINT32_MAX, 0};
+        narc_put_worlds(&index->worlds[node], place % NARC_NODE_SLOTS, narc_no_worlds);
     touch(index, 0, node);
     for (unsigned level = 0; level < index->level_count; level++, node /= NARC_NODE_SLOTS)
         index->filled[index->first_node[level] + node]--;
@@ -98,7 +102,8 @@ static void look_at(updating *u, uint32_t body) {
         return;
     const bool is_full = narc_is_full_box(box);
     if (place != NARC_NO_PLACE && is_full && holds(&index->home[place / NARC_NODE_SLOTS], box) &&
-        (!index->worlds || index->worlds[place].lowest == find_world(u, body))) {
+        (!index->worlds ||
+         index->worlds[place / NARC_NODE_SLOTS].lowest[place % NARC_NODE_SLOTS] == find_world(u, body).lowest)) {
         if (!has_box(&index->nodes[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, box) ||
             (index->masks && index->masks[place] != find_category(u, body)))
             put_body(u, place, body);
@@ -178,15 +183,14 @@ static void spread(updating *u, unsigned level, size_t node, uint32_t body) {
 enum { MISPLACED = 4 };
 
 /* Of some of a node's slots those that are nearest to a world, such as those that have it. */
-static unsigned find_nearest(const narc_world_range *worlds, uint32_t world, unsigned slots) {
+static unsigned find_nearest(const narc_node_worlds *worlds, int32_t world, unsigned slots) {
     unsigned nearest = 0;
     uint32_t least = UINT32_MAX;
     for (unsigned k = 0; k < NARC_NODE_SLOTS; k++) {
-        const narc_world_range *const own = &worlds[k];
-        const uint32_t distance = world < own->lowest    ? own->lowest - world
-                                  : world > own->highest ? world - own->highest
-                                                         : 0;
-        if (!(slots >> k & 1) || own->lowest > own->highest || distance > least)
+        const int32_t low = worlds->lowest[k], high = worlds->highest[k];
+        const uint32_t below = world < low ? (uint32_t)low - (uint32_t)world : 0;
+        const uint32_t distance = world > high ? (uint32_t)world - (uint32_t)high : below;
+        if (!(slots >> k & 1) || low > high || distance > least)
             continue;
         nearest = (distance < least ? 0 : nearest) | 1u << k;
         least = distance;
@@ -212,20 +216,17 @@ static bool insert(updating *u, uint32_t body) {
     for (; level > 0; level--) {
         const size_t at = index->first_node[level] + node[level];
         narc_index_node *const boxes = &index->nodes[at];
-        narc_world_range *const worlds = index->worlds ? index->worlds + NARC_NODE_SLOTS * at : NULL;
+        narc_node_worlds *const worlds = index->worlds ? &index->worlds[at] : NULL;
         size_t slot =
-            choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body), UINT8_MAX) : UINT8_MAX);
+            choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body).lowest, UINT8_MAX) : UINT8_MAX);
         if (level == 1 && index->filled[NARC_NODE_SLOTS * node[1] + slot] == NARC_NODE_SLOTS) {
             const unsigned leaves = find_room(index, node[1]);
-            const unsigned near = worlds ? find_nearest(worlds, find_world(u, body), leaves) : leaves;
+            const unsigned near = worlds ? find_nearest(worlds, find_world(u, body).lowest, leaves) : leaves;
             slot = near ? choose_slot(boxes, box, near) : slot;
             cost = MISPLACED;
         }
-        if (worlds) {
-            const uint32_t world = find_world(u, body);
-            worlds[slot].lowest = world < worlds[slot].lowest ? world : worlds[slot].lowest;
-            worlds[slot].highest = world > worlds[slot].highest ? world : worlds[slot].highest;
-        }
+        if (worlds)
+            narc_put_worlds(worlds, slot, narc_join_worlds(narc_get_worlds(worlds, slot), find_world(u, body)));
         narc_box grown = {boxes->min_x[slot], boxes->min_y[slot], boxes->max_x[slot], boxes->max_y[slot]};
         grow(&grown, box);
         put_box(boxes, slot, &grown);

@@ -40,10 +40,15 @@ INLINE uint32_t *append(uint32_t *to, vm hit, vi items) {
 
 /* Of a node's slots, from one on, those that mask and world meet. */
 INLINE vm match_slots(const narc_index *index, size_t node, int slot, vm hit, const struct chosen *chosen) {
-    const uint32_t slots = mask_slots(index, node, (uint32_t)vm_bits(hit) << slot, chosen) >> slot;
-    int32_t fine[V_WIDTH];
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        fine[lane] = (int32_t)(slots >> lane & 1);
+    int32_t fine[V_WIDTH] = {0};
+    if (index->worlds)
+        hit = vm_and(hit, meet_worlds(&index->worlds[node], slot, chosen));
+    if (!index->masks)
+        return hit;
+    for (uint32_t bits = vm_bits(hit); bits > 0; bits &= bits - 1) {
+        const int lane = FIND_LOWEST(bits);
+        fine[lane] = (index->masks[NARC_NODE_SLOTS * node + (size_t)(slot + lane)] & chosen->mask) != 0;
+    }
     return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));
 }
 

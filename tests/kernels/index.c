@@ -41,10 +41,10 @@ static void hold(struct holding *all, const narc_box *box, uint64_t mask) {
 static struct holding check_node(const narc_index *index, unsigned level, size_t k, const narc_box *boxes,
                                  const uint64_t *category, const uint32_t *world, unsigned char *seen) {
     const size_t at = index->first_node[level] + k;
-    struct holding all = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {UINT32_MAX, 0}};
+    struct holding all = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {INT32_MAX, INT32_MIN}};
     for (size_t slot = 0; slot < NARC_NODE_SLOTS; slot++) {
         const size_t below = NARC_NODE_SLOTS * k + slot;
-        struct holding held = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {UINT32_MAX, 0}};
+        struct holding held = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {INT32_MAX, INT32_MIN}};
         if (level > 0 && below < index->node_count[level - 1]) {
             held = check_node(index, level - 1, below, boxes, category, world, seen);
         } else if (level == 0 && index->body[below] != UINT32_MAX) {
@@ -54,7 +54,7 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
             seen[body]++;
             all.count++;
             hold(&held, &boxes[body], category ? category[body] : 0);
-            held.worlds.lowest = held.worlds.highest = world ? world[body] : 0;
+            held.worlds.lowest = held.worlds.highest = narc_order_world(world ? world[body] : 0);
         }
         const narc_box box = slot_box(&index->nodes[at], slot);
         assert_true(box.min_x == held.box.min_x && box.min_y == held.box.min_y);
@@ -62,7 +62,8 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
         if (index->masks)
             assert_true((index->masks[NARC_NODE_SLOTS * at + slot] & held.mask) == held.mask);
         if (index->worlds)
-            assert_memory_equal(&index->worlds[NARC_NODE_SLOTS * at + slot], &held.worlds, sizeof held.worlds);
+            assert_true(index->worlds[at].lowest[slot] == held.worlds.lowest &&
+                        index->worlds[at].highest[slot] == held.worlds.highest);
         if (held.worlds.lowest < all.worlds.lowest)
             all.worlds.lowest = held.worlds.lowest;
         if (held.worlds.highest > all.worlds.highest)
@@ -239,7 +240,7 @@ static void expect_same_index(const narc_index *one, const narc_index *other) {
     assert_int_equal(one->masks != NULL, other->masks != NULL);
     assert_int_equal(one->worlds != NULL, other->worlds != NULL);
     if (one->worlds)
-        assert_memory_equal(one->worlds, other->worlds, nodes * NARC_NODE_SLOTS * sizeof *one->worlds);
+        assert_memory_equal(one->worlds, other->worlds, nodes * sizeof *one->worlds);
     if (one->masks)
         assert_memory_equal(one->masks, other->masks, nodes * NARC_NODE_SLOTS * sizeof *one->masks);
 }
@@ -443,9 +444,11 @@ TEST(keeps_worlds_apart) {
             const narc_index_column some = {all + first, sizeof *all};
             assert_int_equal(narc_update_index(index, boxes, COUNT, &some, EACH, &options, NULL), NARC_OK);
         }
-        for (size_t k = 0; k < narc_count_nodes(index) * NARC_NODE_SLOTS; k++)
-            if (index->worlds[k].lowest <= index->worlds[k].highest)
-                slots += index->worlds[k].highest - index->worlds[k].lowest + 1;
+        for (size_t k = 0; k < narc_count_nodes(index) * NARC_NODE_SLOTS; k++) {
+            const narc_world_range own = narc_get_worlds(&index->worlds[k / NARC_NODE_SLOTS], k % NARC_NODE_SLOTS);
+            if (own.lowest <= own.highest)
+                slots += (size_t)(own.highest - own.lowest) + 1;
+        }
         assert_true(slots <= 2 * COUNT); /* a world's own bodies, and as many above */
     }
     assert_int_equal(narc_update_index(index, boxes, COUNT, &changed, COUNT, NULL, NULL), NARC_OK);
