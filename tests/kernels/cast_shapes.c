@@ -179,7 +179,9 @@ TEST(test_movers_that_touch) {
     narc_shapes *const store = empty_store();
     const uint32_t box = store_shape(store, box_of(2, 2, 0)), floor = store_shape(store, box_of(80, 2, 0));
     const narc_body rows[BODIES] = {{0, -2, 1, 0, 1, floor}, {10, 0, 1, 0, 1, box}}, mover = {0, -0.001, 1, 0, 1, box};
-    const narc_bodies bodies = narc_view_bodies(rows, BODIES), movers = narc_view_bodies(&mover, 1);
+    narc_bodies bodies, movers;
+    narc_view_bodies(rows, BODIES, &bodies);
+    narc_view_bodies(&mover, 1, &movers);
     narc_box boxes[BODIES];
     narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
     const uint32_t owner[BODIES] = {7, 3}, own = 3;
