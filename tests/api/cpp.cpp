@@ -560,6 +560,8 @@ void test_index() {
     narc_openmp_workers(1, &workers);
     narc::index index;
     const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
+    const std::vector<uint32_t> world = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1}, asked = {1};
+    const auto apart = narc::index_options().world(narc::column(world));
     const narc_index_options &c = options;
     CHECK(c.category.base == category.data() && c.fast == 1 && c.workers == &workers);
     const narc_point far = {1e9, 0};
@@ -567,12 +569,18 @@ void test_index() {
     CHECK(narc::compute_boxes(scene.shapes, scene.bodies, there, narc::box_options().origin(far)));
     CHECK(there[0].max_x < -0.99e9f && narc::index_options().origin(far).narc_index_options::origin == &far);
     CHECK(narc::step().origin(far).narc_step::origin == &far);
+    std::vector<uint32_t> counts(3);
+    const auto counting = narc::step().world_counts(counts);
+    CHECK(counting.out_world_count == counts.data() && counting.world_count == 3);
     CHECK(index.build(boxes, options));
     CHECK(index.update(boxes, options) && index.describe().value().bodies == 10);
     const std::vector<uint32_t> changed = {9};
     CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
     CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
+    CHECK(index.build(boxes, apart) && index.query({&boxes[3], 1}).value().count == 3);
+    CHECK(index.query({&boxes[3], 1}, narc::index_query().world(narc::column(asked))).value().count == 1);
+    CHECK(index.build(boxes, options));
     const auto query = narc::index_query().mask(narc::column(mask)).ignored(narc::column(ignored)).workers(workers);
     CHECK(index.query({&boxes[3], 1}, query).value().count == 0);
     const narc::index moved = std::move(index);
