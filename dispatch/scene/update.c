@@ -3,10 +3,11 @@
  * update.c - narc_update_index(): bodies that have moved, come or gone, and the nodes above them.
  *
  * A body that stays within its leaf's home gets its new box there. All others leave their slots and wait; then each goes
- * down the tree to the leaf whose box grows least. If that is full, the bodies of the lowest node above it that is not too
- * full are spread over its slots anew, as a build does it; so they are where half of a node's bodies have come since. That
- * bounds how far a tree is from a new one, and the work: a body that goes to another leaf pays on each level for two that
- * are spread. Last, the nodes above all leaves of which something has changed are fitted.
+ * down the tree to the leaf whose box grows least, in its world, or to another one of the same node if that is full. Where
+ * none has room, the bodies of the lowest node above that is not too full are spread over its slots anew, as a build does
+ * it; and so they are where as many have come as a node holds. That bounds how far the tree is from a new one, and the work:
+ * a body that goes to another leaf pays on each level for one that is spread. Last, the nodes above all leaves of which
+ * something has changed are fitted.
  */
 #include "column.h"
 #include "dispatch.h"
