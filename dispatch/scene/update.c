@@ -94,20 +94,23 @@ static bool holds(const narc_box *outer, const narc_box *box) {
            box->max_y <= outer->max_y;
 }
 
-/* A body that may have changed. */
-static void look_at(updating *u, uint32_t body) {
+/* A body that may have changed, and its place. */
+static inline void look_at(updating *u, uint32_t body, uint32_t place) {
     narc_index *const index = u->index;
     const narc_box *const box = &u->boxes[body];
-    const uint32_t place = index->place[body];
+    const size_t leaf = place / NARC_NODE_SLOTS, slot = place % NARC_NODE_SLOTS;
     if (place == NARC_WAITING_PLACE)
         return;
     const bool is_full = narc_is_full_box(box);
-    if (place != NARC_NO_PLACE && is_full && holds(&index->home[place / NARC_NODE_SLOTS], box) &&
-        (!index->worlds ||
-         index->worlds[place / NARC_NODE_SLOTS].lowest[place % NARC_NODE_SLOTS] == find_world(u, body).lowest)) {
-        if (!has_box(&index->nodes[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, box) ||
-            (index->masks && index->masks[place] != find_category(u, body)))
-            put_body(u, place, body);
+    if (place != NARC_NO_PLACE && is_full && holds(&index->home[leaf], box) &&
+        (!index->worlds || index->worlds[leaf].lowest[slot] == find_world(u, body).lowest)) {
+        const bool is_other = index->masks && index->masks[place] != find_category(u, body);
+        if (is_other)
+            index->masks[place] = find_category(u, body);
+        else if (has_box(&index->nodes[leaf], slot, box))
+            return;
+        put_box(&index->nodes[leaf], slot, box);
+        touch(index, 0, leaf);
         return;
     }
     if (place != NARC_NO_PLACE)
@@ -277,10 +280,10 @@ static void look_at_all(updating *u) {
     narc_index *const index = u->index;
     for (size_t k = 0; k < index->slots; k++)
         if (index->body[k] != UINT32_MAX)
-            look_at(u, index->body[k]);
+            look_at(u, index->body[k], (uint32_t)k);
     for (size_t k = 0; k < index->count; k++)
         if (index->place[k] == NARC_NO_PLACE)
-            look_at(u, (uint32_t)k);
+            look_at(u, (uint32_t)k, NARC_NO_PLACE);
 }
 
 /* Puts all that waits into leaves. False if the tree is to be made anew. */
@@ -331,10 +334,12 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     index->count = count;
     if (all)
         look_at_all(&u);
-    for (size_t k = 0; k < changed_count && !all; k++)
-        look_at(&u, narc_index_at(list, k));
+    for (size_t k = 0; k < changed_count && !all; k++) {
+        const uint32_t body = narc_index_at(list, k);
+        look_at(&u, body, index->place[body]);
+    }
     for (size_t k = old_count; k < count && !all; k++)
-        look_at(&u, (uint32_t)k);
+        look_at(&u, (uint32_t)k, index->place[k]);
     if (!insert_all(&u)) {
         narc_make_index(&u.making, false);
         return NARC_OK;
