@@ -284,7 +284,8 @@ static void list_on_curve(void *argument, size_t part, size_t first, size_t end)
         const narc_box *const box = &s->boxes[s->bodies[k]];
         const float x = (halve_centre(box->min_x, box->max_x) - min_x) * scale;
         const float y = (halve_centre(box->min_y, box->max_y) - min_y) * scale;
-        s->from[k] = (entry){narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
+        s->from[k] =
+            (entry){narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
     }
 }
 

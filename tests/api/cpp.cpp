@@ -673,7 +673,8 @@ void test_rays_and_points() {
     const auto options = narc::ray_options().search(search).inside(NARC_INSIDE_IGNORES).most(3).skipped(skipped);
     std::array<uint32_t, 2> order = {7, 7};
     const narc_ray_options c = narc::ray_options(options).any().order(order.data());
-    CHECK(c.out_order == order.data() && c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES && c.any == 1 && c.most == 3);
+    CHECK(c.out_order == order.data() && c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES &&
+          c.any == 1 && c.most == 3);
     std::vector<narc_ray_hit> hits;
     const auto found = narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, hits).value();
     std::vector<narc_ray_hit> expected(6);
