@@ -43,6 +43,7 @@ static const struct group groups[] = {
     {"stay-moving stay-moving-recycled", "boxes", "pile-10000", PARTLY},
     {"stay-moving stay-moving-recycled", "squares", "pyramid-templates", PARTLY},
     {"plain stay-rain", "n8 boxes kinds", "pile", "BEST"},
+    {"worlds", "boxes", "pile", "BEST"},
     {"stay-rain", "n8 boxes kinds", "pile", "box2d"},
     {QUERIES, "squares", "pyramid pyramid-templates", "BEST"},
     {"contact", "squares", "pyramid pyramid-templates", "box2d"},

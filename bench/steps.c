@@ -14,6 +14,7 @@ enum step {
     STEP_BOXES,
     STEP_PAIRS, /* of boxes that are there */
     STEP_PLAIN, /* both, and manifolds */
+    STEP_WORLDS,
     /* The whole step. Of so many bodies one moves: */
     STEP_MOVING = 4, /* ten steps there and ten back */
     STEP_SETTLED,    /* by nearly nothing */
@@ -37,6 +38,8 @@ struct steps {
     uint32_t *moved, *a, *b;
     size_t moved_count;
     narc_box *boxes;
+    narc_body *placed; /* "worlds": squares of the scene, each a world, all at one place */
+    uint32_t *world;
     narc_broad_phase *broad;
     narc_contacts *contacts;
     const narc_step_result *result;
@@ -74,6 +77,46 @@ static void prepare_plain(struct row *row) {
     find_boxes(row->scene, margin / 2 + skin, NULL, s->boxes);
     row->bench.count = row->scene->pair_count;
     run_plain(row);
+}
+
+/* Boxes, pairs and contacts of all worlds. */
+static void run_worlds(struct row *row) {
+    struct steps *s = row->state;
+    const narc_shapes *const shapes = row->scene->shapes;
+    const size_t count = row->scene->body_count;
+    const narc_pair_filter filter = {.world = NARC_ARRAY(s->world)};
+    const narc_query query = {.workers = &row->workers};
+    const narc_box_options options = {.workers = &row->workers};
+    narc_bodies bodies;
+    narc_error error;
+    narc_view_bodies(s->placed, count, &bodies);
+    must(narc_compute_boxes(shapes, &bodies, &options, s->boxes, &error), &error);
+    must(narc_find_pairs(s->broad, s->boxes, count, &filter, &row->workers, s->a, s->b, 0, s->capacity, &s->found,
+                         &error),
+         &error);
+    const narc_pairs pairs = {.count = s->found, .a = NARC_ARRAY(s->a), .b = NARC_ARRAY(s->b)};
+    must(narc_find_manifolds(shapes, &bodies, &pairs, &query, share_manifolds(s->capacity), s->capacity, &s->found,
+                             &error),
+         &error);
+}
+
+static void prepare_worlds(struct row *row) {
+    enum { SIDE = 10, ROW = 1 << 12 }; /* a square of so much has some 32 bodies */
+    struct scene *const scene = row->scene;
+    prepare_plain(row);
+    struct steps *s = row->state;
+    index_scene(scene);
+    s->placed = allocate(scene->body_count, sizeof *s->placed);
+    s->world = allocate(scene->body_count, sizeof *s->world);
+    for (size_t k = 0; k < scene->body_count; k++) {
+        const struct body *at = &scene->bodies[k];
+        const double x = floor(((double)at->x + scene->half) / SIDE), y = floor(((double)at->y + scene->half) / SIDE);
+        s->placed[k] =
+            (narc_body){(double)at->x - x * SIDE, (double)at->y - y * SIDE, at->cosine, at->sine, 1, at->shape};
+        s->world[k] = (uint32_t)(x + ROW * y);
+    }
+    row->bench.count = scene->body_count;
+    run_worlds(row);
 }
 
 /* ------------------------------------------------------------------------------------------------ whole steps */
@@ -178,6 +221,7 @@ const struct question step_questions[] = {
     {"boxes", prepare_plain, run_plain, STEP_BOXES, false},
     {"pairs", prepare_plain, run_plain, STEP_PAIRS, false},
     {"plain", prepare_plain, run_plain, STEP_PLAIN, false},
+    {"worlds", prepare_worlds, run_worlds, STEP_WORLDS, false},
     {"stay-moving", prepare_steps, run_steps, STEP_MOVING, false},
     {"stay-moving-recycled", prepare_steps, run_steps, STEP_MOVING | STEP_RECYCLED, false},
     {"stay-settled", prepare_steps, run_steps, STEP_SETTLED, false},

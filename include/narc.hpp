@@ -661,6 +661,10 @@ struct step : detail::options<step, narc_step> {
     step &run(narc_index_column value) noexcept { return set(&narc_step::run, value); }
     step &filter(const narc_pair_filter &value) noexcept { return set(&narc_step::filter, &value); }
     step &filter(const narc_pair_filter &&) = delete;
+    // So many touching pairs there are of each world, at `out`, which stays where it is until the update.
+    step &world_counts(span<uint32_t> out) noexcept {
+        return set(&narc_step::out_world_count, out.data()).set(&narc_step::world_count, out.size());
+    }
     step &origin(const narc_point &value) noexcept { return set(&narc_step::origin, &value); }
     step &origin(const narc_point &&) = delete;
     // These are the pairs that there are; `same`: those of the last step.
@@ -733,6 +737,7 @@ class contacts : public detail::owner<narc_contacts, detail::create_contacts, na
 
 struct index_options : detail::options<index_options, narc_index_options> {
     index_options &category(narc_word_column value) noexcept { return set(&narc_index_options::category, value); }
+    index_options &world(narc_index_column value) noexcept { return set(&narc_index_options::world, value); }
     index_options &fast() noexcept { return set(&narc_index_options::fast, 1u); }
     index_options &origin(const narc_point &value) noexcept { return set(&narc_index_options::origin, &value); }
     index_options &origin(const narc_point &&) = delete;
@@ -741,6 +746,7 @@ struct index_options : detail::options<index_options, narc_index_options> {
 struct index_query : detail::options<index_query, narc_index_query> {
     index_query &mask(narc_word_column value) noexcept { return set(&narc_index_query::mask, value); }
     index_query &ignored(narc_index_column value) noexcept { return set(&narc_index_query::ignored, value); }
+    index_query &world(narc_index_column value) noexcept { return set(&narc_index_query::world, value); }
     index_query &owners(const narc_owners &value) noexcept { return set(&narc_index_query::owners, &value); }
     index_query &owners(const narc_owners &&) = delete;
 };

@@ -99,6 +99,9 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *   origin              a place near the bodies, finite, such as where the camera is; NULL: (0, 0). Boxes are float, and
  *                       relative to it: further away than 100,000 times the skin they grow by roundings, and there are more
  *                       pairs (narc_box_options). It may be another one in each step: pairs, rows and the caller's bytes stay
+ *   out_world_count     how many of result.touching are of bodies of world 0, 1, 2 ... (narc_pair_filter.world), `world_count`
+ *                       numbers. Where bodies stand in the order of their worlds, those of a world follow each other in
+ *                       `touching`, behind those of the worlds before. NULL: nobody asks
  * Columns have one item for each body. */
 typedef struct narc_step {
     const narc_bodies *bodies;
@@ -115,7 +118,9 @@ typedef struct narc_step {
     size_t moved_count;
     const narc_workers *workers;
     const narc_point *origin;
-    void *reserved[3]; /* NULL */
+    uint32_t *out_world_count;
+    size_t world_count;
+    void *reserved[1]; /* NULL */
 } narc_step;
 
 /* Something that began or ended to touch: a pair with a row, or with a sensor an overlap.

@@ -250,11 +250,14 @@ enum { NARC_STATIC = 1, NARC_ASLEEP = 2, NARC_SENSOR = 4 };
  *                    out: all bits set.
  *   owner            two boxes of one owner form no pair: they are one thing, such as a machine, or a body of several
  *                    parts (narc_place_parts()). UINT32_MAX: a thing by itself; left out: all are. The same column tells
- *                    other questions what one thing is (narc_owners) */
+ *                    other questions what one thing is (narc_owners)
+ *   world            any number: two boxes of different worlds form no pair, wherever they are, and take no time either; left
+ *                    out: there is one world */
 typedef struct narc_pair_filter {
     narc_byte_column kind;
     narc_word_column category, mask;
     narc_index_column owner;
+    narc_index_column world;
     void *reserved[2]; /* NULL */
 } narc_pair_filter;
 

@@ -69,13 +69,16 @@ NARC_API void narc_destroy_index(narc_index *index);
  *   fast       1: in the order of a curve, in a fraction of the time; questions then take up to twice as long
  *   workers    threads to use; NULL: the calling one. The index does not depend on them
  *   origin     that of the boxes (narc_box_options), finite; NULL: (0, 0). Rays, points, movers are in the world as ever, and
- *              boxes that ask are relative to it, too */
+ *              boxes that ask are relative to it, too
+ *   world      the world of each box, any number; left out: there is one. Worlds are apart in the tree: who asks one goes
+ *              through it alone */
 typedef struct narc_index_options {
     narc_word_column category;
     uint32_t fast;
     const narc_workers *workers;
     const narc_point *origin;
-    void *reserved[3]; /* NULL */
+    narc_index_column world;
+    void *reserved[2]; /* NULL */
 } narc_index_options;
 
 /* Makes the index one of these boxes; box k is that of body k, as narc_compute_boxes() gives them. An empty box is
@@ -94,10 +97,10 @@ NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, 
  * stays good. Bodies keep their numbers; one that is gone has an empty box, one that comes a number of its own.
  *   boxes, count    all of them. Those with numbers from the last count on have come, if there were fewer, and those from
  *                   `count` on are gone, if there were more
- *   changed         the numbers of all other boxes that are not as they were, or whose category is not, `changed_count` of
- *                   them, in any order. NULL: all may have changed
- *   options         as when building, the columns those of all boxes. With a category column where it was built without, or
- *                   the other way around, it is built anew; with another origin all boxes have changed
+ *   changed         the numbers of all other boxes that are not as they were, or whose category or world is not,
+ *                   `changed_count` of them, in any order. NULL: all may have changed
+ *   options         as when building, the columns those of all boxes. With a column where it was built without, or the other
+ *                   way around, it is built anew; with another origin all boxes have changed
  * Errors: those of narc_build_index(), NARC_ERROR_INDEX (no such box); the index is as it was then. */
 NARC_API narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count,
                                        const narc_index_column *changed, size_t changed_count,
@@ -133,12 +136,14 @@ typedef struct narc_owners {
  *   mask      64 bits for each query: only bodies with category & mask not 0 are found; left out: all bits set
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
  *   workers   threads to use; NULL: the calling one
- *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either */
+ *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either
+ *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;
     const narc_workers *workers;
     const narc_owners *owners;
+    narc_index_column world;
     void *reserved[3]; /* NULL */
 } narc_index_query;
 

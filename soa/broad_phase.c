@@ -80,7 +80,7 @@ static void *take(char **at, size_t count, size_t size) {
 }
 
 /* What one box needs in all, generously: the arrays below, and what rounding them up to 16 bytes takes. */
-enum { BYTES_PER_BOX = 128 };
+enum { BYTES_PER_BOX = 144 };
 
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */

@@ -3,8 +3,8 @@
  * broad_phase.h - the memory of a broad phase, kept from step to step. Internal.
  *
  * Boxes are sorted into STRIPS, rows that are as high as the highest box of their LEVEL: boxes of a level that overlap
- * lie in one strip or in two strips next to each other. A level holds boxes of similar heights and widths. In a strip
- * boxes lie in the order of min_x.
+ * lie in one strip or in two strips next to each other. A level holds boxes of one world, of similar heights and widths. In
+ * a strip boxes lie in the order of min_x.
  */
 #ifndef NARC_BROAD_PHASE_MEMORY_H
 #define NARC_BROAD_PHASE_MEMORY_H
@@ -33,6 +33,8 @@ typedef struct narc_level {
     uint64_t number;
     double scale;        /* one over the height of its strips */
     uint32_t first, end; /* its strips */
+    uint32_t world;      /* of its boxes */
+    uint32_t start;      /* the index of the first level of this world */
 } narc_level;
 
 /* Exponents of floats, and values of a digit that entries are sorted by. */
@@ -48,6 +50,7 @@ typedef struct narc_strip_part {
     };
     size_t start, count;     /* its entries, or strips */
     int64_t lowest, highest; /* strips, if it has entries */
+    uint32_t world;          /* the highest */
 } narc_strip_part;
 
 /* Boxes in columns, and the body of each. */
@@ -102,8 +105,8 @@ typedef struct narc_pair_block {
 /* What a filter says of one body. */
 typedef struct narc_body_filter {
     uint64_t category, mask;
-    uint32_t owner;
-    uint8_t kind, unused[3]; /* 0 */
+    uint32_t owner, world;
+    uint8_t kind, unused[7]; /* 0 */
 } narc_body_filter;
 
 enum { NARC_KINDS = NARC_STATIC | NARC_ASLEEP | NARC_SENSOR };
@@ -183,7 +186,7 @@ struct narc_broad_phase {
     narc_box_entry *entries, *spare;
     narc_box_columns boxes; /* in the order of their strips; unsorted ones and NARC_BOX_PADDING items behind them */
     narc_strip *strips;
-    narc_level *levels;     /* those that have boxes, the highest strips first */
+    narc_level *levels;     /* those that have boxes, by worlds, and in each the highest strips first */
     uint32_t *ends;         /* of each body's list of partners; one more than boxes */
     narc_strip_part *parts; /* one for every NARC_PART_BOXES boxes, NARC_STRIP_PARTS at most */
     uint32_t *unsorted;     /* bodies whose kept boxes are others than when all were sorted */

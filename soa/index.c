@@ -23,8 +23,9 @@ void narc_destroy_index(narc_index *index) {
     if (!index)
         return;
     const narc_allocator allocator = index->allocator;
-    void *const memory[] = {index->tree_memory, index->mask_memory, index->build_memory, index->regions,
-                            index->found,       index->rows,        index->sweeps,       index};
+    void *const memory[] = {index->tree_memory,  index->mask_memory, index->world_memory,
+                            index->build_memory, index->regions,     index->found,
+                            index->rows,         index->sweeps,      index};
     for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
         if (memory[k])
             allocator.release(memory[k], allocator.context);
@@ -48,6 +49,11 @@ static size_t count_all_nodes(size_t count) {
         all += count;
     }
     return all;
+}
+
+/* All slots of a tree of so many boxes. */
+static size_t count_all_slots(size_t boxes) {
+    return count_all_nodes(narc_count_index_slots(boxes, false)) * NARC_NODE_SLOTS;
 }
 
 void narc_lay_out_index(narc_index *index, size_t slots) {
@@ -98,11 +104,12 @@ struct piece {
     size_t *capacity, count, bytes;
 };
 
-bool narc_has_index_room(const narc_index *index, size_t count, bool masks) {
-    return count <= index->tree_capacity && (!masks || count <= index->mask_capacity);
+bool narc_has_index_room(const narc_index *index, size_t count, bool masks, bool worlds) {
+    return count <= index->tree_capacity && (!masks || count <= index->mask_capacity) &&
+           (!worlds || count <= index->world_capacity);
 }
 
-narc_status narc_reserve_index(narc_index *index, size_t count, bool masks) {
+narc_status narc_reserve_index(narc_index *index, size_t count, bool masks, bool worlds) {
     enum { BYTES = 64 }; /* for a box, more than any piece of memory takes */
     const size_t n = with_room(count);
     if (n > SIZE_MAX / BYTES)
@@ -111,8 +118,9 @@ narc_status narc_reserve_index(narc_index *index, size_t count, bool masks) {
     struct piece pieces[] = {
         {&index->tree_memory, NULL, &index->tree_capacity, count, tree.end + LINE},
         {&index->build_memory, NULL, &index->build_capacity, count, n * NARC_INDEX_BUILD_BYTES},
-        {&index->mask_memory, NULL, &index->mask_capacity, masks ? count : 0,
-         count_all_nodes(narc_count_index_slots(n, false)) * NARC_NODE_SLOTS * sizeof(uint64_t)},
+        {&index->mask_memory, NULL, &index->mask_capacity, masks ? count : 0, count_all_slots(n) * sizeof(uint64_t)},
+        {&index->world_memory, NULL, &index->world_capacity, worlds ? count : 0,
+         count_all_slots(n) / NARC_NODE_SLOTS * sizeof(narc_node_worlds) + NARC_NODE_PADDING * sizeof(int32_t)},
     };
     enum { PIECES = sizeof pieces / sizeof pieces[0] };
     bool fine = true;
@@ -152,8 +160,9 @@ size_t narc_count_index_bytes(const narc_index *index) {
     if (index->tree_memory)
         bytes += lay_out_tree(index->tree_capacity).end + LINE;
     if (index->mask_memory)
-        bytes +=
-            count_all_nodes(narc_count_index_slots(index->mask_capacity, false)) * NARC_NODE_SLOTS * sizeof(uint64_t);
+        bytes += count_all_slots(index->mask_capacity) * sizeof(uint64_t);
+    if (index->world_memory)
+        bytes += count_all_slots(index->world_capacity) / NARC_NODE_SLOTS * sizeof(narc_node_worlds);
     bytes += index->build_capacity * NARC_INDEX_BUILD_BYTES + index->region_capacity * sizeof *index->regions;
     bytes += index->found_capacity * sizeof *index->found + 2 * index->row_capacity * sizeof *index->rows;
     return bytes + index->sweep_capacity * sizeof *index->sweeps;

@@ -43,8 +43,37 @@ static inline bool narc_is_full_box(const narc_box *box) {
 #define NARC_ORDER_ALONG_Y(b)  (1u << (b)) /* the halves lie one above the other; else side by side */
 #define NARC_ORDER_DOWNWARD(b) (8u << (b)) /* the half with bit 0 is the upper one, or that on the right */
 
-/* What building takes for each box: two numbers of 32 bits twice, and of one kind two lists. */
-enum { NARC_INDEX_BUILD_BYTES = 24 };
+/* What building takes for each box: two numbers of 32 bits twice, and of one kind three lists. */
+enum { NARC_INDEX_BUILD_BYTES = 28 };
+
+/* The worlds of what is below each slot of a node, from the lowest to the highest, as narc_order_world() has them; without
+ * bodies from the last to the first. */
+typedef struct narc_node_worlds {
+    int32_t lowest[NARC_NODE_SLOTS], highest[NARC_NODE_SLOTS];
+} narc_node_worlds;
+
+typedef struct narc_world_range {
+    int32_t lowest, highest;
+} narc_world_range;
+
+/* A signed number in the order of worlds. */
+static inline int32_t narc_order_world(uint32_t world) { return (int32_t)(world ^ 0x80000000u); }
+
+static inline narc_world_range narc_get_worlds(const narc_node_worlds *node, size_t slot) {
+    return (narc_world_range){node->lowest[slot], node->highest[slot]};
+}
+
+static inline void narc_put_worlds(narc_node_worlds *node, size_t slot, narc_world_range worlds) {
+    node->lowest[slot] = worlds.lowest;
+    node->highest[slot] = worlds.highest;
+}
+
+/* Both together. */
+static inline narc_world_range narc_join_worlds(narc_world_range a, narc_world_range b) {
+    return (narc_world_range){a.lowest < b.lowest ? a.lowest : b.lowest, a.highest > b.highest ? a.highest : b.highest};
+}
+
+static const narc_world_range narc_no_worlds = {INT32_MAX, INT32_MIN};
 
 /* In narc_index.place: the body is in no leaf; or it waits for one, while the index is updated. */
 #define NARC_NO_PLACE      UINT32_MAX
@@ -67,18 +96,19 @@ struct narc_index {
     uint32_t node_count[NARC_INDEX_LEVELS];
     narc_index_node *nodes; /* at cache lines */
     uint8_t *order;         /* of each node */
-    uint64_t *masks;   /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
-    uint32_t *body;    /* for each slot of each leaf; UINT32_MAX: none */
-    uint32_t *place;   /* of each body the slot of a leaf, or NARC_..._PLACE */
-    uint32_t *filled;  /* of each node: how many bodies are below, */
-    uint32_t *changes; /* how many came since they were spread over its slots, */
-    uint8_t *touched;  /* and while the index is updated a bit for each child of which something has changed */
-    narc_box *home;    /* of each leaf: a body that moves within this stays */
-    uint32_t *waiting; /* while the index is updated: bodies that are to go to a leaf */
-    double perimeter;  /* of all nodes together, when it was built */
+    uint64_t *masks; /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
+    narc_node_worlds *worlds; /* of each node; NULL: there is one world */
+    uint32_t *body;           /* for each slot of each leaf; UINT32_MAX: none */
+    uint32_t *place;          /* of each body the slot of a leaf, or NARC_..._PLACE */
+    uint32_t *filled;         /* of each node: how many bodies are below, */
+    uint32_t *changes;        /* how many came since they were spread over its slots, */
+    uint8_t *touched;         /* and while the index is updated a bit for each child of which something has changed */
+    narc_box *home;           /* of each leaf: a body that moves within this stays */
+    uint32_t *waiting;        /* while the index is updated: bodies that are to go to a leaf */
+    double perimeter;         /* of all nodes together, when it was built */
     /* memory, and for how many boxes */
-    void *tree_memory, *mask_memory, *build_memory;
-    size_t tree_capacity, mask_capacity, build_capacity;
+    void *tree_memory, *mask_memory, *world_memory, *build_memory;
+    size_t tree_capacity, mask_capacity, world_capacity, build_capacity;
     /* of narc_query_index(): for each query, each body that is found, in any order, and each pair */
     narc_region *regions;
     uint32_t *found, *rows;
@@ -87,9 +117,9 @@ struct narc_index {
     size_t sweep_capacity;
 };
 
-/* Makes room for an index of so many boxes, with masks or without, and for building it. What it holds is lost only if
+/* Makes room for an index of so many boxes, with masks and worlds or without, and for building it. What it holds is lost only if
  * there was no room; NARC_ERROR_MEMORY: it is as it was. */
-narc_status narc_reserve_index(narc_index *index, size_t count, bool masks);
+narc_status narc_reserve_index(narc_index *index, size_t count, bool masks, bool worlds);
 
 /* Make room for so many queries, bodies that are found, and pairs of both, and boxes of movers; what was there is lost,
  * unless there is room already. NARC_ERROR_MEMORY: there is as much room as before. Behind the bodies NARC_FOUND_PADDING
@@ -103,7 +133,7 @@ narc_status narc_reserve_sweeps(narc_index *index, size_t count);
 enum { NARC_FOUND_PADDING = 64 };
 
 /* Is there room for so many boxes already? Then narc_reserve_index() changes nothing. */
-bool narc_has_index_room(const narc_index *index, size_t count, bool masks);
+bool narc_has_index_room(const narc_index *index, size_t count, bool masks, bool worlds);
 
 /* All memory that the index has. */
 size_t narc_count_index_bytes(const narc_index *index);

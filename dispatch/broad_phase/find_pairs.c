@@ -115,10 +115,10 @@ static void sweep_both(const narc_broad_phase *broad, const narc_kernel_table *k
     kernels->sweep(&broad->boxes, a->first, a->end, b->first, b->end, b->width, out);
 }
 
-/* Sweeps a strip, or any boxes, and those of levels before `end` that may reach it. */
+/* Sweeps a strip, or any boxes, and those of its world's levels first .. end - 1 that may reach it. */
 static void sweep_levels(const narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_strip *strip,
-                         const narc_level *end, narc_found_pairs *out) {
-    for (const narc_level *level = broad->levels; level < end; level++) {
+                         size_t first, size_t end, narc_found_pairs *out) {
+    for (const narc_level *level = broad->levels + first; level < broad->levels + end; level++) {
         const uint64_t lowest = narc_strip_number(broad, level, strip->min_y, -1);
         const uint64_t highest = narc_strip_number(broad, level, strip->max_y, 0);
         for (size_t k = find_strip(broad, level, lowest); k < level->end && broad->strips[k].number <= highest; k++)
@@ -133,7 +133,7 @@ static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *
     kernels->sweep(&broad->boxes, strip->first, strip->end, strip->first, strip->end, strip->width, out);
     if (index + 1 < broad->strip_count && above->number == strip->number + 1)
         sweep_both(broad, kernels, strip, above, out);
-    sweep_levels(broad, kernels, strip, &broad->levels[strip->level], out);
+    sweep_levels(broad, kernels, strip, broad->levels[strip->level].start, strip->level, out);
 }
 
 /* One task: sweeps strips that no other does. */
@@ -176,11 +176,11 @@ static narc_workers choose_workers(const narc_workers *workers, size_t count) {
 
 /* ------------------------------------------------------------------------------------------------ few boxes */
 
-/* Lists unsorted bodies as they lie in the columns, both kinds together in the order of min_x, so that they hardly need
- * sorting the next time. */
+/* Appends unsorted bodies of a world as they lie in the columns, both kinds together in the order of min_x, so that they
+ * hardly need sorting the next time. */
 static void merge_unsorted(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
     const narc_box_columns *const boxes = &broad->boxes;
-    uint32_t *to = broad->unsorted, i = old->first, k = fresh->first;
+    uint32_t *to = broad->unsorted + broad->unsorted_count, i = old->first, k = fresh->first;
     while (i < old->end || k < fresh->end) {
         const bool take_old = k == fresh->end || (i < old->end && boxes->min_x[i] <= boxes->min_x[k]);
         *to++ = boxes->body[take_old ? i++ : k++];
@@ -188,24 +188,26 @@ static void merge_unsorted(narc_broad_phase *broad, const narc_strip *old, const
     broad->unsorted_count = (size_t)(to - broad->unsorted);
 }
 
-/* Unsorted boxes lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if
- * they were strips. There is room for all. */
-static void write_unsorted(narc_broad_phase *broad, const narc_box *boxes, narc_strip unsorted[2]) {
-    uint32_t end = (uint32_t)broad->sorted_count;
-    for (uint8_t fresh = 0; fresh < 2; fresh++) {
-        unsorted[fresh] = (narc_strip){.first = end};
+/* Unsorted boxes lie behind the strips in the columns, world by world: first those that are not fresh, then the fresh ones,
+ * as if each were a strip. Lists their entries; returns where they end. There is room for all. */
+static uint32_t list_entries(narc_broad_phase *broad, const narc_box *boxes, const narc_pair_filter *filter) {
+    uint64_t limit = 0;
+    size_t count = 0;
+    for (uint8_t fresh = 0; fresh < 2; fresh++)
         for (size_t k = 0; k < broad->unsorted_count; k++) {
             const uint32_t body = broad->unsorted[k];
+            const uint64_t strip = 2 * (uint64_t)narc_read_world(filter, body) + fresh;
             if (!narc_is_box(&boxes[body]))
                 broad->place[body] = NARC_NO_PLACE;
             else if (broad->fresh[body] == fresh)
-                broad->entries[end++] = (narc_box_entry){.min_x = boxes[body].min_x, .body = body};
+                broad->entries[count++] = (narc_box_entry){strip, boxes[body].min_x, body};
+            limit = strip >= limit ? strip + 1 : limit;
         }
-        unsorted[fresh].end = end;
-        narc_fill_strip(broad, &unsorted[fresh], boxes);
-    }
-    narc_end_columns(&broad->boxes, end);
-    merge_unsorted(broad, &unsorted[0], &unsorted[1]);
+    if (limit > 2) /* there are several worlds */
+        narc_sort_by_strip(broad, count, limit, 1, NULL);
+    memmove(broad->entries + broad->sorted_count, broad->entries, count * sizeof *broad->entries);
+    narc_end_columns(&broad->boxes, broad->sorted_count + count);
+    return (uint32_t)(broad->sorted_count + count);
 }
 
 /* Takes fresh bodies out of the strips. */
@@ -231,28 +233,69 @@ static void list_unsorted(narc_broad_phase *broad, size_t count) {
  * swept before it is asked how long that took. */
 enum { STEPS_FOR_BOX = 4, FRESH_AT_A_TIME = 16 };
 
-/* Sweeps fresh boxes with each other, with the other unsorted ones, and one by one with the strips. False: it took
- * long. */
-static bool sweep_unsorted(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
-                           size_t count, const narc_strip unsorted[2], size_t *out_count) {
+/* The levels of a world. */
+static size_t find_levels(const narc_broad_phase *broad, uint32_t world, size_t *out_end) {
+    size_t first = 0, end = broad->level_count;
+    while (first < end) {
+        const size_t middle = first + (end - first) / 2;
+        if (broad->levels[middle].world < world)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    while (end < broad->level_count && broad->levels[end].world == world)
+        end++;
+    *out_end = end;
+    return first;
+}
+
+/* Sweeps fresh boxes of a world with each other, with the other unsorted ones, and one by one with the strips. */
+static void sweep_world(const narc_broad_phase *broad, const narc_kernel_table *kernels, uint32_t world,
+                        const narc_strip *old, const narc_strip *fresh, uint64_t most_steps, narc_found_pairs *out) {
     const narc_box_columns *const boxes = &broad->boxes;
+    narc_strip few = *fresh, behind = *fresh;
+    size_t end_level;
+    const size_t level = find_levels(broad, world, &end_level);
+    for (; behind.first < behind.end && out->steps < most_steps; few.first = few.end) {
+        few.end = behind.end - few.first > FRESH_AT_A_TIME ? few.first + FRESH_AT_A_TIME : behind.end;
+        behind.first = few.end;
+        kernels->sweep(boxes, few.first, few.end, few.first, few.end, few.width, out);
+        sweep_both(broad, kernels, &few, &behind, out);
+        sweep_both(broad, kernels, &few, old, out);
+        for (uint32_t k = few.first; k < few.end; k++) {
+            const narc_strip one = {.first = k, .end = k + 1, .min_y = boxes->min_y[k], .max_y = boxes->max_y[k]};
+            sweep_levels(broad, kernels, &one, level, end_level, out);
+        }
+    }
+}
+
+/* Takes the entries of a strip, if they come next, and fills the columns with their boxes. */
+static narc_strip take_strip(narc_broad_phase *broad, const narc_box *boxes, uint64_t strip, uint32_t first,
+                             uint32_t end) {
+    narc_strip taken = {.first = first, .end = first};
+    while (taken.end < end && broad->entries[taken.end].strip == strip)
+        taken.end++;
+    narc_fill_strip(broad, &taken, boxes);
+    return taken;
+}
+
+/* Fills the columns with unsorted boxes, up to `end`, and sweeps the fresh ones, world by world. False: it took long. */
+static bool sweep_unsorted(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_box *boxes,
+                           const narc_pair_filter *filter, size_t count, uint32_t end, size_t *out_count) {
     const uint64_t most_steps = STEPS_FOR_BOX * (uint64_t)count;
     sweep job = {.broad = broad, .kernels = kernels, .filter = filter, .tasks = 1};
     uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
     own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, &job, 0, 0, a, b};
-    narc_strip few = unsorted[1], behind = unsorted[1];
     atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
     begin_block(&own);
-    for (; behind.first < behind.end && own.pairs.steps < most_steps; few.first = few.end) {
-        few.end = behind.end - few.first > FRESH_AT_A_TIME ? few.first + FRESH_AT_A_TIME : behind.end;
-        behind.first = few.end;
-        kernels->sweep(boxes, few.first, few.end, few.first, few.end, few.width, &own.pairs);
-        sweep_both(broad, kernels, &few, &behind, &own.pairs);
-        sweep_both(broad, kernels, &few, &unsorted[0], &own.pairs);
-        for (uint32_t k = few.first; k < few.end; k++) {
-            const narc_strip one = {.first = k, .end = k + 1, .min_y = boxes->min_y[k], .max_y = boxes->max_y[k]};
-            sweep_levels(broad, kernels, &one, &broad->levels[broad->level_count], &own.pairs);
-        }
+    broad->unsorted_count = 0;
+    for (uint32_t first = (uint32_t)broad->sorted_count; first < end;) {
+        const uint64_t world = broad->entries[first].strip / 2;
+        const narc_strip old = take_strip(broad, boxes, 2 * world, first, end);
+        const narc_strip fresh = take_strip(broad, boxes, 2 * world + 1, old.end, end);
+        sweep_world(broad, kernels, (uint32_t)world, &old, &fresh, most_steps, &own.pairs);
+        merge_unsorted(broad, &old, &fresh);
+        first = fresh.end;
     }
     end_block(&own);
     *out_count = (size_t)own.total;
@@ -262,17 +305,16 @@ static bool sweep_unsorted(narc_broad_phase *broad, const narc_kernel_table *ker
 
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
                       const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count) {
-    narc_strip unsorted[2];
     narc_status status;
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
     const narc_workers chosen = choose_workers(workers, count);
     if (!kernels || fresh_count > narc_most_unsorted(count) / 2)
         return false;
     if (broad->unsorted_count + fresh_count > narc_most_unsorted(count))
-        narc_make_strips(broad, boxes, count, &chosen);
+        narc_make_strips(broad, boxes, count, filter, &chosen);
     list_unsorted(broad, count);
-    write_unsorted(broad, boxes, unsorted);
-    return sweep_unsorted(broad, kernels, filter, count, unsorted, out_count);
+    const uint32_t end = list_entries(broad, boxes, filter);
+    return sweep_unsorted(broad, kernels, boxes, filter, count, end, out_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ the call */
@@ -306,7 +348,7 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
     if (narc_reserve_boxes(broad, count) != NARC_OK ||
         narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, chosen.count)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
-    narc_make_strips(broad, boxes, count, &chosen);
+    narc_make_strips(broad, boxes, count, filter, &chosen);
     const uint64_t found = sweep_all(broad, kernels, filter, &chosen);
     if (found > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",

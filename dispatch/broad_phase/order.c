@@ -19,8 +19,9 @@ static void put_in_order(uint32_t *one, uint32_t *other) {
 /* Two static bodies do not meet, nor do two sensors. */
 static bool lets_pair(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
     const narc_body_filter one = narc_read_filter(filter, a), other = narc_read_filter(filter, b);
-    return !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) && (one.owner == UINT32_MAX || one.owner != other.owner) &&
-           (one.category & other.mask) != 0 && (other.category & one.mask) != 0;
+    return one.world == other.world && !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) &&
+           (one.owner == UINT32_MAX || one.owner != other.owner) && (one.category & other.mask) != 0 &&
+           (other.category & one.mask) != 0;
 }
 
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count) {

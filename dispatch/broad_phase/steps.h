@@ -71,12 +71,17 @@ static inline bool narc_is_box(const narc_box *box) {
            box->min_x <= box->max_x && box->min_y <= box->max_y;
 }
 
+static inline uint32_t narc_read_world(const narc_pair_filter *filter, size_t body) {
+    return filter && filter->world.base ? narc_index_at(filter->world, body) : 0;
+}
+
 /* What the filter says of one body. */
 static inline narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body) {
     const narc_word_column category = filter->category, mask = filter->mask;
     return (narc_body_filter){.category = category.base ? narc_word_at(category, body) : UINT64_MAX,
                               .mask = mask.base ? narc_word_at(mask, body) : UINT64_MAX,
                               .owner = filter->owner.base ? narc_index_at(filter->owner, body) : UINT32_MAX,
+                              .world = narc_read_world(filter, body),
                               .kind = filter->kind.base ? narc_byte_at(filter->kind, body) & NARC_KINDS : 0};
 }
 
@@ -180,7 +185,8 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
 
 /* Lists the levels and strips that `count` boxes lie in, and puts the boxes into the columns, strip by strip, in the
  * order of min_x. There is room for all boxes and a part for each worker. */
-void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
+void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter,
+                      const narc_workers *workers);
 
 /* Puts the boxes of a strip, whose entries are listed at its places, into the columns in the order of min_x. */
 void narc_fill_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);

@@ -2,7 +2,7 @@
  *
  * strips.c - makes the strips of the broad phase: which boxes lie in each, and the columns that hold them.
  *
- * A level holds boxes whose heights differ by less than a factor of 4 and whose widths by less than 16 (the lowest: all
+ * A level holds boxes of one world whose heights differ by less than a factor of 4 and whose widths by less than 16 (the lowest: all
  * down to 0). Its strips are as high as the highest box of its heights, h. With min_y / h rounded down as the number of
  * a box's strip, two boxes of a level that overlap are at most one strip apart, and a box overlaps boxes of a level
  * with higher strips only from one strip below its own min_y up to that of its max_y. The height has LEVEL_ROOM in it
@@ -49,7 +49,11 @@ typedef struct passes {
     const narc_workers *workers;
     size_t parts; /* at most */
     classes heights, widths;
+    narc_index_column world; /* base NULL: all are of world 0 */
+    bool coarse;             /* worlds have such numbers that those of strips have no room: each level has one strip */
 } passes;
+
+static uint32_t world_of(const passes *p, size_t body) { return p->world.base ? narc_index_at(p->world, body) : 0; }
 
 /* Returns how many parts there are. */
 static size_t run_pass(passes *p, size_t count, narc_range *pass) {
@@ -67,6 +71,7 @@ static void count_part(void *argument, size_t part, size_t first, size_t end) {
     const narc_box *const boxes = p->boxes;
     narc_strip_part *const own = &p->broad->parts[part];
     size_t found = 0;
+    own->world = 0;
     for (int k = 0; k < EXPONENTS; k++)
         own->heights[k] = own->widths[k] = -1;
     for (size_t k = first; k < end; k++) {
@@ -77,6 +82,8 @@ static void count_part(void *argument, size_t part, size_t first, size_t end) {
         found++;
     }
     own->count = found;
+    for (size_t k = first; k < end && p->world.base; k++)
+        own->world = world_of(p, k) > own->world ? world_of(p, k) : own->world;
 }
 
 static void make_classes(const float *largest, int step, classes *out) {
@@ -104,6 +111,7 @@ static size_t count_boxes(passes *p, size_t count) {
             all->widths[k] = fmaxf(all->widths[k], own->widths[k]);
         }
         all[part].start = listed;
+        all->world = own->world > all->world ? own->world : all->world;
         listed += own->count;
     }
     if (parts > 0) {
@@ -112,6 +120,9 @@ static size_t count_boxes(passes *p, size_t count) {
     }
     return listed;
 }
+
+/* Of each world. */
+static uint64_t count_levels(const passes *p) { return (uint64_t)p->heights.count * (uint64_t)p->widths.count; }
 
 /* One over the height of the strips of a class. */
 static double find_scale(const classes *heights, size_t height_class) {
@@ -169,30 +180,40 @@ static void list_part(void *argument, size_t part, size_t first, size_t end) {
     own->highest = highest;
 }
 
-/* Makes an entry's level and strip one number, level * span + (strip - lowest). */
+/* Makes an entry's world, level and strip one number, (world * levels + level) * span + (strip - lowest). */
 static void join_part(void *argument, size_t part, size_t first, size_t end) {
-    const narc_broad_phase *const broad = ((const passes *)argument)->broad;
+    const passes *const p = argument;
+    const narc_broad_phase *const broad = p->broad;
     narc_box_entry *const entries = broad->entries;
-    const uint64_t each_level = (uint64_t)broad->strip_span - ((uint64_t)1 << STRIP_BITS);
-    const uint64_t lowest = (uint64_t)(broad->lowest_strip + STRIP_ZERO);
+    const uint64_t lowest = (uint64_t)(broad->lowest_strip + STRIP_ZERO), span = (uint64_t)broad->strip_span;
+    const uint64_t levels = count_levels(p);
     (void)part;
-    for (size_t k = first; k < end; k++)
-        entries[k].strip += (entries[k].strip >> STRIP_BITS) * each_level - lowest;
+    for (size_t k = first; k < end; k++) {
+        const uint64_t level = entries[k].strip >> STRIP_BITS,
+                       strip = entries[k].strip & (((uint64_t)1 << STRIP_BITS) - 1);
+        entries[k].strip = (world_of(p, entries[k].body) * levels + level) * span + (p->coarse ? 0 : strip - lowest);
+    }
 }
+
+/* More than any number of a world and its levels: then there is one strip. */
+#define MOST_NUMBERS 0x1p63
 
 /* Lists the entries of all boxes that are not empty: `listed` of them, at least one. Returns how many numbers strips
  * may have. */
 static uint64_t list_entries(passes *p, size_t count, size_t listed) {
     int64_t lowest = INT64_MAX, highest = INT64_MIN;
+    const uint64_t worlds = p->broad->parts->world; /* the highest */
     const size_t parts = run_pass(p, count, list_part);
     for (const narc_strip_part *own = p->broad->parts; own < p->broad->parts + parts; own++) {
         lowest = own->lowest < lowest ? own->lowest : lowest;
         highest = own->highest > highest ? own->highest : highest;
     }
-    p->broad->lowest_strip = lowest;
-    p->broad->strip_span = highest - lowest + 2; /* one more, so that levels are not next to each other */
+    const uint64_t levels = (worlds + 1) * count_levels(p);
+    p->coarse = (double)levels * (double)(highest - lowest + 2) > MOST_NUMBERS;
+    p->broad->lowest_strip = p->coarse ? 0 : lowest;
+    p->broad->strip_span = p->coarse ? 2 : highest - lowest + 2; /* one more: levels are not next to each other */
     run_pass(p, listed, join_part);
-    return (uint64_t)p->heights.count * (uint64_t)p->widths.count * (uint64_t)p->broad->strip_span;
+    return levels * (uint64_t)p->broad->strip_span;
 }
 
 /* ------------------------------------------------------------------------------------------------ strips */
@@ -221,17 +242,24 @@ static void list_strips(passes *p, size_t listed) {
         broad->strips[k].end = k + 1 < count ? broad->strips[k + 1].first : (uint32_t)listed;
 }
 
-/* The levels that have boxes, the highest strips first. */
+/* The levels that have boxes, by worlds, and in each the highest strips first. */
 static void list_levels(const passes *p) {
     narc_broad_phase *const broad = p->broad;
     broad->level_count = 0;
     for (size_t k = 0; k < broad->strip_count; k++) {
         const uint64_t number = broad->strips[k].number / (uint64_t)broad->strip_span;
-        if (broad->level_count == 0 || broad->levels[broad->level_count - 1].number != number)
-            broad->levels[broad->level_count++] =
+        if (broad->level_count == 0 || broad->levels[broad->level_count - 1].number != number) {
+            const narc_level *const before = broad->level_count > 0 ? &broad->levels[broad->level_count - 1] : NULL;
+            const uint32_t world = (uint32_t)(number / count_levels(p));
+            const size_t height = (size_t)(number % count_levels(p)) / p->widths.count;
+            broad->levels[broad->level_count] =
                 (narc_level){.number = number,
-                             .scale = find_scale(&p->heights, (size_t)number / p->widths.count),
-                             .first = (uint32_t)k};
+                             .scale = find_scale(&p->heights, height),
+                             .first = (uint32_t)k,
+                             .world = world,
+                             .start = before && before->world == world ? before->start : (uint32_t)broad->level_count};
+            broad->level_count++;
+        }
         broad->levels[broad->level_count - 1].end = (uint32_t)(k + 1);
         broad->strips[k].level = (uint32_t)(broad->level_count - 1);
     }
@@ -277,10 +305,12 @@ void narc_end_columns(const narc_box_columns *boxes, size_t end) {
     }
 }
 
-void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
+void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter,
+                      const narc_workers *workers) {
     passes p = {.broad = broad,
                 .boxes = boxes,
                 .workers = workers,
+                .world = filter ? filter->world : (narc_index_column){NULL, 0},
                 .parts = workers->count < NARC_STRIP_PARTS ? workers->count : NARC_STRIP_PARTS};
     const size_t listed = count_boxes(&p, count);
     if (listed > 0)

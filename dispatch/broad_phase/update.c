@@ -54,12 +54,17 @@ static narc_pair_filter filter_in_use(const update *u) {
 
 static bool has_sets(const update *u) {
     const narc_pair_filter filter = filter_in_use(u);
-    return filter.category.base || filter.mask.base || filter.owner.base;
+    return filter.category.base || filter.mask.base || filter.owner.base || filter.world.base;
 }
 
 static narc_body_filter filter_of(const update *u, size_t body) {
     const narc_pair_filter filter = filter_in_use(u);
     return narc_read_filter(&filter, body);
+}
+
+static bool is_other_set(const narc_body_filter *now, const narc_body_filter *then) {
+    return now->category != then->category || now->mask != then->mask || now->owner != then->owner ||
+           now->world != then->world;
 }
 
 typedef struct changes {
@@ -122,7 +127,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
         }
         if (all->use_sets) {
             const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
-            out |= now.category != then->category || now.mask != then->mask || now.owner != then->owner;
+            out |= is_other_set(&now, then);
         }
         if (!moved && !out)
             continue;
@@ -190,8 +195,7 @@ static unsigned look_at_listed(const update *u) {
             continue;
         const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
         const unsigned other = now.kind ^ broad->kinds[k];
-        if (other & (NARC_STATIC | NARC_SENSOR) || now.category != then->category || now.mask != then->mask ||
-            now.owner != then->owner)
+        if (other & (NARC_STATIC | NARC_SENSOR) || is_other_set(&now, then))
             return WHOLE;
         found |= other & NARC_ASLEEP ? REST : 0;
     }

@@ -100,6 +100,19 @@ static void make_lists(const narc_contact_step *s) {
     c->crossed_count = 0;
 }
 
+/* How many that touch each world has. */
+static void count_worlds(const narc_contact_step *s) {
+    const narc_contacts *const c = s->contacts;
+    uint32_t *const counts = s->step->out_world_count;
+    for (size_t k = 0; k < s->step->world_count; k++)
+        counts[k] = 0;
+    for (size_t k = 0; k < c->result.touching_count && s->step->world_count > 0; k++) {
+        const uint32_t world = narc_read_world(s->step->filter, c->a[c->touching[k]]);
+        if (world < s->step->world_count)
+            counts[world]++;
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ the step */
 
 /* Rows of pairs that have not moved are another answer if this is another. */
@@ -134,6 +147,8 @@ static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes,
     }
     if (!step->moved.base && step->moved_count > 0)
         return narc_fail_missing(error, "step.moved");
+    if (!step->out_world_count && step->world_count > 0)
+        return narc_fail_missing(error, "step.out_world_count");
     const narc_query query = {
         .margin = step->margin, .second_margin = step->second_margin, .flat_angle = step->flat_angle};
     const narc_status status = narc_check_numbers(&query, "step", error);
@@ -142,7 +157,7 @@ static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes,
     const narc_status origin = narc_check_origin(step->origin, "step", error);
     if (origin != NARC_OK)
         return origin;
-    return narc_check_reserved(step->reserved, 3, "step", error) == NARC_OK ? narc_check_set(step->bodies, error)
+    return narc_check_reserved(step->reserved, 1, "step", error) == NARC_OK ? narc_check_set(step->bodies, error)
                                                                             : NARC_ERROR_ARGUMENT;
 }
 
@@ -220,6 +235,7 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     if (step->bodies->count > 0)
         memset(contacts->broad->known.changed, 0, step->bodies->count);
     contacts->last = asked;
+    count_worlds(&s);
     *out_result = &contacts->result;
     return NARC_OK;
 }

@@ -20,6 +20,7 @@ typedef struct fitting {
     const narc_kernel_table *kernels;
     const narc_box *boxes;
     narc_word_column category;
+    narc_index_column world;
     unsigned level;
     size_t first;
 } fitting;
@@ -51,11 +52,29 @@ static void join_masks(void *argument, size_t part, size_t first, size_t end) {
     }
 }
 
+/* The worlds of nodes, likewise. */
+static void join_worlds(void *argument, size_t part, size_t first, size_t end) {
+    const fitting *const f = argument;
+    const narc_index *const index = f->index;
+    narc_node_worlds *const worlds = index->worlds + index->first_node[f->level];
+    (void)part;
+    for (size_t k = (f->first + first) * NARC_NODE_SLOTS; k < (f->first + end) * NARC_NODE_SLOTS; k++) {
+        narc_world_range all = narc_no_worlds;
+        if (f->level == 0 && index->body[k] != UINT32_MAX)
+            all.lowest = all.highest = narc_order_world(narc_index_at(f->world, index->body[k]));
+        for (size_t slot = 0; f->level > 0 && k < index->node_count[f->level - 1] && slot < NARC_NODE_SLOTS; slot++)
+            all = narc_join_worlds(all, narc_get_worlds(&index->worlds[index->first_node[f->level - 1] + k], slot));
+        narc_put_worlds(&worlds[k / NARC_NODE_SLOTS], k % NARC_NODE_SLOTS, all);
+    }
+}
+
 static void fit(const narc_making *m, unsigned level, size_t first, size_t end) {
-    fitting f = {m->index, m->kernels, m->boxes, m->options->category, level, first};
+    fitting f = {m->index, m->kernels, m->boxes, m->options->category, m->options->world, level, first};
     narc_run_ranges(m->options->workers, end - first, NODES, level == 0 ? fit_leaves : fit_nodes, &f);
     if (m->index->masks)
         narc_run_ranges(m->options->workers, end - first, NODES, join_masks, &f);
+    if (m->index->worlds)
+        narc_run_ranges(m->options->workers, end - first, NODES, join_worlds, &f);
 }
 
 void narc_fit_nodes(const narc_making *making, unsigned level, size_t first, size_t end) {
@@ -98,7 +117,7 @@ void narc_spread_bodies(const narc_making *m, unsigned level, size_t node, size_
     narc_index *const index = m->index;
     const size_t first = find_first(index, 0, level, node) * NARC_NODE_SLOTS;
     const size_t end = find_first(index, 0, level, node + 1) * NARC_NODE_SLOTS;
-    const narc_filling filling = {index, m->boxes, m->options->workers, first, end - first, count};
+    const narc_filling filling = {index, m->boxes, m->options->world, m->options->workers, first, end - first, count};
     if (m->options->fast && end - first == index->slots)
         narc_sort_bodies_by_curve(&filling);
     else
@@ -163,7 +182,7 @@ narc_status narc_check_making(const narc_index *index, const narc_box *boxes, si
     narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
     if (status == NARC_OK)
         status = narc_check_origin(options->origin, "options", error);
-    return status == NARC_OK ? narc_check_reserved(options->reserved, 3, "options", error) : status;
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 2, "options", error) : status;
 }
 
 narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_options *options,
@@ -176,11 +195,12 @@ narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t co
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)
         return status;
-    status = narc_reserve_index(index, count, o->category.base);
+    status = narc_reserve_index(index, count, o->category.base, o->world.base);
     if (status != NARC_OK)
         return narc_fail(error, status, 0, (double)count, "no memory for an index of %zu boxes", count);
     index->count = count;
     index->masks = o->category.base ? index->mask_memory : NULL;
+    index->worlds = o->world.base ? index->world_memory : NULL;
     index->origin = o->origin ? *o->origin : (narc_point){0, 0};
     index->perimeter = 0;
     index->level_count = 0;

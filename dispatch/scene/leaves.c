@@ -11,6 +11,7 @@
  */
 #include "leaves.h"
 
+#include "column.h"
 #include "dispatch.h"
 
 #include <float.h>
@@ -34,6 +35,7 @@ typedef struct sorting {
     const narc_box *boxes;
     const narc_workers *workers;
     const uint32_t *bodies; /* those that are sorted */
+    narc_index_column world;
     size_t count, part_size, parts;
     entry *from, *to;
     int shift;
@@ -44,16 +46,17 @@ typedef struct sorting {
     } part[MOST_PARTS];
 } sorting;
 
-/* In the memory for building: two lists of bodies, and behind them what is sorted. */
+/* In the memory for building: three lists of bodies, and behind them what is sorted. */
 static void begin_sorting(sorting *s, const narc_filling *f) {
     const size_t count = f->count, few = count / LEAST_OF_PART + 1;
     const size_t parts = narc_count_workers(f->workers, few < MOST_PARTS ? few : MOST_PARTS);
     s->boxes = f->boxes;
     s->workers = f->workers;
+    s->world = f->world;
     s->bodies = f->index->build_memory;
     s->count = count;
     s->part_size = count / parts + 1;
-    s->from = (entry *)(void *)((uint32_t *)f->index->build_memory + 2 * count);
+    s->from = (entry *)(void *)((uint32_t *)f->index->build_memory + 3 * count);
     s->to = s->from + count;
 }
 
@@ -155,38 +158,54 @@ static void list_by_y(void *argument, size_t part, size_t first, size_t end) {
     }
 }
 
+static void list_by_world(void *argument, size_t part, size_t first, size_t end) {
+    const sorting *const s = argument;
+    (void)part;
+    for (size_t k = first; k < end; k++)
+        s->from[k] = (entry){narc_index_at(s->world, s->bodies[k]), s->bodies[k]};
+}
+
 typedef struct halving {
     const narc_filling *filling;
     const narc_box *boxes;
-    uint32_t *by_x, *by_y, *spare;
-    uint8_t *second; /* of each body: is it in the second half? */
-    size_t room;     /* slots of a part */
+    uint32_t *by_x, *by_y, *by_world, *spare; /* by_world: NULL if there is one, */
+    uint8_t *second;                          /* and of each body: is it in the second half? */
+    size_t room;                              /* slots of a part */
 } halving;
 
-/* Halves bodies first .. end - 1 of both lists: `half` of them are the first half. */
+/* Those of a list's bodies first .. end - 1 that are in the first half go in front of the others. */
+static void divide(const halving *h, uint32_t *list, size_t first, size_t end) {
+    uint32_t *const spare = h->spare + first;
+    size_t to = first, apart = 0;
+    for (size_t k = first; k < end; k++) {
+        const uint32_t body = list[k];
+        const size_t in_second = h->second[body];
+        list[to] = body;
+        spare[apart] = body;
+        to += 1 - in_second;
+        apart += in_second;
+    }
+    memcpy(list + to, spare, apart * sizeof *spare);
+}
+
+/* Halves bodies first .. end - 1 of all lists: `half` of them are the first half. By worlds, while there are several. */
 static void halve(const halving *h, size_t first, size_t end, size_t half) {
     const narc_box *const left = &h->boxes[h->by_x[first]], *const right = &h->boxes[h->by_x[end - 1]];
     const narc_box *const low = &h->boxes[h->by_y[first]], *const high = &h->boxes[h->by_y[end - 1]];
     const float width = halve_centre(right->min_x, right->max_x) - halve_centre(left->min_x, left->max_x);
     const float height = halve_centre(high->min_y, high->max_y) - halve_centre(low->min_y, low->max_y);
-    const bool along_y = height > width;
-    const uint32_t *const kept = along_y ? h->by_y : h->by_x;
-    uint32_t *const divided = along_y ? h->by_x : h->by_y, *const spare = h->spare + first;
+    const bool by_world = h->by_world && narc_index_at(h->filling->world, h->by_world[first]) !=
+                                             narc_index_at(h->filling->world, h->by_world[end - 1]);
+    const uint32_t *const kept = by_world ? h->by_world : height > width ? h->by_y : h->by_x;
     uint8_t *const second = h->second;
     for (size_t k = first; k < first + half; k++)
         second[kept[k]] = 0;
     for (size_t k = first + half; k < end; k++)
         second[kept[k]] = 1;
-    size_t to = first, apart = 0;
-    for (size_t k = first; k < end; k++) {
-        const uint32_t body = divided[k];
-        const size_t in_second = second[body];
-        divided[to] = body;
-        spare[apart] = body;
-        to += 1 - in_second;
-        apart += in_second;
-    }
-    memcpy(divided + to, spare, apart * sizeof *spare);
+    if (kept != h->by_x)
+        divide(h, h->by_x, first, end);
+    if (kept != h->by_y)
+        divide(h, h->by_y, first, end);
 }
 
 /* Halves bodies first .. end - 1 of slots from `slot` on, of which there are `room` at most, before end_slot. */
@@ -223,11 +242,16 @@ void narc_halve_bodies(const narc_filling *f) {
     begin_sorting(&s, f);
     /* What is sorted is not wanted any more when halving begins. */
     uint32_t *const list = f->index->build_memory;
-    halving h = {f, f->boxes, list, list + f->count, list + 2 * f->count, NULL, 1};
+    halving h = {f, f->boxes, list, list + f->count, NULL, list + 3 * f->count, NULL, 1};
     h.second = (uint8_t *)(h.spare + f->count);
     sort_entries(&s, list_by_x, h.by_x);
     begin_sorting(&s, f);
     sort_entries(&s, list_by_y, h.by_y);
+    if (f->world.base) {
+        h.by_world = list + 2 * f->count;
+        begin_sorting(&s, f);
+        sort_entries(&s, list_by_world, h.by_world);
+    }
     while (h.room < f->slots)
         h.room *= 2;
     for (; h.room > PART; h.room /= 2)
@@ -260,7 +284,8 @@ static void list_on_curve(void *argument, size_t part, size_t first, size_t end)
         const narc_box *const box = &s->boxes[s->bodies[k]];
         const float x = (halve_centre(box->min_x, box->max_x) - min_x) * scale;
         const float y = (halve_centre(box->min_y, box->max_y) - min_y) * scale;
-        s->from[k] = (entry){narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
+        s->from[k] =
+            (entry){narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
     }
 }
 
@@ -282,5 +307,9 @@ void narc_sort_bodies_by_curve(const narc_filling *f) {
     s.min_y = all.min_y;
     s.scale = scale > 0 && scale <= FLT_MAX ? scale : 0;
     sort_entries(&s, list_on_curve, f->index->build_memory);
+    if (f->world.base) {
+        begin_sorting(&s, f);
+        sort_entries(&s, list_by_world, f->index->build_memory);
+    }
     fill_slots(f, f->index->build_memory);
 }

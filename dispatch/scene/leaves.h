@@ -13,6 +13,7 @@
 typedef struct narc_filling {
     narc_index *index;
     const narc_box *boxes;
+    narc_index_column world; /* base NULL: there is one */
     const narc_workers *workers;
     size_t first, slots, count;
 } narc_filling;

@@ -3,10 +3,11 @@
  * update.c - narc_update_index(): bodies that have moved, come or gone, and the nodes above them.
  *
  * A body that stays within its leaf's home gets its new box there. All others leave their slots and wait; then each goes
- * down the tree to the leaf whose box grows least. If that is full, the bodies of the lowest node above it that is not too
- * full are spread over its slots anew, as a build does it; so they are where half of a node's bodies have come since. That
- * bounds how far a tree is from a new one, and the work: a body that goes to another leaf pays on each level for two that
- * are spread. Last, the nodes above all leaves of which something has changed are fitted.
+ * down the tree to the leaf whose box grows least, in its world, or to another one of the same node if that is full. Where
+ * none has room, the bodies of the lowest node above that is not too full are spread over its slots anew, as a build does
+ * it; and so they are where as many have come as a node holds. That bounds how far the tree is from a new one, and the work:
+ * a body that goes to another leaf pays on each level for one that is spread. Last, the nodes above all leaves of which
+ * something has changed are fitted.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -52,6 +53,12 @@ static uint64_t find_category(const updating *u, uint32_t body) {
     return narc_word_at(u->making.options->category, body);
 }
 
+/* Of a body, as one that a slot has. */
+static narc_world_range find_world(const updating *u, uint32_t body) {
+    const int32_t world = narc_order_world(narc_index_at(u->making.options->world, body));
+    return (narc_world_range){world, world};
+}
+
 /* Puts a body into a slot of a leaf. */
 static void put_body(updating *u, size_t place, uint32_t body) {
     narc_index *const index = u->index;
@@ -60,6 +67,8 @@ static void put_body(updating *u, size_t place, uint32_t body) {
     index->place[body] = (uint32_t)place;
     if (index->masks)
         index->masks[place] = find_category(u, body);
+    if (index->worlds)
+        narc_put_worlds(&index->worlds[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, find_world(u, body));
     touch(index, 0, place / NARC_NODE_SLOTS);
 }
 
@@ -73,6 +82,8 @@ static void take_out(updating *u, uint32_t body) {
     index->place[body] = NARC_NO_PLACE;
     if (index->masks)
         index->masks[place] = 0;
+    if (index->worlds)
+        narc_put_worlds(&index->worlds[node], place % NARC_NODE_SLOTS, narc_no_worlds);
     touch(index, 0, node);
     for (unsigned level = 0; level < index->level_count; level++, node /= NARC_NODE_SLOTS)
         index->filled[index->first_node[level] + node]--;
@@ -83,18 +94,23 @@ static bool holds(const narc_box *outer, const narc_box *box) {
            box->max_y <= outer->max_y;
 }
 
-/* A body that may have changed. */
-static void look_at(updating *u, uint32_t body) {
+/* A body that may have changed, and its place. */
+static inline void look_at(updating *u, uint32_t body, uint32_t place) {
     narc_index *const index = u->index;
     const narc_box *const box = &u->boxes[body];
-    const uint32_t place = index->place[body];
+    const size_t leaf = place / NARC_NODE_SLOTS, slot = place % NARC_NODE_SLOTS;
     if (place == NARC_WAITING_PLACE)
         return;
     const bool is_full = narc_is_full_box(box);
-    if (place != NARC_NO_PLACE && is_full && holds(&index->home[place / NARC_NODE_SLOTS], box)) {
-        if (!has_box(&index->nodes[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, box) ||
-            (index->masks && index->masks[place] != find_category(u, body)))
-            put_body(u, place, body);
+    if (place != NARC_NO_PLACE && is_full && holds(&index->home[leaf], box) &&
+        (!index->worlds || index->worlds[leaf].lowest[slot] == find_world(u, body).lowest)) {
+        const bool is_other = index->masks && index->masks[place] != find_category(u, body);
+        if (is_other)
+            index->masks[place] = find_category(u, body);
+        else if (has_box(&index->nodes[leaf], slot, box))
+            return;
+        put_box(&index->nodes[leaf], slot, box);
+        touch(index, 0, leaf);
         return;
     }
     if (place != NARC_NO_PLACE)
@@ -170,6 +186,22 @@ static void spread(updating *u, unsigned level, size_t node, uint32_t body) {
 /* So many bodies that came count one that did not find room in the leaf that it belongs to. */
 enum { MISPLACED = 4 };
 
+/* Of some of a node's slots those that are nearest to a world, such as those that have it. */
+static unsigned find_nearest(const narc_node_worlds *worlds, int32_t world, unsigned slots) {
+    unsigned nearest = 0;
+    uint32_t least = UINT32_MAX;
+    for (unsigned k = 0; k < NARC_NODE_SLOTS; k++) {
+        const int32_t low = worlds->lowest[k], high = worlds->highest[k];
+        const uint32_t below = world < low ? (uint32_t)low - (uint32_t)world : 0;
+        const uint32_t distance = world > high ? (uint32_t)world - (uint32_t)high : below;
+        if (!(slots >> k & 1) || low > high || distance > least)
+            continue;
+        nearest = (distance < least ? 0 : nearest) | 1u << k;
+        least = distance;
+    }
+    return nearest;
+}
+
 /* The leaves below a node of level 1 that have room. */
 static unsigned find_room(const narc_index *index, size_t node) {
     const size_t first = node * NARC_NODE_SLOTS;
@@ -186,13 +218,19 @@ static bool insert(updating *u, uint32_t body) {
     unsigned level = index->level_count - 1, worn = 0, cost = 1;
     size_t node[NARC_INDEX_LEVELS] = {0};
     for (; level > 0; level--) {
-        narc_index_node *const boxes = &index->nodes[index->first_node[level] + node[level]];
-        size_t slot = choose_slot(boxes, box, UINT8_MAX);
+        const size_t at = index->first_node[level] + node[level];
+        narc_index_node *const boxes = &index->nodes[at];
+        narc_node_worlds *const worlds = index->worlds ? &index->worlds[at] : NULL;
+        size_t slot =
+            choose_slot(boxes, box, worlds ? find_nearest(worlds, find_world(u, body).lowest, UINT8_MAX) : UINT8_MAX);
         if (level == 1 && index->filled[NARC_NODE_SLOTS * node[1] + slot] == NARC_NODE_SLOTS) {
             const unsigned leaves = find_room(index, node[1]);
-            slot = leaves ? choose_slot(boxes, box, leaves) : slot;
+            const unsigned near = worlds ? find_nearest(worlds, find_world(u, body).lowest, leaves) : leaves;
+            slot = near ? choose_slot(boxes, box, near) : slot;
             cost = MISPLACED;
         }
+        if (worlds)
+            narc_put_worlds(worlds, slot, narc_join_worlds(narc_get_worlds(worlds, slot), find_world(u, body)));
         narc_box grown = {boxes->min_x[slot], boxes->min_y[slot], boxes->max_x[slot], boxes->max_y[slot]};
         grow(&grown, box);
         put_box(boxes, slot, &grown);
@@ -242,10 +280,10 @@ static void look_at_all(updating *u) {
     narc_index *const index = u->index;
     for (size_t k = 0; k < index->slots; k++)
         if (index->body[k] != UINT32_MAX)
-            look_at(u, index->body[k]);
+            look_at(u, index->body[k], (uint32_t)k);
     for (size_t k = 0; k < index->count; k++)
         if (index->place[k] == NARC_NO_PLACE)
-            look_at(u, (uint32_t)k);
+            look_at(u, (uint32_t)k, NARC_NO_PLACE);
 }
 
 /* Puts all that waits into leaves. False if the tree is to be made anew. */
@@ -278,7 +316,7 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
                          bad, body, count);
     }
     if (index->level_count == 0 || count == 0 || !index->masks != !o->category.base ||
-        !narc_has_index_room(index, count, o->category.base))
+        !index->worlds != !o->world.base || !narc_has_index_room(index, count, o->category.base, o->world.base))
         return narc_build_index(index, boxes, count, o, error);
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)
@@ -296,10 +334,12 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     index->count = count;
     if (all)
         look_at_all(&u);
-    for (size_t k = 0; k < changed_count && !all; k++)
-        look_at(&u, narc_index_at(list, k));
+    for (size_t k = 0; k < changed_count && !all; k++) {
+        const uint32_t body = narc_index_at(list, k);
+        look_at(&u, body, index->place[body]);
+    }
     for (size_t k = old_count; k < count && !all; k++)
-        look_at(&u, (uint32_t)k);
+        look_at(&u, (uint32_t)k, index->place[k]);
     if (!insert_all(&u)) {
         narc_make_index(&u.making, false);
         return NARC_OK;

@@ -38,7 +38,7 @@ INLINE void enter_part_node(struct part_walk *w, unsigned level, uint32_t node) 
     }
     w->level = level;
     w->node[level] = node;
-    w->slots[level] = mask_slots(w->index, at, slots & ((1u << NARC_NODE_SLOTS) - 1), w->chosen->mask);
+    w->slots[level] = mask_slots(w->index, at, slots & ((1u << NARC_NODE_SLOTS) - 1), w->chosen);
 }
 
 /* Boxes no further than `reach` from the place, which is one in the world. The index is not empty. */

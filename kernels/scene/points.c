@@ -413,8 +413,9 @@ INLINE void enter_node(const struct search *search, unsigned level, uint32_t nod
         v_store(step->key + k, v_select(v_le(key, limit), v_of_bits(vi_add(front, slot)), none));
     }
     step->node = node;
-    for (unsigned k = 0; k < NARC_NODE_SLOTS && index->masks; k++)
-        if (!(index->masks[NARC_NODE_SLOTS * at + k] & search->chosen.mask))
+    const uint32_t slots = mask_slots(index, at, UINT8_MAX, &search->chosen);
+    for (unsigned k = 0; k < NARC_NODE_SLOTS && slots != UINT8_MAX; k++)
+        if (!(slots >> k & 1))
             step->key[k] = INFINITY;
 }
 

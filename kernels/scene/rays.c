@@ -443,7 +443,7 @@ INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned l
     const size_t node = (size_t)index->first_node[level] + at;
     const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
     d->node[level] = at;
-    leave_slots(d, level, mask_slots(index, node, slots, w->chosen.mask),
+    leave_slots(d, level, mask_slots(index, node, slots, &w->chosen),
                 narc_find_flips(index->order[node], w->left, w->aslant));
 }
 
@@ -496,7 +496,7 @@ struct fan {
     size_t left, right;                     /* the outermost */
     float left_x, left_y, right_x, right_y; /* their directions */
     float limit;                            /* the largest */
-    uint64_t mask;                          /* of all */
+    struct chosen chosen;                   /* their world, all masks together */
     float *limits;
     bool in_lanes;
     struct walk walks[MOST_TOGETHER]; /* in lanes: the first, and those that are asked alone */
@@ -510,6 +510,11 @@ INLINE bool joins(const struct read_rays *rays, size_t first, size_t k) {
     return rays->origin_x[k] == rays->origin_x[first] && rays->origin_y[k] == rays->origin_y[first] &&
            rays->length[k] > 0 && (rays->x.inverse[k] < 0) == (rays->x.inverse[first] < 0) &&
            (rays->y.inverse[k] < 0) == (rays->y.inverse[first] < 0);
+}
+
+INLINE bool have_one_world(const narc_ray_batch *batch, const struct read_rays *rays, size_t first, size_t k) {
+    const narc_index_column world = batch->options->search.world;
+    return !world.base || narc_index_at(world, rays->number[first]) == narc_index_at(world, rays->number[k]);
 }
 
 /* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
@@ -531,7 +536,7 @@ INLINE size_t gather_fan(const narc_ray_batch *batch, const narc_box *scene, str
     if (!NARC_SHORTCUTS || k == end || !joins(rays, first, k) || !is_open(batch, scene, rays, first))
         return 1;
     f->left = f->right = first;
-    for (; k < end && joins(rays, first, k); k++) {
+    for (; k < end && joins(rays, first, k) && have_one_world(batch, rays, first, k); k++) {
         const place other = {rays->direction_x[k], rays->direction_y[k]};
         const double sine = find_cross(direction, other);
         if (find_dot(direction, other) <= COHERENT)
@@ -570,10 +575,10 @@ INLINE void begin_fan(const narc_ray_batch *batch, struct fan *f) {
     f->right_y = (float)rays->direction_y[f->right];
     f->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
                   !search->mask.base;
-    f->mask = goes_in_lanes(f) ? UINT64_MAX : 0;
+    f->chosen = read_chosen(search, rays->number[f->first]);
     for (size_t k = 0; k < (goes_in_lanes(f) ? 1 : f->count); k++) {
         begin_walk(batch, rays, f->first + k, &f->walks[k]);
-        f->mask |= f->walks[k].chosen.mask;
+        f->chosen.mask |= f->walks[k].chosen.mask;
     }
     if (!goes_in_lanes(f))
         return;
@@ -795,7 +800,7 @@ static void walk_together(const narc_ray_batch *batch, struct fan *f) {
     for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
-            mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), f->mask);
+            mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), &f->chosen);
         d.node[level] = below;
         if (level > 0)
             leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->left, first->aslant));

@@ -38,12 +38,16 @@ INLINE uint32_t *append(uint32_t *to, vm hit, vi items) {
     return to + COUNT_BITS(vm_bits(hit));
 }
 
-/* Of some slots those that have one of the bits of a mask. */
-INLINE vm match_masks(vm hit, const uint64_t *masks, uint64_t mask) {
+/* Of a node's slots, from one on, those that mask and world meet. */
+INLINE vm match_slots(const narc_index *index, size_t node, int slot, vm hit, const struct chosen *chosen) {
     int32_t fine[V_WIDTH] = {0};
+    if (index->worlds)
+        hit = vm_and(hit, meet_worlds(&index->worlds[node], slot, chosen));
+    if (!index->masks)
+        return hit;
     for (uint32_t bits = vm_bits(hit); bits > 0; bits &= bits - 1) {
         const int lane = FIND_LOWEST(bits);
-        fine[lane] = (masks[lane] & mask) != 0;
+        fine[lane] = (index->masks[NARC_NODE_SLOTS * node + (size_t)(slot + lane)] & chosen->mask) != 0;
     }
     return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));
 }
@@ -73,8 +77,7 @@ INLINE uint32_t *visit(const narc_index *index, unsigned level, const struct reg
             const size_t below = (size_t)list[k] * NARC_NODE_SLOTS + (size_t)slot;
             vm hit = meet_slots(region, &nodes[list[k]], slot);
             if (masked)
-                hit = match_masks(hit, index->masks + (size_t)index->first_node[level] * NARC_NODE_SLOTS + below,
-                                  region->chosen.mask);
+                hit = match_slots(index, (size_t)index->first_node[level] + list[k], slot, hit, &region->chosen);
             vi item = vi_add(vi_set((int32_t)(uint32_t)below), vi_lanes());
             if (level == 0) {
                 item = vi_load((const int32_t *)(const void *)(index->body + below));
@@ -120,7 +123,7 @@ INLINE void find_bodies(const narc_index *index, const struct region *region, bo
 void NARC_NAMED(regions)(const narc_region_batch *batch, size_t first, size_t count, narc_found_bodies *out) {
     const narc_index *const index = batch->index;
     const narc_owners *const owners = batch->query->owners;
-    const bool masked = index->masks != NULL;
+    const bool masked = index->masks || index->worlds;
     const bool ignores = batch->query->ignored.base || (owners && owners->ignored.base);
     for (size_t k = first; k < first + count; k++) {
         const narc_box *const box = &batch->boxes[k];

@@ -847,4 +847,81 @@ TEST(the_origin_is_saved) {
     destroy_few(few);
 }
 
+/* ------------------------------------------------------------------------------------------------ worlds */
+
+enum { WORLDS = 6, EACH = 100 };
+
+/* A crowd of bodies in each world, all at the same place. */
+static struct few *make_worlds(uint32_t *world, uint32_t *counts, narc_pair_filter *filter) {
+    struct few *const few = make_few(circle_of(0.5), WORLDS * EACH, NULL);
+    for (size_t k = 0; k < WORLDS * EACH; k++) {
+        few->body[k].x = 0.9 * (double)(k % 10) + 0.01 * (double)(k / EACH);
+        few->body[k].y = 0.95 * (double)(k / 10 % 10);
+        world[k] = (uint32_t)(k / EACH);
+    }
+    *filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind), .world = {world, sizeof *world}};
+    few->step.filter = filter;
+    few->step.skin = 0.05f;
+    few->step.out_world_count = counts;
+    few->step.world_count = WORLDS;
+    return few;
+}
+
+/* Rows of each world are those of a step of its bodies alone, a range of `touching`; and so they stay where all move, where
+ * a world is reset, where bodies go to another one. */
+TEST(worlds_do_not_meet) {
+    struct test_random random = test_random_named("worlds of contacts");
+    static uint32_t world[WORLDS * EACH], counts[WORLDS];
+    narc_pair_filter filter;
+    struct few *const few = make_worlds(world, counts, &filter);
+    for (size_t step = 0; step < 30; step++) {
+        if (step % 5 == 4) { /* world 2 begins again */
+            uint64_t *const gone = few->id + (size_t)2 * EACH;
+            narc_error error;
+            expect_ok(narc_forget_bodies(few->contacts, gone, EACH, &error), &error);
+            for (size_t k = 2 * EACH; k < (size_t)3 * EACH; k++)
+                few->body[k].x = 0.9 * (double)(k % 10);
+        }
+        const narc_step_result *const r = step_few(few);
+        size_t first = 0;
+        for (uint32_t w = 0; w < WORLDS; w++) {
+            narc_contacts *const alone = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+            narc_bodies bodies;
+            narc_view_bodies(few->body + (size_t)w * EACH, EACH, &bodies);
+            const narc_step own = {.bodies = &bodies, .margin = few->step.margin, .skin = few->step.skin};
+            const narc_step_result *s;
+            assert_int_equal(narc_update_contacts(alone, few->store, &own, &s, NULL), NARC_OK);
+            assert_int_equal(s->touching_count, counts[w]);
+            assert_true(counts[w] > EACH);
+            for (size_t k = 0; k < counts[w]; k++) {
+                narc_manifold row = r->manifolds[r->touching[first + k]], other = s->manifolds[s->touching[k]];
+                row.pair = other.pair;
+                assert_memory_equal(&row, &other, sizeof row);
+            }
+            first += counts[w];
+            narc_destroy_contacts(alone);
+        }
+        assert_int_equal(first, r->touching_count);
+        for (size_t k = 0; k < r->ended_count && step % 5 == 4; k++)
+            if (r->ended[k].parted && r->ended[k].id_a > (size_t)2 * EACH && r->ended[k].id_a <= (size_t)3 * EACH)
+                first = 0;
+        assert_int_equal(first == 0, step % 5 == 4);
+        for (size_t k = 0; k < WORLDS * EACH; k++) {
+            few->body[k].x += random_between(&random, -0.04, 0.04);
+            few->body[k].y += random_between(&random, -0.04, 0.04);
+        }
+    }
+    world[7] = 3;
+    step_few(few);
+    const uint32_t before = counts[0];
+    world[7] = 0;
+    step_few(few);
+    assert_true(counts[0] > before);
+    few->step.world_count = 2;
+    counts[2] = 77;
+    step_few(few);
+    assert_int_equal(counts[2], 77);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")

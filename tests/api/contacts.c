@@ -350,9 +350,9 @@ TEST(says_what_is_wrong) {
     step.flat_angle = 2;
     expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.flat_angle is 2");
     step.flat_angle = 0;
-    step.reserved[1] = w;
-    expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.reserved[1]");
-    step.reserved[1] = NULL;
+    step.reserved[0] = w;
+    expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.reserved[0]");
+    step.reserved[0] = NULL;
     step.moved_count = 1;
     expect_refused(contacts, w->store, &step, NARC_ERROR_ARGUMENT, "step.moved is NULL");
     step.moved_count = 0;

@@ -613,6 +613,8 @@ void test_index() {
     narc_openmp_workers(1, &workers);
     narc::index index;
     const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
+    const std::vector<uint32_t> world = {0, 1, 0, 1, 0, 1, 0, 1, 0, 1}, asked = {1};
+    const auto apart = narc::index_options().world(narc::column(world));
     const narc_index_options &c = options;
     CHECK(c.category.base == category.data() && c.fast == 1 && c.workers == &workers);
     const narc_point far = {1e9, 0};
@@ -620,12 +622,18 @@ void test_index() {
     CHECK(narc::compute_boxes(scene.shapes, scene.bodies, there, narc::box_options().origin(far)));
     CHECK(there[0].max_x < -0.99e9f && narc::index_options().origin(far).narc_index_options::origin == &far);
     CHECK(narc::step().origin(far).narc_step::origin == &far);
+    std::vector<uint32_t> counts(3);
+    const auto counting = narc::step().world_counts(counts);
+    CHECK(counting.out_world_count == counts.data() && counting.world_count == 3);
     CHECK(index.build(boxes, options));
     CHECK(index.update(boxes, options) && index.describe().value().bodies == 10);
     const std::vector<uint32_t> changed = {9};
     CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
     CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
+    CHECK(index.build(boxes, apart) && index.query({&boxes[3], 1}).value().count == 3);
+    CHECK(index.query({&boxes[3], 1}, narc::index_query().world(narc::column(asked))).value().count == 1);
+    CHECK(index.build(boxes, options));
     uint32_t a[3], b[3];
     const std::vector<uint32_t> second = {1};
     CHECK(narc::copy_pairs(index.query({&boxes[3], 1}).value(), a, b).value() == 3 && a[2] == 0);
@@ -665,7 +673,8 @@ void test_rays_and_points() {
     const auto options = narc::ray_options().search(search).inside(NARC_INSIDE_IGNORES).most(3).skipped(skipped);
     std::array<uint32_t, 2> order = {7, 7};
     const narc_ray_options c = narc::ray_options(options).any().order(order.data());
-    CHECK(c.out_order == order.data() && c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES && c.any == 1 && c.most == 3);
+    CHECK(c.out_order == order.data() && c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES &&
+          c.any == 1 && c.most == 3);
     std::vector<narc_ray_hit> hits;
     const auto found = narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, hits).value();
     std::vector<narc_ray_hit> expected(6);

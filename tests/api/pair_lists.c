@@ -27,7 +27,7 @@ typedef struct body {
     narc_body at;
     uint64_t id, category, mask;
     float near_x, near_y, reach;
-    uint32_t owner;
+    uint32_t owner, world;
     uint8_t kind;
 } body;
 
@@ -92,7 +92,7 @@ static int tear_down(void **state) {
 }
 
 static double half_of_margin, skin;
-static bool kinds_alone; /* bodies have no categories, masks and owners, and kinds next to each other */
+static bool kinds_alone; /* bodies have no categories, masks, owners and worlds, and kinds next to each other */
 static bool in_singles;  /* positions are */
 
 static narc_bodies view(const body *bodies, size_t count) {
@@ -136,7 +136,7 @@ static bool meet(const wide_box *a, const wide_box *b) {
 
 static bool may_pair(const body *a, const body *b) {
     return !(a->kind & b->kind & (NARC_STATIC | NARC_SENSOR)) && (a->owner != b->owner || a->owner == UINT32_MAX) &&
-           (a->category & b->mask) && (b->category & a->mask);
+           (a->category & b->mask) && (b->category & a->mask) && a->world == b->world;
 }
 
 /* ------------------------------------------------------------------------------------------------ sets of pairs */
@@ -195,7 +195,7 @@ static bool has_left(const reference *r, const body *bodies, size_t k) {
     const body *now = &bodies[k], *then = &r->bodies[k];
     const wide_box box = reach_of(now);
     return now->category != then->category || now->mask != then->mask || now->owner != then->owner ||
-           ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]);
+           now->world != then->world || ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]);
 }
 
 /* Has a side of its box moved by more than half of the skin? */
@@ -315,7 +315,8 @@ static void check_step(reference *r, const body *bodies, size_t count, bool with
     const narc_pair_filter alone = {.kind = NARC_ARRAY(kinds)}, all = {.kind = NARC_COLUMN(bodies, kind),
                                                                        .category = NARC_COLUMN(bodies, category),
                                                                        .mask = NARC_COLUMN(bodies, mask),
-                                                                       .owner = NARC_COLUMN(bodies, owner)};
+                                                                       .owner = NARC_COLUMN(bodies, owner),
+                                                                       .world = NARC_COLUMN(bodies, world)};
     const narc_bodies of_step = view(bodies, count);
     narc_step step = {.bodies = &of_step,
                       .margin = 2 * (float)half_of_margin,
@@ -387,6 +388,7 @@ static body random_body(struct test_random *random, size_t side, uint64_t id) {
     b.category = choose_mask(random);
     b.mask = choose_mask(random);
     b.owner = kinds_alone || random_below(random, 4) ? UINT32_MAX : (uint32_t)random_below(random, 3);
+    b.world = kinds_alone || random_below(random, 4) ? 0 : 1000 * (uint32_t)random_below(random, 3);
     b.kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8);
     return b;
 }
@@ -444,7 +446,10 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         b->category = choose_mask(random);
         break;
     case 2:
-        b->owner = kinds_alone ? UINT32_MAX : (uint32_t)random_below(random, 3) - 1;
+        if (random_below(random, 2))
+            b->owner = kinds_alone ? UINT32_MAX : (uint32_t)random_below(random, 3) - 1;
+        else
+            b->world = kinds_alone ? 0 : 1000 * (uint32_t)random_below(random, 2);
         break;
     case 3:
         if (skin > 0)

@@ -33,7 +33,7 @@ struct world {
     narc_body body[ALL];
     uint64_t id[ALL];
     uint8_t kind[ALL];
-    uint32_t owner[ALL], run[ALL];
+    uint32_t owner[ALL], world[ALL], run[ALL];
     float motion[ALL], ahead[ALL];
     size_t count, ground; /* bodies, and entries behind them */
     uint32_t pair_a[PAIRS], pair_b[PAIRS];
@@ -97,6 +97,7 @@ static void copy_body(struct world *w, size_t to, size_t of) {
     w->id[to] = w->id[of];
     w->kind[to] = w->kind[of];
     w->owner[to] = w->owner[of];
+    w->world[to] = w->world[of];
     w->run[to] = w->run[of];
     w->motion[to] = w->motion[of];
     w->ahead[to] = w->ahead[of];
@@ -109,6 +110,7 @@ static void make_body(struct bytes *from, struct world *w, size_t k) {
     w->id[k] = take_id(from, w);
     w->kind[k] = take_below(from, 4) ? 0 : (uint8_t)take_below(from, 8);
     w->owner[k] = take_below(from, 4) ? UINT32_MAX : take_below(from, 2);
+    w->world[k] = take_below(from, 8) ? 0 : 77 * take_below(from, 3);
     w->run[k] = NARC_NO_RUN;
     w->motion[k] = w->ahead[k] = 0;
 }
@@ -137,6 +139,7 @@ static void lay_ground(struct bytes *from, struct world *w) {
         w->body[k] = (narc_body){entry[k].x, entry[k].y, 1, 0, 1, entry[k].shape};
         w->kind[k] = NARC_STATIC;
         w->owner[k] = UINT32_MAX;
+        w->world[k] = 0;
         w->run[k] = entry[k].run;
         w->id[k] = IDS + k;
     }
@@ -172,6 +175,7 @@ static void change_body(struct bytes *from, struct world *w) {
         break;
     case 6:
         w->owner[k] = take_below(from, 3) - 1;
+        w->world[k] = 77 * take_below(from, 2);
         break;
     case 7:
         w->motion[k] = (float)take_number(from, 1);
@@ -314,6 +318,8 @@ static uint8_t kind_of(const struct world *w, uint32_t k) { return w->use_filter
 
 static bool may_pair(const struct world *w, uint32_t a, uint32_t b) {
     const uint32_t owner = w->use_filter ? w->owner[a] : UINT32_MAX;
+    if (w->use_filter && w->world[a] != w->world[b])
+        return false;
     return !(kind_of(w, a) & kind_of(w, b) & (NARC_STATIC | NARC_SENSOR)) &&
            (owner == UINT32_MAX || owner != w->owner[b]);
 }
@@ -480,7 +486,8 @@ static bool step_object(struct bytes *from, struct world *w, struct object *o, b
     static uint32_t moved[ALL];
     narc_bodies bodies;
     narc_view_bodies(w->body, count_all(w), &bodies);
-    const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind), .owner = NARC_ARRAY(w->owner)};
+    const narc_pair_filter filter = {
+        .kind = NARC_ARRAY(w->kind), .owner = NARC_ARRAY(w->owner), .world = NARC_ARRAY(w->world)};
     const narc_pairs pairs = {.count = w->pair_count, .a = NARC_ARRAY(w->pair_a), .b = NARC_ARRAY(w->pair_b)};
     narc_step step = {
         .bodies = &bodies, .margin = w->margin, .skin = w->skin, .recycling = w->recycling, .origin = &w->origin};

@@ -33,6 +33,8 @@ static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
         return false;
     if (word(f->owner, a, UINT32_MAX) != UINT32_MAX && word(f->owner, a, 0) == word(f->owner, b, 0))
         return false;
+    if (word(f->world, a, 0) != word(f->world, b, 0))
+        return false;
     return (long_word(f->category, a) & long_word(f->mask, b)) && (long_word(f->category, b) & long_word(f->mask, a));
 }
 
@@ -119,7 +121,7 @@ TEST(filters_pairs) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
         uint64_t category, mask;
-        uint32_t owner;
+        uint32_t owner, world;
         uint8_t kind;
     };
     for (size_t trial = 0; trial < test_trials(30); trial++) {
@@ -127,23 +129,47 @@ TEST(filters_pairs) {
         struct body bodies[200];
         for (size_t k = 0; k < 200; k++) {
             boxes[k] = spread_box(&random, 10, 0.5, 2);
-            bodies[k] =
-                (struct body){(uint64_t)random_below(&random, 8) << 31, (uint64_t)random_below(&random, 8) << 31,
-                              (uint32_t)random_below(&random, 4) - 1, (uint8_t)random_below(&random, 256)};
+            bodies[k] = (struct body){(uint64_t)random_below(&random, 8) << 31,
+                                      (uint64_t)random_below(&random, 8) << 31, (uint32_t)random_below(&random, 4) - 1,
+                                      random_below(&random, 9) ? 2 * (uint32_t)random_below(&random, 3) : UINT32_MAX,
+                                      (uint8_t)random_below(&random, 256)};
         }
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
-        const narc_index_column owner = NARC_COLUMN(bodies, owner);
-        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .owner = owner},
-                                            {.kind = kind},
-                                            {.category = category},
-                                            {.mask = mask},
-                                            {.owner = owner},
-                                            {.kind = {0}}};
+        const narc_index_column owner = NARC_COLUMN(bodies, owner), world = NARC_COLUMN(bodies, world);
+        const narc_pair_filter filters[] = {
+            {.kind = kind, .category = category, .mask = mask, .owner = owner, .world = world},
+            {.world = world},
+            {.kind = kind},
+            {.category = category},
+            {.mask = mask},
+            {.owner = owner},
+            {.kind = {0}}};
         for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
             check_pairs(broad, boxes, 200, &filters[f]);
     }
     narc_destroy_broad_phase(broad);
+}
+
+/* In many worlds, sparse ones among them, boxes of all sizes and places. */
+TEST(keeps_worlds_apart) {
+    static const uint32_t apart[] = {1, 1000, 0x01010101, UINT32_MAX / 40};
+    enum { COUNT = 1500 };
+    struct test_random random = test_random_named("worlds");
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    uint32_t *const world = malloc(COUNT * sizeof *world);
+    for (enum box_kind kind = 0; kind <= BOXES_MIXED; kind++)
+        for (size_t trial = 0; trial < 4; trial++) {
+            for (size_t k = 0; k < COUNT; k++) {
+                boxes[k] = make_box(&random, kind, k, COUNT);
+                world[k] = (uint32_t)random_below(&random, 40) * apart[trial];
+            }
+            check_pairs(broad, boxes, COUNT, &(narc_pair_filter){.world = NARC_ARRAY(world)});
+        }
+    narc_destroy_broad_phase(broad);
+    free(boxes);
+    free(world);
 }
 
 /* ------------------------------------------------------------------------------------------------ growth */

@@ -323,6 +323,49 @@ static uint64_t hash_rays(const struct scene *scene, int inside) {
     return hash;
 }
 
+#ifndef NARC_SMALL
+/* Pairs of boxes in worlds, and what an index finds of each one's world after bodies have changed places. */
+static uint64_t hash_worlds(const struct scene *scene, int way) {
+    enum { WORLDS = 3 };
+    const narc_bodies bodies = scene_bodies(scene);
+    narc_box boxes[BODIES];
+    uint32_t world[BODIES], changed[BODIES];
+    narc_broad_phase *broad = NULL;
+    size_t count = 0;
+    (void)way;
+    for (size_t k = 0; k < BODIES; k++) {
+        world[k] = (uint32_t)(k * k % WORLDS) << 30;
+        changed[k] = (uint32_t)k;
+    }
+    const narc_index_options seen = {.world = NARC_ARRAY(world)};
+    const narc_index_query asked = {.world = NARC_ARRAY(world)};
+    const narc_pair_filter filter = {.world = NARC_ARRAY(world)};
+    const narc_index_column list = NARC_ARRAY(changed);
+    narc_index *const index = index_bodies(scene->store, &bodies, &seen, boxes);
+    narc_pairs found;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    narc_find_pairs(broad, boxes, BODIES, &filter, NULL, NULL, NULL, 0, 0, &count, NULL);
+    uint32_t *const rows = calloc(2 * count, sizeof *rows);
+    assert_int_equal(narc_find_pairs(broad, boxes, BODIES, &filter, NULL, rows, rows + count, 0, count, &count, NULL),
+                     NARC_OK);
+    printf("  %zu pairs of boxes in worlds\n", count);
+    uint64_t hash = test_hash_items(TEST_HASH_START, rows, 2 * count, sizeof *rows);
+    free(rows);
+    for (size_t k = 0; k + 7 < BODIES; k += 7) {
+        const narc_box box = boxes[k];
+        boxes[k] = boxes[k + 7];
+        boxes[k + 7] = box;
+    }
+    assert_int_equal(narc_update_index(index, boxes, BODIES, &list, BODIES, &seen, NULL), NARC_OK);
+    assert_int_equal(narc_query_index(index, boxes, BODIES, &asked, &found, NULL), NARC_OK);
+    hash = test_hash_items(hash, found.a.base, found.count, sizeof(uint32_t));
+    hash = test_hash_items(hash, found.b.base, found.count, sizeof(uint32_t));
+    narc_destroy_broad_phase(broad);
+    narc_destroy_index(index);
+    return hash;
+}
+#endif
+
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. Boxes of those are
  * rounded outwards to floats. */
 TEST(test_scenes) {
@@ -343,6 +386,9 @@ TEST(test_scenes) {
         {"casts that let go", hash_casts, 2, {0x92129cf6bff7fc37u, 0x92129cf6bff7fc37u}},
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
+#ifndef NARC_SMALL
+        {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
+#endif
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},

@@ -24,6 +24,7 @@ struct holding {
     narc_box box;
     uint64_t mask;
     uint32_t count;
+    narc_world_range worlds;
 };
 
 static void hold(struct holding *all, const narc_box *box, uint64_t mask) {
@@ -38,14 +39,14 @@ static void hold(struct holding *all, const narc_box *box, uint64_t mask) {
 
 /* Checks a node and all below it, and counts how often each body stands in a leaf. */
 static struct holding check_node(const narc_index *index, unsigned level, size_t k, const narc_box *boxes,
-                                 const uint64_t *category, unsigned char *seen) {
+                                 const uint64_t *category, const uint32_t *world, unsigned char *seen) {
     const size_t at = index->first_node[level] + k;
-    struct holding all = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0};
+    struct holding all = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {INT32_MAX, INT32_MIN}};
     for (size_t slot = 0; slot < NARC_NODE_SLOTS; slot++) {
         const size_t below = NARC_NODE_SLOTS * k + slot;
-        struct holding held = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0};
+        struct holding held = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {INT32_MAX, INT32_MIN}};
         if (level > 0 && below < index->node_count[level - 1]) {
-            held = check_node(index, level - 1, below, boxes, category, seen);
+            held = check_node(index, level - 1, below, boxes, category, world, seen);
         } else if (level == 0 && index->body[below] != UINT32_MAX) {
             const uint32_t body = index->body[below];
             assert_true(body < index->count);
@@ -53,12 +54,20 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
             seen[body]++;
             all.count++;
             hold(&held, &boxes[body], category ? category[body] : 0);
+            held.worlds.lowest = held.worlds.highest = narc_order_world(world ? world[body] : 0);
         }
         const narc_box box = slot_box(&index->nodes[at], slot);
         assert_true(box.min_x == held.box.min_x && box.min_y == held.box.min_y);
         assert_true(box.max_x == held.box.max_x && box.max_y == held.box.max_y);
         if (index->masks)
             assert_true((index->masks[NARC_NODE_SLOTS * at + slot] & held.mask) == held.mask);
+        if (index->worlds)
+            assert_true(index->worlds[at].lowest[slot] == held.worlds.lowest &&
+                        index->worlds[at].highest[slot] == held.worlds.highest);
+        if (held.worlds.lowest < all.worlds.lowest)
+            all.worlds.lowest = held.worlds.lowest;
+        if (held.worlds.highest > all.worlds.highest)
+            all.worlds.highest = held.worlds.highest;
         hold(&all, &held.box, held.mask);
         all.count += held.count;
     }
@@ -67,14 +76,16 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
     return all;
 }
 
-static void check_index(const narc_index *index, const narc_box *boxes, size_t count, const uint64_t *category) {
+static void check_index(const narc_index *index, const narc_box *boxes, size_t count, const uint64_t *category,
+                        const uint32_t *world) {
     unsigned char *const seen = calloc(count + 1, 1);
     assert_int_equal(index->count, count);
     if (count > 0) {
         assert_int_equal(index->masks != NULL, category != NULL);
         assert_int_equal(index->node_count[index->level_count - 1], 1);
         assert_int_equal((uintptr_t)index->nodes % 64, 0);
-        check_node(index, index->level_count - 1, 0, boxes, category, seen);
+        assert_int_equal(index->worlds != NULL, world != NULL);
+        check_node(index, index->level_count - 1, 0, boxes, category, world, seen);
     }
     for (size_t k = 0; k < count; k++) {
         assert_int_equal(seen[k], !is_empty(&boxes[k]));
@@ -105,7 +116,7 @@ TEST(holds_every_box_once) {
         narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
         assert_int_equal(narc_build_index(index, guarded, count, &options, NULL), NARC_OK);
         guard_release(guarded);
-        check_index(index, boxes, count, masks ? category : NULL);
+        check_index(index, boxes, count, masks ? category : NULL, NULL);
         for (size_t k = 0; k < count; k++) {
             boxes[k] = random_box(&random, 100, 0, 3);
             category[k] = (uint64_t)1 << random_below(&random, 64);
@@ -114,7 +125,7 @@ TEST(holds_every_box_once) {
         guarded = guard_copy(boxes, count * sizeof *boxes);
         assert_int_equal(narc_update_index(index, guarded, count, NULL, 0, &other, NULL), NARC_OK);
         guard_release(guarded);
-        check_index(index, boxes, count, masks ? NULL : category);
+        check_index(index, boxes, count, masks ? NULL : category, NULL);
         free(boxes);
         free(category);
     }
@@ -129,7 +140,7 @@ enum { MOST = 3000 };
 struct history {
     narc_box boxes[MOST];
     uint64_t category[MOST];
-    uint32_t changed[2 * MOST];
+    uint32_t world[MOST], changed[2 * MOST];
     size_t count, changed_count;
 };
 
@@ -153,7 +164,7 @@ static narc_box move_box(struct test_random *random, const narc_box *box) {
     }
 }
 
-/* Some move, come and go, get another category; all of them are listed, some twice, some that are as they were. */
+/* Some move, come and go, get another category or world; all of them are listed, some twice, some that are as they were. */
 static void live(struct test_random *random, struct history *h, bool quiet) {
     h->changed_count = 0;
     if (random_below(random, 8) == 0) { /* others come, or the last ones go */
@@ -169,6 +180,8 @@ static void live(struct test_random *random, struct history *h, bool quiet) {
             h->boxes[k] = quiet ? random_box(random, 100, 0, 3) : move_box(random, &h->boxes[k]);
         if (random_below(random, 10) == 0)
             h->category[k] = random_bits(random);
+        if (random_below(random, 10) == 0)
+            h->world[k] = (uint32_t)random_below(random, 9) * (uint32_t)(k % 3 ? 1 : 0x10000000);
         h->changed[h->changed_count++] = (uint32_t)k;
         if (random_below(random, 10) == 0)
             h->changed[h->changed_count++] = (uint32_t)random_below(random, h->count);
@@ -184,8 +197,11 @@ TEST(lives_as_its_boxes_do) {
         assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
         h->count = 0;
         for (uint32_t step = 0; step < 150; step++) {
+            const bool worlds = trial & 2;
             const bool lists = random_below(&random, 10) > 0, masks = trial & 1 ? true : random_below(&random, 20) == 0;
-            const narc_index_options options = {.category = {masks ? h->category : NULL, 8}, .fast = trial >> 1 & 1};
+            const narc_index_options options = {.category = {masks ? h->category : NULL, 8},
+                                                .fast = trial >> 1 & 1,
+                                                .world = {worlds ? h->world : NULL, sizeof *h->world}};
             live(&random, h, trial & 4);
             narc_box *const boxes = guard_copy(h->boxes, h->count * sizeof *h->boxes);
             uint32_t *const changed = guard_copy(h->changed, h->changed_count * sizeof *h->changed);
@@ -195,7 +211,7 @@ TEST(lives_as_its_boxes_do) {
                              NARC_OK);
             guard_release(boxes);
             guard_release(changed);
-            check_index(index, h->boxes, h->count, masks ? h->category : NULL);
+            check_index(index, h->boxes, h->count, masks ? h->category : NULL, worlds ? h->world : NULL);
         }
         narc_destroy_index(index);
     }
@@ -222,6 +238,9 @@ static void expect_same_index(const narc_index *one, const narc_index *other) {
     assert_memory_equal(one->changes, other->changes, nodes * sizeof *one->changes);
     assert_memory_equal(&one->perimeter, &other->perimeter, sizeof one->perimeter);
     assert_int_equal(one->masks != NULL, other->masks != NULL);
+    assert_int_equal(one->worlds != NULL, other->worlds != NULL);
+    if (one->worlds)
+        assert_memory_equal(one->worlds, other->worlds, nodes * sizeof *one->worlds);
     if (one->masks)
         assert_memory_equal(one->masks, other->masks, nodes * NARC_NODE_SLOTS * sizeof *one->masks);
 }
@@ -236,18 +255,22 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
     struct test_random random = test_random_named("workers of an index");
     narc_box *const boxes = malloc(COUNT * sizeof *boxes), *const moved = malloc(COUNT * sizeof *moved);
     uint64_t *const category = malloc(COUNT * sizeof *category);
-    uint32_t *const changed = malloc(COUNT * sizeof *changed);
+    uint32_t *const changed = malloc(COUNT * sizeof *changed), *const world = malloc(COUNT * sizeof *world);
     narc_index *const expected = create_index(NULL), *const index = create_index(NULL);
     fill_boxes(&random, boxes, COUNT);
     fill_boxes(&random, moved, COUNT);
     for (size_t k = 0; k < COUNT; k++)
         category[k] = random_bits(&random);
+    for (size_t k = 0; k < COUNT; k++)
+        world[k] = (uint32_t)random_below(&random, 300);
     for (uint32_t trial = 0; trial < 4; trial++)
         for (unsigned workers = 1; workers <= 17; workers += workers < 3 ? 1 : 7) {
             const size_t count = COUNT - 17 * trial;
             narc_workers some;
             narc_openmp_workers(workers, &some);
-            narc_index_options options = {.category = {trial & 2 ? category : NULL, 8}, .fast = trial & 1};
+            narc_index_options options = {.category = {trial & 2 ? category : NULL, 8},
+                                          .fast = trial & 1,
+                                          .world = {trial & 2 ? world : NULL, 4}};
             test_use_isa("scalar");
             assert_int_equal(narc_build_index(expected, boxes, count, &options, NULL), NARC_OK);
             test_use_isa(test_isa());
@@ -274,6 +297,7 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
     free(moved);
     free(category);
     free(changed);
+    free(world);
 }
 
 /* ------------------------------------------------------------------------------------------------ what it is worth */
@@ -387,11 +411,52 @@ TEST(stays_tight) {
         assert_int_equal(narc_build_index(new, boxes, COUNT, NULL, NULL), NARC_OK);
         const narc_index_statistics worn = describe(index), fresh = describe(new);
         assert_true(worn.mean_perimeter * (double)worn.nodes <= 1.15 * fresh.mean_perimeter * (double)fresh.nodes);
-        check_index(index, boxes, COUNT, NULL);
+        check_index(index, boxes, COUNT, NULL, NULL);
     }
     narc_destroy_index(index);
     narc_destroy_index(new);
     free(boxes);
+}
+
+/* Of many worlds that lie over each other, who asks for one goes through few nodes: those with slots that have it. */
+TEST(keeps_worlds_apart) {
+    enum { WORLDS = 512, EACH = 32, COUNT = WORLDS * EACH };
+    struct test_random random = test_random_named("worlds of an index");
+    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    uint32_t *const world = malloc(COUNT * sizeof *world), *const all = malloc(COUNT * sizeof *all);
+    const narc_index_column changed = NARC_ARRAY(all);
+    narc_index *const index = create_index(NULL);
+    for (size_t k = 0; k < COUNT; k++) {
+        all[k] = (uint32_t)k;
+        boxes[k] = random_box(&random, 6, 1, 1);
+        world[k] = (uint32_t)random_below(&random, WORLDS);
+    }
+    for (uint32_t way = 0; way < 3; way++) {
+        const narc_index_options options = {.fast = way == 1, .world = NARC_ARRAY(world)};
+        size_t slots = 0;
+        if (way < 2)
+            assert_int_equal(narc_build_index(index, boxes, COUNT, &options, NULL), NARC_OK);
+        for (size_t first = 0; way == 2 && first < COUNT; first += EACH) { /* all move, some at a time */
+            for (size_t k = first; k < first + EACH; k++) {
+                boxes[k] = random_box(&random, 6, 1, 1);
+                world[k] = (uint32_t)random_below(&random, WORLDS);
+            }
+            const narc_index_column some = {all + first, sizeof *all};
+            assert_int_equal(narc_update_index(index, boxes, COUNT, &some, EACH, &options, NULL), NARC_OK);
+        }
+        for (size_t k = 0; k < narc_count_nodes(index) * NARC_NODE_SLOTS; k++) {
+            const narc_world_range own = narc_get_worlds(&index->worlds[k / NARC_NODE_SLOTS], k % NARC_NODE_SLOTS);
+            if (own.lowest <= own.highest)
+                slots += (size_t)(own.highest - own.lowest) + 1;
+        }
+        assert_true(slots <= 2 * COUNT); /* a world's own bodies, and as many above */
+    }
+    assert_int_equal(narc_update_index(index, boxes, COUNT, &changed, COUNT, NULL, NULL), NARC_OK);
+    assert_null(index->worlds);
+    narc_destroy_index(index);
+    free(boxes);
+    free(world);
+    free(all);
 }
 
 /* Boxes in a row, far from the origin, stand in leaves in the order of the row. */

@@ -20,13 +20,14 @@ struct question {
     const narc_box *boxes, *queries;
     size_t box_count, query_count;
     const uint64_t *category, *mask;
-    const uint32_t *ignored, *owner, *ignored_owner;
+    const uint32_t *ignored, *owner, *ignored_owner, *world, *asked_world;
 };
 
 static bool is_found(const struct question *q, size_t query, size_t body) {
     const uint64_t mask = q->mask ? q->mask[query] : UINT64_MAX,
                    category = q->category ? q->category[body] : UINT64_MAX;
-    return overlap(&q->queries[query], &q->boxes[body]) && (!q->ignored || q->ignored[query] != body) &&
+    return (!q->world || q->world[body] == q->asked_world[query]) && overlap(&q->queries[query], &q->boxes[body]) &&
+           (!q->ignored || q->ignored[query] != body) &&
            (!q->owner || q->ignored_owner[query] == UINT32_MAX || q->owner[body] != q->ignored_owner[query]) &&
            (mask & category) != 0;
 }
@@ -59,6 +60,7 @@ static void ask(narc_index *index, const struct question *q, unsigned workers, n
     const narc_index_query query = {.mask = {q->mask, sizeof *q->mask},
                                     .owners = q->owner ? &owners : NULL,
                                     .ignored = {q->ignored, sizeof *q->ignored},
+                                    .world = {q->asked_world, sizeof *q->asked_world},
                                     .workers = workers > 1 ? &some : NULL};
     narc_box *const guarded = guard_copy(q->queries, q->query_count * sizeof *q->queries);
     narc_error error;
@@ -72,7 +74,8 @@ static void check_question(narc_index *index, const struct question *q) {
     static const unsigned workers[] = {1, 2, 3, 7};
     struct pair_list expected = find_all(q);
     for (unsigned way = 0; way < 3; way++) {
-        const narc_index_options options = {.category = {q->category, sizeof *q->category}, .fast = way == 1};
+        const narc_index_options options = {
+            .category = {q->category, sizeof *q->category}, .fast = way == 1, .world = {q->world, sizeof *q->world}};
         narc_box *other = NULL;
         if (way == 2) {
             other = malloc((q->box_count + 1) * sizeof *other);
@@ -100,7 +103,7 @@ TEST(finds_what_all_pairs_find) {
     struct test_random random = test_random_named("regions");
     static narc_box boxes[MOST], queries[QUERIES];
     static uint64_t category[MOST], mask[QUERIES];
-    static uint32_t ignored[QUERIES], owner[MOST], ignored_owner[QUERIES];
+    static uint32_t ignored[QUERIES], owner[MOST], ignored_owner[QUERIES], world[MOST], asked_world[QUERIES];
     narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < KINDS * COUNTS * 2; trial++) {
@@ -111,8 +114,10 @@ TEST(finds_what_all_pairs_find) {
         for (size_t k = 0; k < count; k++) {
             boxes[k] = make_box(&random, (enum box_kind)kind, k, count);
             category[k] = (uint64_t)random_below(&random, 8) << 31;
+            world[k] = (uint32_t)(k * k % 5 * 0x30000000);
         }
         for (size_t k = 0; k < QUERIES; k++) {
+            asked_world[k] = (uint32_t)(k % 6 * 0x30000000);
             queries[k] = random_box(&random, side, 0, k % 20 == 0 ? side : 4);
             if (k % 10 == 1 && count > 0)
                 queries[k] = boxes[random_below(&random, count)];
@@ -127,7 +132,8 @@ TEST(finds_what_all_pairs_find) {
         check_question(index,
                        &(struct question){boxes, queries, count, QUERIES - trial % 3, options & 1 ? category : NULL,
                                           options == 1 || options == 2 ? mask : NULL, options & 2 ? ignored : NULL,
-                                          options > 0 && trial / KINDS % 2 ? owner : NULL, ignored_owner});
+                                          options > 0 && trial / KINDS % 2 ? owner : NULL, ignored_owner,
+                                          trial % 3 ? NULL : world, asked_world});
     }
     narc_destroy_index(index);
 }
@@ -237,7 +243,7 @@ TEST(reads_columns_with_any_stride) {
         asked[k].word = mask[k] = (uint64_t)random_below(&random, 2) << 42 | random_below(&random, 2) << 21;
         asked[k].index = ignored[k] = (uint32_t)random_below(&random, COUNT);
     }
-    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored, NULL, NULL};
+    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored, NULL, NULL, NULL, NULL};
     const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
     const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
     struct pair_list expected = find_all(&q);

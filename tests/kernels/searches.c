@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * searches.c - rays, points and movers through an index against each body asked by itself, to the last bit: with all
- * options, masks, ignored bodies and owners, in any tree, by any workers, in any order.
+ * options, masks, worlds, ignored bodies and owners, in any tree, by any workers, in any order.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -21,13 +21,14 @@ struct search {
     struct test_motion *motion;
     float *targets; /* of movers */
     uint64_t *mask;
-    uint32_t *ignored, *ignored_owner, *owner; /* the latter: of bodies */
+    uint32_t *ignored, *ignored_owner, *owner; /* the latter: of bodies, */
+    uint32_t *world, *asked_world;             /* and the former of these */
 };
 
 struct options {
     size_t most;
     narc_inside inside;
-    bool any, within, masks, ignored, owners;
+    bool any, within, masks, ignored, owners, worlds;
     float distance;
 };
 
@@ -167,7 +168,8 @@ static bool is_wanted(const struct search *s, const struct options *o, bool cate
                       const struct found *found) {
     const uint64_t mask = o->masks ? s->mask[item] : UINT64_MAX;
     const bool near = o->distance == 0 || found->key < o->distance;
-    return found->count && (mask & (categories ? s->room.category[found->body] : UINT64_MAX)) != 0 && near &&
+    return found->count && !(o->worlds && s->world[found->body] != s->asked_world[item]) &&
+           (mask & (categories ? s->room.category[found->body] : UINT64_MAX)) != 0 && near &&
            !(o->within && found->key >= 0) && !(o->ignored && s->ignored[item] == found->body) &&
            !(o->owners && s->ignored_owner[item] != UINT32_MAX && s->owner[found->body] == s->ignored_owner[item]);
 }
@@ -218,7 +220,7 @@ static void check_rows(const struct search *s, const struct kind *kind, const st
 }
 
 /* Builds the index, well, fast, from other boxes and then updated, or with boxes that have grown. */
-static void build(struct test_random *random, struct search *s, size_t way, bool categories) {
+static void build(struct test_random *random, struct search *s, size_t way, bool categories, bool worlds) {
     static const uint32_t first[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     const size_t count = s->room.scene.body_count;
     narc_box *const boxes = calloc(count + 1, sizeof *boxes);
@@ -226,6 +228,8 @@ static void build(struct test_random *random, struct search *s, size_t way, bool
     narc_error error;
     if (categories)
         options.category = (narc_word_column){s->room.category, sizeof *s->room.category};
+    if (worlds)
+        options.world = (narc_index_column){s->world, sizeof *s->world};
     for (size_t k = 0; k < count; k++) {
         boxes[k] = s->room.boxes[way == 2 ? count - 1 - k : k];
         if (way == 3 && boxes[k].min_x <= boxes[k].max_x) {
@@ -293,8 +297,12 @@ static void check_kind(struct test_random *random, struct search *s, const struc
             search.ignored = (narc_index_column){s->ignored, sizeof *s->ignored};
         if (o.owners)
             search.owners = &owners;
+        const bool worlds = k / 4 % 2;
+        o.worlds = worlds && k % 3;
+        if (o.worlds)
+            search.world = (narc_index_column){s->asked_world, sizeof *s->asked_world};
         char *const rows = guard_allocate(s->count * o.most * kind->size);
-        build(random, s, k % 4, categories);
+        build(random, s, k % 4, categories, worlds);
         expect_ok(kind->ask(s, &bodies, &o, &search, rows, &error), &error);
         check_rows(s, kind, &o, categories, all, rows);
         guard_release(rows);
@@ -317,6 +325,8 @@ static struct search make_search(struct test_random *random, narc_precision prec
     s.ignored = calloc(count, sizeof *s.ignored);
     s.ignored_owner = calloc(count, sizeof *s.ignored_owner);
     s.owner = calloc(bodies, sizeof *s.owner);
+    s.world = calloc(bodies, sizeof *s.world);
+    s.asked_world = calloc(count, sizeof *s.asked_world);
     for (size_t k = 0; k < count; k++) {
         struct test_ray *const ray = &s.items[k];
         const double x = (double)ray->motion_x, y = (double)ray->motion_y, length = hypot(x, y);
@@ -345,9 +355,12 @@ static struct search make_search(struct test_random *random, narc_precision prec
         s.mask[k] = k % 7 ? bits & random_bits(random) : 0;
         s.ignored[k] = k % 5 ? (uint32_t)random_below(random, bodies) : UINT32_MAX;
         s.ignored_owner[k] = k % 3 ? (uint32_t)random_below(random, bodies / 3 + 1) : UINT32_MAX;
+        s.asked_world[k] = (uint32_t)(k / 10 % 4) * 0x50000000; /* of the last one there are no bodies */
     }
     for (size_t k = 0; k < bodies; k++)
         s.owner[k] = random_below(random, 8) ? (uint32_t)random_below(random, bodies / 3 + 1) : UINT32_MAX;
+    for (size_t k = 0; k < bodies; k++)
+        s.world[k] = (uint32_t)(k * k % 3) * 0x50000000;
     return s;
 }
 
@@ -361,6 +374,8 @@ static void destroy_search(struct search *s) {
     free(s->ignored);
     free(s->ignored_owner);
     free(s->owner);
+    free(s->world);
+    free(s->asked_world);
 }
 
 TEST(finds_what_asking_every_body_finds) {
@@ -504,13 +519,13 @@ TEST(rays_are_put_in_order) {
         for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
             const narc_rays view = view_rays(rays, count);
             size_t skipped = 0, skipped_too = 1;
-            narc_ray_options options = ways[way];
-            options.out_skipped = &skipped;
-            narc_ray_hit *const right = cast_in_room(&room, &view, &options);
-            options.out_skipped = &skipped_too;
-            options.out_order = order;
-            narc_ray_hit *const found = cast_in_room(&room, &view, &options);
-            assert_memory_equal(found, right, count * (options.most ? options.most : 1) * sizeof *found);
+            narc_ray_options asking = ways[way];
+            asking.out_skipped = &skipped;
+            narc_ray_hit *const right = cast_in_room(&room, &view, &asking);
+            asking.out_skipped = &skipped_too;
+            asking.out_order = order;
+            narc_ray_hit *const found = cast_in_room(&room, &view, &asking);
+            assert_memory_equal(found, right, count * (asking.most ? asking.most : 1) * sizeof *found);
             assert_int_equal(skipped, skipped_too);
             memset(asked, 0, count * sizeof *asked);
             for (size_t k = 0; k < count; k++) {
