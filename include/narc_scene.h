@@ -416,10 +416,12 @@ NARC_API narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodi
                                       narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
- *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which
- *              the point is deepest in, and the depth is a lower bound: the thing's outside is at least so far, and further
- *              where that part's place lies within another part. A point is within a thing (`inside`) if it is within a
- *              part
+ *   search     mask, ignored, workers, owners: of each thing the nearest part counts. A point is within a thing (`inside`) if
+ *              it is within a part. Its separation then is minus the distance to the outside of all parts together, and
+ *              the row that of the part on whose outline the nearest such place lies. Where the outlines of two parts
+ *              cross there, it is the part with the lower number, the normal leads from the point to the place, and
+ *              the radius is 0. Parts are connected as for rays (NARC_INSIDE_LEAVES), but within four times as much
+ *              of the larger extent
  *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
  *   inside     1: only bodies that the point is within
  *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows

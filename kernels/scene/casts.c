@@ -113,6 +113,10 @@ static int cast_pieces(const struct cast_call *call, narc_casts *casts, size_t s
 }
 #endif
 
+INLINE bool is_let_go(const narc_cast_batch *given, const narc_casts *casts, size_t slot) {
+    return casts->target[slot] < find_target(given, casts, slot);
+}
+
 /* Lets go what is at its target at the start. Its target is deeper by `parting` from then on, until it is seen clear of the
  * caller's: nothing that does not turn comes back from there, as separations are convex in time. What comes so deep before
  * hits at the start, which is looked at once more with a target that all have reached. */
@@ -139,7 +143,7 @@ static int let_go(const narc_cast_batch *given, narc_casts *casts, size_t slot, 
 }
 
 /* What a step of a cast comes to by rules that are for it alone. */
-static int end_alone(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
+NOINLINE int end_alone(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
     for (float target = NAN; target != casts->target[slot];) {
         target = casts->target[slot];
 #if NARC_PIECES
@@ -149,10 +153,7 @@ static int end_alone(const struct cast_call *call, narc_casts *casts, size_t slo
         if (call->lets_go)
             outcome = let_go(call->given, casts, slot, outcome);
     }
-    if (outcome != CAST_GOES_ON || !call->given->nearest)
-        return outcome;
-    const bool is_gone = call->lets_go && casts->target[slot] < find_target(call->given, casts, slot);
-    return !is_gone && is_late(call->given, casts, slot) ? NARC_CAST_MISS : CAST_GOES_ON;
+    return outcome;
 }
 
 /* Of casts k ... in some lanes: ends those that are done. */
@@ -160,10 +161,14 @@ NOINLINE void end_casts(struct cast_call *call, narc_casts *casts, size_t k, uin
     const narc_cast_batch *const given = call->given;
     for (; lanes; lanes &= lanes - 1) {
         const size_t lane = (size_t)FIND_LOWEST(lanes), slot = k + lane;
-        outcome[lane] = end_alone(call, casts, slot, outcome[lane]);
+        if (call->pieces || call->lets_go)
+            outcome[lane] = end_alone(call, casts, slot, outcome[lane]);
         if (outcome[lane] == NARC_CAST_HIT || outcome[lane] == NARC_CAST_UNFINISHED) {
             write_row(given, casts, slot, outcome[lane]);
-        } else if (outcome[lane] != CAST_GOES_ON) {
+        } else if (outcome[lane] == CAST_GOES_ON) {
+            if (given->nearest && is_late(given, casts, slot) && !(call->lets_go && is_let_go(given, casts, slot)))
+                outcome[lane] = NARC_CAST_MISS;
+        } else {
             call->skipped += outcome[lane] == CAST_BROKEN;
             if (!given->nearest)
                 given->out[casts->pair[slot]] = (narc_impact){.pair = casts->pair[slot]};

@@ -28,6 +28,7 @@
 #include "scene/concave.inl"
 #include "scene/piece_places.inl"
 #include "scene/things.inl"
+#include "scene/way_out.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
 
@@ -372,9 +373,12 @@ struct search {
     place point;
     float x, y, room; /* the point in the index' coordinates, in single precision, and what that may be off by */
     struct chosen chosen;
-    narc_distance *rows; /* the nearest so far, in their order: point, body and separation */
+    narc_distance
+        *rows; /* the nearest so far, in their order: body and separation; all, with a count, of things that hold it */
     size_t found;
-    float limit, limit_key; /* of a separation that still counts */
+    float limit; /* of a separation that still counts */
+    float reach,
+        limit_key; /* of one that is looked at: a part that holds the point tells of a thing that may be deeper */
 };
 
 /* Squares keep the order if those of negative values are negative. What is added last is far below any square that a
@@ -431,8 +435,14 @@ INLINE bool is_nearer(uint32_t body, float separation, const narc_distance *row)
     return separation < row->separation || (separation == row->separation && body < row->body);
 }
 
-/* Puts a body among the nearest ones if it belongs there: of a thing the nearest part alone. */
-INLINE void add_body(struct search *search, uint32_t body, float separation) {
+INLINE void set_limit(struct search *search, float limit) {
+    search->limit = limit;
+    search->reach = search->chosen.owners && limit < 0 ? 0 : limit;
+    search->limit_key = find_limit_key(search->reach);
+}
+
+/* Puts a body among the nearest ones if it belongs there: of a thing the nearest part alone. `whole`: its row, or NULL. */
+INLINE void add_row(struct search *search, uint32_t body, float separation, const narc_distance *whole) {
     narc_distance *const rows = search->rows;
     const size_t most = search->batch->most;
     const uint32_t owner = find_owner(&search->chosen, body);
@@ -449,12 +459,39 @@ INLINE void add_body(struct search *search, uint32_t body, float separation) {
     k -= k == most;
     for (; k > 0 && is_nearer(body, separation, &rows[k - 1]); k--)
         rows[k] = rows[k - 1];
-    rows[k] = (narc_distance){.body = body, .separation = separation};
+    rows[k] = whole ? *whole : (narc_distance){.body = body, .separation = separation};
     search->found += search->found < most;
-    if (search->found == most) {
-        search->limit = rows[most - 1].separation;
-        search->limit_key = find_limit_key(search->limit);
-    }
+    if (search->found == most)
+        set_limit(search, rows[most - 1].separation);
+}
+
+/* Adds a thing that holds the point, one part of it so deep, by how far it is to the outside. */
+NOINLINE void add_thing(struct search *search, uint32_t body, float separation) {
+    const narc_point_batch *const batch = search->batch;
+    const struct thing thing = {
+        batch->shapes, batch->bodies, batch->index, &search->chosen, find_owner(&search->chosen, body), search->point};
+    struct way_out out;
+    struct body_frame frame;
+    narc_distance row = {.body = body, .separation = separation};
+    if (find_way_out(&thing, -(double)separation, &out) &&
+        load_body_frame(batch->shapes, batch->bodies, out.body, &frame))
+        row = (narc_distance){.body = out.body,
+                              .feature = (uint16_t)out.feature,
+                              .count = 1,
+                              .separation = (float)-out.distance,
+                              .normal_x = (float)out.normal.x,
+                              .normal_y = (float)out.normal.y,
+                              .place_x = (float)(out.at.x + search->point.x - frame.position.x),
+                              .place_y = (float)(out.at.y + search->point.y - frame.position.y),
+                              .radius = (float)out.radius};
+    add_row(search, row.body, row.separation, &row);
+}
+
+INLINE void add_body(struct search *search, uint32_t body, float separation) {
+    if (search->chosen.owners && separation < 0 && find_owner(&search->chosen, body) != UINT32_MAX)
+        add_thing(search, body, separation);
+    else
+        add_row(search, body, separation, NULL);
 }
 
 /* The frame of a piece of a chain, and its nearest place. False for all else. */
@@ -473,11 +510,11 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     if (!is_chosen(&search->chosen, body))
         return;
     if (find_piece(search->batch, body, search->point, &frame, &nearest))
-        add_body(search, body, (float)(frame.scale * nearest.distance));
+        add_row(search, body, (float)(frame.scale * nearest.distance), NULL);
     if (!load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) || narc_is_piece(frame.header) ||
         !place_point(&frame, search->point, &x, &y))
         return;
-    const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
+    const float reach = (float)frame.scale * frame.header->bound_radius + search->reach;
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
         return;
     add_body(search, body, find_separation(&frame, x, y));
@@ -492,6 +529,8 @@ INLINE void ask_nearest(const struct search *search, size_t point, struct point_
         struct piece_place nearest;
         if (i >= search->found)
             put_nothing(row, point);
+        else if (row->count)
+            row->point = (uint32_t)point;
         else if (find_piece(batch, row->body, search->point, &frame, &nearest))
             *row = make_piece_row(&frame, &nearest, point, row->body);
         else
@@ -537,8 +576,7 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
         search.y = (float)at.y;
         search.room = (float)((fabs(at.x - (double)search.x) + fabs(at.y - (double)search.y)) * 1.001);
         search.rows = batch->out + k * batch->most;
-        search.limit = -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance));
-        search.limit_key = find_limit_key(search.limit);
+        set_limit(&search, -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance)));
         const bool has_answer = fabsf(search.x) <= FLT_MAX && fabsf(search.y) <= FLT_MAX; /* or all boxes are too far */
         if (batch->index->level_count > 0 && search.chosen.mask != 0 && has_answer)
             find_nearest(&search);

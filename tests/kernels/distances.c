@@ -362,4 +362,155 @@ TEST(test_near_a_body) {
     destroy_scene(&scene);
 }
 
+/* ------------------------------------------------------------------------------------------------ things */
+
+enum { PARTS = 12 };
+static const double spacing = 0.02, seam = 1e-5;
+
+/* Parts that overlap, or tiles that lie side by side, up to rounding; and a few bodies by themselves. */
+static struct scene make_thing(struct test_random *random, size_t trial, uint32_t *owner) {
+    struct scene scene = create_scene((narc_precision)(trial % 2), PARTS, PARTS, 1);
+    const bool tiles = trial % 3 == 0;
+    const double angle = random_between(random, -4, 4), c = cos(angle), s = sin(angle);
+    for (size_t k = 0; k < PARTS; k++) {
+        const struct shape shape =
+            tiles ? box_of(1, 1, 0) : make_shape(random, (enum family)random_below(random, FAMILY_COUNT));
+        scene_add_shape(&scene, &shape);
+        struct body body =
+            turned_body(tiles ? angle : random_between(random, -4, 4), tiles ? 1 : random_between(random, 0.5, 1.5));
+        const double x = tiles ? (double)(k % 4) : random_between(random, -1.5, 1.5),
+                     y = tiles ? (double)(k / 4) : random_between(random, -1.5, 1.5);
+        body.x = c * x - s * y;
+        body.y = s * x + c * y;
+        body.shape = (uint32_t)k;
+        round_position(&body, scene.precision);
+        scene_add_body(&scene, body);
+        owner[k] = random_below(random, 8) ? 5 : UINT32_MAX;
+    }
+    return scene;
+}
+
+/* How far a place is from the nearest part, below 0 in one. */
+static double find_separation(const struct scene *scene, const uint32_t *owner, double x, double y) {
+    double least = INFINITY;
+    for (uint32_t k = 0; k < PARTS; k++) {
+        const struct reference_body body = scene_reference(scene, k);
+        if (owner[k] == 5)
+            least = fmin(least, reference_point_distance(&body, x - body.x, y - body.y));
+    }
+    return least;
+}
+
+/* Takes a place of an outline, if it is nearer and what lies so far beyond it is outside. */
+static void take_outside(const struct scene *scene, const uint32_t *owner, double x, double y, double at_x, double at_y,
+                         double beyond, double *best) {
+    const double away = hypot(at_x - x, at_y - y);
+    if (away < *best &&
+        find_separation(scene, owner, at_x + beyond * (at_x - x) / away, at_y + beyond * (at_y - y) / away) > 0)
+        *best = away;
+}
+
+/* How far it is to the outside, by places of all outlines that are no further than `spacing` apart. */
+static double find_way_out(const struct scene *scene, const uint32_t *owner, double x, double y, double beyond) {
+    enum { NORMALS = 500 };
+    double best = INFINITY;
+    for (uint32_t k = 0; k < PARTS; k++) {
+        const struct body *const body = &scene->bodies[k];
+        const struct shape *const shape = &scene->shapes[body->shape];
+        const struct reference_body at = scene_reference(scene, k);
+        narc_point last = {0, 0};
+        for (int i = 0; owner[k] == 5 && i <= NORMALS; i++) {
+            const double angle = 2 * PI * i / NORMALS;
+            narc_point p;
+            assert_true(narc_find_support(shape->arcs, shape->count, cos(angle), sin(angle), &p, NULL));
+            const narc_point now = {at.x + at.scale * (at.cosine * p.x - at.sine * p.y),
+                                    at.y + at.scale * (at.sine * p.x + at.cosine * p.y)};
+            const int pieces = i > 0 ? 1 + (int)(hypot(now.x - last.x, now.y - last.y) / spacing) : 1;
+            for (int piece = 1; piece <= pieces; piece++) {
+                const double part = (double)piece / pieces;
+                take_outside(scene, owner, x, y, i > 0 ? last.x + part * (now.x - last.x) : now.x,
+                             i > 0 ? last.y + part * (now.y - last.y) : now.y, beyond, &best);
+            }
+            last = now;
+        }
+    }
+    return best;
+}
+
+/* Is a place beside the outside, such as a hole between two places of find_way_out()? */
+static bool is_near_outside(const struct scene *scene, const uint32_t *owner, double x, double y) {
+    enum { ANGLES = 256 };
+    bool found = false;
+    for (double radius = 2 * seam; radius < 100 * seam && !found; radius *= 2)
+        for (int k = 0; k < ANGLES && !found; k++) {
+            const double angle = 2 * PI * k / ANGLES;
+            found = find_separation(scene, owner, x + radius * cos(angle), y + radius * sin(angle)) > 0;
+        }
+    return found;
+}
+
+/* The depth of a thing is that to its outside, wherever the seams between its parts are. */
+TEST(test_depth_of_things) {
+    enum { POINTS = 6 };
+    struct test_random random = test_random_named("points, things");
+    size_t within = 0, deeper = 0, corners = 0;
+    for (size_t trial = 0; trial < test_trials(24); trial++) {
+        uint32_t owner[PARTS];
+        struct scene scene = make_thing(&random, trial, owner);
+        const narc_bodies bodies = scene_bodies(&scene);
+        narc_box boxes[PARTS];
+        narc_index *const index = index_bodies(scene.store, &bodies, &(narc_index_options){.fast = trial % 2}, boxes);
+        double x[POINTS], y[POINTS];
+        for (size_t k = 0; k < POINTS; k++) {
+            const struct body *const near = &scene.bodies[random_below(&random, PARTS)];
+            const struct reference_body at = scene_reference(&scene, (uint32_t)(near - scene.bodies));
+            x[k] = at.x + random_between(&random, -0.5, 0.5);
+            y[k] = at.y + random_between(&random, -0.5, 0.5);
+        }
+        const narc_owners owners = {.owner = NARC_ARRAY(owner)};
+        const narc_points points = {.count = POINTS, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
+        const narc_nearest_options options = {.search.owners = &owners, .inside = 1, .most = PARTS};
+        narc_distance rows[POINTS][PARTS];
+        narc_error error;
+        expect_ok(narc_find_nearest(index, scene.store, &bodies, &points, &options, rows[0], POINTS * PARTS, &error),
+                  &error);
+        for (size_t k = 0; k < POINTS; k++) {
+            const double part = find_separation(&scene, owner, x[k], y[k]);
+            const narc_distance *row = rows[k];
+            while (row < rows[k] + PARTS && row->count && owner[row->body] != 5)
+                row++;
+            const bool found = row < rows[k] + PARTS && row->count;
+            assert_true(found == (part < 0) || fabs(part) < seam);
+            if (!found || part > -10 * seam)
+                continue;
+            const double depth = -(double)row->separation, right = find_way_out(&scene, owner, x[k], y[k], 4 * seam);
+            const struct reference_body body = scene_reference(&scene, row->body);
+            const double at_x = body.x + (double)row->place_x, at_y = body.y + (double)row->place_y;
+            const bool is_right = depth <= right + 4 * seam || /* holes that are hardly wider than rounding */
+                                  depth <= find_way_out(&scene, owner, x[k], y[k], 200 * seam) + 4 * seam;
+            if (!(is_right && (depth >= right - spacing || is_near_outside(&scene, owner, at_x, at_y))))
+                fail_msg("trial %zu, point %zu: depth %.9g, not %.9g; of a part %.9g", trial, k, depth, right, -part);
+            assert_true(fabs(hypot(at_x - x[k], at_y - y[k]) - depth) < seam);
+            assert_true(fabs(reference_point_distance(&body, (double)row->place_x, (double)row->place_y)) < seam);
+            assert_true(find_separation(&scene, owner, at_x, at_y) > -seam);
+            assert_true(fabs(x[k] + depth * (double)row->normal_x - at_x) < 4 * seam);
+            within++;
+            deeper += depth > -part + 4 * seam;
+            corners += row->radius == 0;
+        }
+        narc_distance others[POINTS][PARTS]; /* through another tree */
+        narc_index *const other =
+            index_bodies(scene.store, &bodies, &(narc_index_options){.fast = trial % 2 == 0}, boxes);
+        expect_ok(narc_find_nearest(other, scene.store, &bodies, &points, &options, others[0], POINTS * PARTS, &error),
+                  &error);
+        assert_memory_equal(rows, others, sizeof rows);
+        narc_destroy_index(other);
+        narc_destroy_index(index);
+        destroy_scene(&scene);
+    }
+    print_message("%zu points within, %zu of them deeper than in a part, %zu nearest to where two parts meet\n", within,
+                  deeper, corners);
+    assert_true(test_trials(24) < 10 || (deeper > 0 && corners > 0));
+}
+
 TEST_MAIN("distances")

@@ -250,19 +250,23 @@ static uint64_t hash_boxes(const struct scene *scene, int way) {
     return hash;
 }
 
-/* Distances of each body's position to another body, and to the two nearest but itself. */
-static uint64_t hash_points(const struct scene *scene, int way) {
-    (void)way;
+/* Distances of each body's position to another body, and to the two nearest but itself. `things`: to the two nearest of things of
+ * three bodies. */
+static uint64_t hash_points(const struct scene *scene, int things) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_points points = {.count = BODIES, .x = bodies.x, .y = bodies.y};
-    uint32_t own[BODIES], other[BODIES];
+    uint32_t own[BODIES], other[BODIES], owner[BODIES];
     narc_distance rows[3 * BODIES];
     narc_box boxes[BODIES];
     for (uint32_t k = 0; k < BODIES; k++) {
         own[k] = k;
         other[k] = (7 * k + 3) % BODIES;
+        owner[k] = k / 3;
     }
-    const narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
+    const narc_owners owners = {.owner = NARC_ARRAY(owner)};
+    narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
+    if (things)
+        options.search = (narc_index_query){.owners = &owners};
     narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
     assert_int_equal(narc_find_distances(scene->store, &bodies, &points, &NARC_ARRAY(other), NULL, rows, NULL),
                      NARC_OK);
@@ -389,6 +393,7 @@ TEST(test_scenes) {
 #ifndef NARC_SMALL
         {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
 #endif
+        {"points and things", hash_points, 1, {0x9cfc56f9d9095a29u, 0x9219f23e0c618f85u}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},

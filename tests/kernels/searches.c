@@ -203,6 +203,8 @@ static void check_rows(const struct search *s, const struct kind *kind, const st
     assert_true(list && none);
     for (uint32_t k = 0; k < s->count; k++) {
         const size_t count = list_candidates(s, kind, o, categories, all, k, list);
+        if (o->owners && kind == &kinds[POINTS] && count > 0 && list[0].found.key < 0)
+            continue; /* the depth is that of a thing, not of a part: distances.c */
         memcpy(none, &k, sizeof k);
         for (size_t i = 0; i < o->most; i++) {
             const char *const row = rows + (k * o->most + i) * kind->size, *right = i < count ? list[i].row : none;

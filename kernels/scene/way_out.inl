@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * way_out.inl - the place of a thing's outside that is nearest to a point within the thing.
+ *
+ * It is a foot of the point on an arc or an edge of a part, or where the outlines of two parts cross; a part's own corners
+ * lie further away than what is beside them. It is outside if what lies just beyond it, seen from the point, is in no
+ * part. So neither seams nor gaps that are hardly wider than rounding count.
+ */
+#ifndef NARC_SCENE_WAY_OUT_INL
+#define NARC_SCENE_WAY_OUT_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scene/body_frame.inl"
+#include "scene/part_walk.inl"
+
+/* A thing, and the point. */
+struct thing {
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    const narc_index *index;
+    const struct chosen *chosen;
+    uint32_t owner;
+    place point;
+};
+
+struct way_out {
+    double distance;  /* infinite: none has been found */
+    place at, normal; /* from the point */
+    uint32_t body;
+    unsigned feature;
+    double radius;
+};
+
+/* An arc or an edge of a part, from the point: an edge begins at `center`. */
+struct curve {
+    place center, start, end; /* of an arc its first and last normal; of an edge its normal, and the way along it */
+    double radius, length;    /* of an edge: infinite; and its length */
+    double distance;          /* from the point, at least */
+    unsigned feature;
+    bool round; /* a whole circle */
+};
+
+/* What lies on a curve may be so far beyond its ends. */
+#define END_ROOM_OF_CURVES 0x1p-20
+
+INLINE place see_place(const struct thing *thing, const struct body_frame *frame, place own) {
+    const place turned = turn_to_world(frame, own);
+    return (place){frame->position.x - thing->point.x + frame->scale * turned.x,
+                   frame->position.y - thing->point.y + frame->scale * turned.y};
+}
+
+/* Curve 2k of a part is its arc k, and 2k + 1 the edge before that. False if there is none. */
+INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame, int number, struct curve *out) {
+    const int k = number / 2, count = (int)frame->header->count;
+    const narc_stored_arc *const arc = &frame->arcs[k].arc;
+    const bool is_edge = number % 2, round = frame->header->flags & NARC_SHAPE_CIRCLE;
+    const place center = see_place(thing, frame, (place){(double)arc->center_x, (double)arc->center_y}),
+                start = turn_to_world(frame, (place){(double)arc->start_x, (double)arc->start_y});
+    const double radius = frame->scale * (double)arc->radius;
+    out->feature = find_feature_number(frame->header, k, is_edge);
+    out->round = round;
+    if (!is_edge) {
+        *out =
+            (struct curve){center,       start, turn_to_world(frame, (place){(double)arc->end_x, (double)arc->end_y}),
+                           radius,       0,     fabs(sqrt(find_dot(center, center)) - radius),
+                           out->feature, round};
+        return radius > 0;
+    }
+    if (round || !is_edge_before(frame, k))
+        return false;
+    const narc_stored_arc *const before = &frame->arcs[(k + count - 1) % count].arc;
+    const place last = see_place(thing, frame, (place){(double)before->center_x, (double)before->center_y});
+    const double last_radius = frame->scale * (double)before->radius;
+    const place from = {last.x + last_radius * start.x, last.y + last_radius * start.y},
+                way = {center.x + radius * start.x - from.x, center.y + radius * start.y - from.y};
+    const double length = sqrt(find_dot(way, way));
+    *out = (struct curve){from,         start,  {way.x / length, way.y / length},
+                          INFINITY,     length, fabs(find_dot(from, start)),
+                          out->feature, false};
+    return length > 0;
+}
+
+/* By their crosses an arc of next to nothing holds the opposite of its normals, too; of half a turn the dots add up to 0. */
+INLINE bool is_on_arc(const struct curve *arc, place n) {
+    const double room = END_ROOM_OF_CURVES;
+    return arc->round || (find_cross(arc->start, n) >= -room && find_cross(n, arc->end) >= -room &&
+                          find_dot(arc->start, n) + find_dot(n, arc->end) > -1);
+}
+
+/* Is a place on a curve's line or circle on the curve? */
+INLINE bool is_on_curve(const struct curve *curve, place at) {
+    const place from = {at.x - curve->center.x, at.y - curve->center.y};
+    if (curve->radius < INFINITY)
+        return is_on_arc(curve, (place){from.x / curve->radius, from.y / curve->radius});
+    const double along = find_dot(from, curve->end), room = END_ROOM_OF_CURVES * curve->length;
+    return along >= -room && along <= curve->length + room;
+}
+
+/* Is what lies just beyond a place of a part in no part? */
+NOINLINE bool is_way_out(const struct thing *thing, const struct body_frame *frame, place at, place n) {
+    const double seam = find_seam(frame);
+    const place from = {thing->point.x + at.x, thing->point.y + at.y};
+    struct part_walk parts = begin_part_walk(thing->index, thing->chosen, thing->owner, from,
+                                             8 * seam * sqrt(find_dot(n, n)) + 0x1p-14 * sqrt(find_dot(at, at)));
+    struct body_frame other;
+    uint32_t body;
+    while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &other)) {
+        const double beyond = 4 * find_most(seam, find_seam(&other));
+        const place there = {from.x + beyond * n.x, from.y + beyond * n.y};
+        if (!narc_is_piece(other.header) && find_depth_in(&other, find_place_in(&other, there)) < 0)
+            return false;
+    }
+    return true;
+}
+
+/* Takes a place, if it is nearer and `out` leads out of all parts there. */
+INLINE void take_way_out(const struct thing *thing, const struct body_frame *frame, uint32_t body, place at, place n,
+                         place out, const struct curve *curve, bool is_corner, struct way_out *best) {
+    const double distance = sqrt(find_dot(at, at));
+    const bool before = body < best->body || (body == best->body && curve->feature < best->feature);
+    if ((distance < best->distance || (distance == best->distance && before)) && is_way_out(thing, frame, at, out))
+        *best = (struct way_out){distance, at, n, body, curve->feature, is_corner ? 0 : curve->radius};
+}
+
+/* The feet on a part. */
+INLINE void look_at_feet(const struct thing *thing, const struct body_frame *frame, uint32_t body,
+                         struct way_out *best) {
+    for (int k = 0; k < 2 * (int)frame->header->count; k++) {
+        struct curve curve;
+        if (!see_curve(thing, frame, k, &curve) || curve.distance > best->distance)
+            continue;
+        const place u = {-curve.center.x, -curve.center.y};
+        const double length = sqrt(find_dot(u, u));
+        place n = curve.start;
+        double to = -find_dot(u, n);
+        if (curve.radius < INFINITY) {
+            n = length > 0 ? (place){u.x / length, u.y / length} : curve.round ? (place){1, 0} : n;
+            to = curve.radius - length;
+        }
+        const place at = {to * n.x, to * n.y};
+        if (to >= 0 && (curve.radius < INFINITY ? is_on_arc(&curve, n) : is_on_curve(&curve, at)))
+            take_way_out(thing, frame, body, at, n, n, &curve, false, best);
+    }
+}
+
+/* The places, two at most, where the lines or circles of two curves cross; how many. */
+INLINE int cross_curves(const struct curve *a, const struct curve *b, place out[2]) {
+    const place way = {b->center.x - a->center.x, b->center.y - a->center.y};
+    if (!(a->radius < INFINITY) && !(b->radius < INFINITY)) {
+        const double sine = find_cross(a->end, b->end), along = find_cross(way, b->end) / sine;
+        out[0] = (place){a->center.x + along * a->end.x, a->center.y + along * a->end.y};
+        return fabs(sine) > END_ROOM_OF_CURVES;
+    }
+    const struct curve *const circle = a->radius < INFINITY ? a : b;
+    place foot = way, across; /* of the centre on the line that both meet, from the centre */
+    if (a->radius < INFINITY && b->radius < INFINITY) {
+        const double square = find_dot(way, way),
+                     part = (square + a->radius * a->radius - b->radius * b->radius) / (2 * square),
+                     length = sqrt(square);
+        foot = (place){part * way.x, part * way.y};
+        across = (place){-way.y / length, way.x / length};
+    } else {
+        const struct curve *const edge = circle == a ? b : a;
+        const place from = {edge->center.x - circle->center.x, edge->center.y - circle->center.y};
+        const double height = find_dot(from, edge->start);
+        foot = (place){height * edge->start.x, height * edge->start.y};
+        across = edge->end;
+    }
+    const double rest = circle->radius * circle->radius - find_dot(foot, foot);
+    const double half = sqrt(find_most(rest, 0));
+    for (int side = 0; side < 2; side++) {
+        const double by = side ? half : -half;
+        out[side] = (place){circle->center.x + foot.x + by * across.x, circle->center.y + foot.y + by * across.y};
+    }
+    return rest > -END_ROOM_OF_CURVES * circle->radius * circle->radius ? 2 : 0; /* not NaN */
+}
+
+/* Out of both curves where they cross: between their normals. */
+INLINE place lead_out(const struct curve *a, const struct curve *b, place at) {
+    place sum = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        const struct curve *const of = k ? b : a;
+        const bool edge = !(of->radius < INFINITY);
+        sum.x += edge ? of->start.x : (at.x - of->center.x) / of->radius;
+        sum.y += edge ? of->start.y : (at.y - of->center.y) / of->radius;
+    }
+    const double by = 1 / find_most(sqrt(find_dot(sum, sum)), 0x1p-60);
+    return (place){by * sum.x, by * sum.y};
+}
+
+/* Where the outlines of two parts cross. */
+NOINLINE void look_at_crossings(const struct thing *thing, const struct body_frame *a, uint32_t body,
+                                const struct body_frame *b, struct way_out *best) {
+    for (int k = 0; k < 2 * (int)a->header->count; k++) {
+        struct curve one;
+        if (!see_curve(thing, a, k, &one) || one.distance > best->distance)
+            continue;
+        for (int i = 0; i < 2 * (int)b->header->count; i++) {
+            struct curve other;
+            place at[2];
+            if (!see_curve(thing, b, i, &other) || other.distance > best->distance)
+                continue;
+            for (int found = cross_curves(&one, &other, at) - 1; found >= 0; found--) {
+                const double length = sqrt(find_dot(at[found], at[found]));
+                const place n = length > 0 ? (place){at[found].x / length, at[found].y / length} : one.start;
+                if (length <= best->distance && is_on_curve(&one, at[found]) && is_on_curve(&other, at[found]))
+                    take_way_out(thing, a, body, at[found], n, lead_out(&one, &other, at[found]), &one, true, best);
+            }
+        }
+    }
+}
+
+/* Looks at all parts that come as near as `reach`. */
+NOINLINE void look_for_way_out(const struct thing *thing, double reach, struct way_out *best) {
+    struct body_frame frame, other;
+    uint32_t body, next;
+    struct part_walk parts = begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, reach);
+    while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &frame))
+        if (!narc_is_piece(frame.header))
+            look_at_feet(thing, &frame, body, best);
+    parts = begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, reach);
+    while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &frame)) {
+        struct part_walk others =
+            begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, find_least(reach, best->distance));
+        while (!narc_is_piece(frame.header) && find_next_part(&others, thing->shapes, thing->bodies, &next, &other))
+            if (next > body && !narc_is_piece(other.header))
+                look_at_crossings(thing, &frame, body, &other, best);
+    }
+}
+
+/* The nearest place outside, of a point that is so deep in one of the parts. False if none is found. */
+NOINLINE bool find_way_out(const struct thing *thing, double depth, struct way_out *out) {
+    enum { DOUBLINGS = 24 };
+    *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
+    double reach = depth * (1 + 0x1p-10);
+    for (int k = 0; k < DOUBLINGS && !(out->distance <= reach); k++) {
+        reach *= k > 0 ? 2 : 1;
+        look_for_way_out(thing, reach, out);
+    }
+    return out->distance < INFINITY;
+}
+
+#endif
