@@ -18,6 +18,7 @@
 #define NARC_INDEX_H
 
 #include <float.h>
+#include <math.h>
 #include <stdbool.h>
 
 #include "narc_scene.h"
@@ -116,6 +117,19 @@ void narc_lay_out_index(narc_index *index, size_t slots);
 /* How many nodes it has: the root is the last. */
 static inline size_t narc_count_nodes(const narc_index *index) {
     return index->level_count > 0 ? (size_t)index->first_node[index->level_count - 1] + 1 : 0;
+}
+
+/* The box around all. Empty boxes change nothing. */
+static inline narc_box narc_find_index_box(const narc_index *index) {
+    narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const narc_index_node *const root = index->nodes + narc_count_nodes(index) - 1;
+    for (int k = 0; index->level_count > 0 && k < NARC_NODE_SLOTS; k++) {
+        box.min_x = root->min_x[k] < box.min_x ? root->min_x[k] : box.min_x;
+        box.min_y = root->min_y[k] < box.min_y ? root->min_y[k] : box.min_y;
+        box.max_x = root->max_x[k] > box.max_x ? root->max_x[k] : box.max_x;
+        box.max_y = root->max_y[k] > box.max_y ? root->max_y[k] : box.max_y;
+    }
+    return box;
 }
 
 /* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; `left`: 7 if the ray goes left, else

@@ -252,14 +252,6 @@ static void find_bounds(void *argument, size_t part, size_t first, size_t end) {
     s->part[part].bounds = all;
 }
 
-/* Puts a 0 before each of 16 bits. */
-static uint32_t spread_bits(uint32_t k) {
-    k = (k | k << 8) & 0x00ff00ff;
-    k = (k | k << 4) & 0x0f0f0f0f;
-    k = (k | k << 2) & 0x33333333;
-    return (k | k << 1) & 0x55555555;
-}
-
 static void list_on_curve(void *argument, size_t part, size_t first, size_t end) {
     const sorting *const s = argument;
     const float min_x = s->min_x, min_y = s->min_y, scale = s->scale;
@@ -268,7 +260,7 @@ static void list_on_curve(void *argument, size_t part, size_t first, size_t end)
         const narc_box *const box = &s->boxes[s->bodies[k]];
         const float x = (halve_centre(box->min_x, box->max_x) - min_x) * scale;
         const float y = (halve_centre(box->min_y, box->max_y) - min_y) * scale;
-        s->from[k] = (entry){spread_bits((uint32_t)(int32_t)x) | spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
+        s->from[k] = (entry){narc_spread_bits((uint32_t)(int32_t)x) | narc_spread_bits((uint32_t)(int32_t)y) << 1, s->bodies[k]};
     }
 }
 

@@ -44,4 +44,12 @@ void narc_fit_nodes(const narc_making *making, unsigned level, size_t first, siz
 narc_status narc_check_making(const narc_index *index, const narc_box *boxes, size_t count,
                               const narc_index_options *options, narc_error *error);
 
+/* Puts a 0 before each of 16 bits. */
+static inline uint32_t narc_spread_bits(uint32_t k) {
+    k = (k | k << 8) & 0x00ff00ff;
+    k = (k | k << 4) & 0x0f0f0f0f;
+    k = (k | k << 2) & 0x33333333;
+    return (k | k << 1) & 0x55555555;
+}
+
 #endif

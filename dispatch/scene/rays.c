@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * rays.c - narc_cast_rays() and narc_cast_ray_pairs(): argument checks, then rays part by part to the kernels.
+ * rays.c - narc_cast_rays() and narc_cast_ray_pairs(): argument checks, rays into an order if asked, then part by part to the
+ * kernels.
  */
 #include "column.h"
 #include "dispatch.h"
 #include "error.h"
+#include "index.h"
+#include "leaves.h"
 #include "narc_scene.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 /* Rays in a part: some 20 microseconds of work. */
 enum { PART = 128 };
@@ -26,6 +30,57 @@ static void cast_part(void *argument, size_t part, size_t first, size_t end) {
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
+/* ------------------------------------------------------------------------------------------------ order */
+
+/* Rays are sorted by the cells of a grid over the scene that they start in, along Morton's curve. Where rows will be, the
+ * cells' numbers wait, and where the rays of each begin. */
+struct ordering {
+    const narc_rays *rays;
+    double min_x, min_y, cells_x, cells_y; /* the latter in a unit of length */
+    uint32_t cells;                        /* along each axis */
+    uint32_t *cell;
+};
+
+enum { CELLS = 4096, RAYS_IN_CELL = 2, MOST_CELLS = 4096 };
+
+static uint32_t find_cell(double at, uint32_t cells) {
+    return at < (double)cells ? at >= 1 ? (uint32_t)(int32_t)at : 0 : cells - 1;
+}
+
+static void find_cells(void *argument, size_t part, size_t first, size_t end) {
+    const struct ordering *const o = argument;
+    const narc_rays *const rays = o->rays;
+    (void)part;
+    for (size_t k = first; k < end; k++) {
+        const double x = narc_position_at(rays->x, k), y = narc_position_at(rays->y, k);
+        const uint32_t cell_x = find_cell((x - o->min_x) * o->cells_x, o->cells);
+        const uint32_t cell_y = find_cell((y - o->min_y) * o->cells_y, o->cells);
+        o->cell[k] = narc_spread_bits(cell_x) + 2 * narc_spread_bits(cell_y);
+    }
+}
+
+static void order_rays(const narc_index *index, const narc_rays *rays, const narc_workers *workers, void *room,
+                       uint32_t *out) {
+    const narc_box scene = narc_find_index_box(index);
+    const narc_point origin = index->origin;
+    struct ordering o = {rays, (double)scene.min_x + origin.x, (double)scene.min_y + origin.y, 0, 0, 1, room};
+    uint32_t *const place = o.cell + rays->count;
+    while (4 * o.cells * o.cells * RAYS_IN_CELL <= rays->count && o.cells < MOST_CELLS)
+        o.cells *= 2;
+    o.cells_x = o.cells / ((double)scene.max_x - (double)scene.min_x);
+    o.cells_y = o.cells / ((double)scene.max_y - (double)scene.min_y);
+    const size_t cells = (size_t)o.cells * o.cells;
+    narc_run_ranges(workers, rays->count, CELLS, find_cells, &o);
+    memset(place, 0, cells * sizeof *place);
+    for (size_t k = 0; k < rays->count; k++)
+        place[o.cell[k]]++;
+    narc_begin_places(place, cells, cells, 1);
+    for (size_t k = 0; k < rays->count; k++)
+        out[place[o.cell[k]]++] = (uint32_t)k;
+}
+
+/* ------------------------------------------------------------------------------------------------ the call */
+
 static narc_status check_rays(const narc_rays *rays, narc_error *error) {
     narc_status status = narc_check_count(rays->count, UINT32_MAX, "rays", error);
     if (status == NARC_OK && rays->count > 0)
@@ -40,7 +95,7 @@ static narc_status check_options(const narc_index *index, const narc_ray_options
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->inside, "options.inside is %d",
                          (int)options->inside);
     const narc_status status = index ? narc_check_search(index, &options->search, "options.search", error) : NARC_OK;
-    return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 3, "options", error) : status;
 }
 
 narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
@@ -66,6 +121,8 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
     struct ray_job job = {{index, shapes, bodies, rays, o, most, out_rows, {NULL, 0}}, narc_kernels(&status, error), 0};
     if (!job.kernels)
         return status;
+    if (o->out_order && rays->count > 0)
+        order_rays(index, rays, o->search.workers, out_rows, o->out_order);
     narc_run_ranges(o->search.workers, rays->count, PART, cast_part, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);

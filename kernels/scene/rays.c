@@ -44,6 +44,7 @@ struct axis {
  * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
 struct descent {
     uint64_t left, above;
+    unsigned levels;
     uint32_t node[NARC_INDEX_LEVELS];
     unsigned flips[NARC_INDEX_LEVELS];
     float near[NARC_INDEX_LEVELS][NARC_NODE_SLOTS > V_WIDTH ? NARC_NODE_SLOTS : V_WIDTH];
@@ -65,19 +66,6 @@ struct walk {
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
 
-/* The box around all. Empty boxes change nothing. */
-static narc_box find_scene_box(const narc_index *index) {
-    narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    const narc_index_node *const root = &index->nodes[index->first_node[index->level_count - 1]];
-    for (int k = 0; k < NARC_NODE_SLOTS; k++) {
-        box.min_x = root->min_x[k] < box.min_x ? root->min_x[k] : box.min_x;
-        box.min_y = root->min_y[k] < box.min_y ? root->min_y[k] : box.min_y;
-        box.max_x = root->max_x[k] > box.max_x ? root->max_x[k] : box.max_x;
-        box.max_y = root->max_y[k] > box.max_y ? root->max_y[k] : box.max_y;
-    }
-    return box;
-}
-
 static float clip_to_float(double a) { return (float)find_most(-(double)FLT_MAX, find_least((double)FLT_MAX, a)); }
 
 /* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
@@ -96,7 +84,8 @@ struct read_axis {
 };
 
 struct read_rays {
-    size_t first, count;
+    size_t count;
+    uint32_t number[READ];
     double origin_x[READ], origin_y[READ], direction_x[READ_ROOM], direction_y[READ_ROOM];
     double length[READ_ROOM]; /* 0: it has no answer */
     double inverse_length[READ_ROOM];
@@ -137,7 +126,22 @@ INLINE void put_axis(vd start, vd room, vd inverse, size_t k, struct read_axis *
     d_put_floats(out->inverse + k, clip(inverse, (double)LARGEST_INVERSE));
 }
 
-/* Rays first .. first + count - 1, at most READ, set out from where they meet the scene, with room. */
+/* Columns of the rays `number`, the first one again behind the last. */
+INLINE void read_floats(const narc_float_column *column, const uint32_t *number, size_t end, double *out) {
+    for (size_t k = 0; k < end; k++)
+        out[k] = (double)narc_float_at(*column, number[k]);
+}
+
+INLINE void read_positions(const narc_position_column *column, const uint32_t *number, size_t end, double *out) {
+    if (column->precision == NARC_FLOAT64)
+        for (size_t k = 0; k < end; k++)
+            out[k] = narc_double_at(*column, number[k]);
+    else
+        for (size_t k = 0; k < end; k++)
+            out[k] = (double)narc_single_at(*column, number[k]);
+}
+
+/* Rays first .. first + count - 1 in their order, at most READ, set out from where they meet the scene, with room. */
 static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
                       struct read_rays *out) {
     const narc_rays *const rays = batch->rays;
@@ -147,17 +151,19 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
                                   find_most(-(double)scene->min_y, (double)scene->max_y));
     const double least_touch = size * ((double)ROOM + (double)batch->shapes->largest_ratio * TOUCH_ROOM);
     const bool single = count == 1;
-    out->first = first;
+    const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH, given = single ? 1 : end;
+    const uint32_t *const order = batch->options->out_order;
     out->count = count;
-    const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH;
-    for (size_t k = 0; k < (single ? 1 : end); k++) {
+    for (size_t k = 0; k < given; k++) {
         const size_t i = first + (k < count ? k : 0);
-        out->origin_x[k] = narc_position_at(rays->x, i);
-        out->origin_y[k] = narc_position_at(rays->y, i);
-        out->direction_x[k] = (double)narc_float_at(rays->motion_x, i);
-        out->direction_y[k] = (double)narc_float_at(rays->motion_y, i);
-        out->fraction[k] = rays->fraction.base ? narc_float_at(rays->fraction, i) : 1;
+        out->number[k] = order ? order[i] : (uint32_t)i;
     }
+    read_positions(&rays->x, out->number, given, out->origin_x);
+    read_positions(&rays->y, out->number, given, out->origin_y);
+    read_floats(&rays->motion_x, out->number, given, out->direction_x);
+    read_floats(&rays->motion_y, out->number, given, out->direction_y);
+    for (size_t k = 0; k < given; k++)
+        out->fraction[k] = narc_float_or(rays->fraction, out->number[k], 1);
     for (size_t k = 0; k < end; k += D_WIDTH) {
         const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
         const vd x = get_lanes(out->origin_x + k, single) - d_set(batch->index->origin.x);
@@ -207,7 +213,7 @@ INLINE struct axis get_axis(const struct read_axis *axis, size_t k, bool backwar
 
 /* The rows of the k-th of them. */
 INLINE narc_ray_hit *get_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
-    return batch->out + (rays->first + k) * batch->most;
+    return batch->out + (size_t)rays->number[k] * batch->most;
 }
 
 /* The k-th of them; its rows are empty. */
@@ -223,7 +229,7 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
     w->aslant = left != down ? 7 : 0;
     w->base = rays->base[k];
     w->room = rays->room[k];
-    w->chosen = read_chosen(&batch->options->search, rays->first + k);
+    w->chosen = read_chosen(&batch->options->search, rays->number[k]);
     w->found = 0;
     w->rows = get_rows(batch, rays, k);
     w->limit = rays->limit[k];
@@ -388,8 +394,22 @@ INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsig
         d->above |= left;
 }
 
-/* The next slot that is left, and its level; whether it is no further than the limit. False if there is none. */
-INLINE bool take_slot(struct descent *d, float limit, unsigned *level, unsigned *slot, bool *is_near) {
+/* Leaves out what is further than a limit that has become less, from a level up. */
+NOINLINE void drop_slots(struct descent *d, unsigned level, float limit) {
+    for (; level < d->levels; level++) {
+        uint32_t far = 0;
+        for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
+            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[level] + k))) << k;
+        const uint64_t dropped = (uint64_t)flipped[d->flips[level]][far & 0xff] << 8 * (level & 7);
+        if (level < 8)
+            d->left &= ~dropped;
+        else
+            d->above &= ~dropped;
+    }
+}
+
+/* The next slot that is left, and its level. False if there is none. */
+INLINE bool take_slot(struct descent *d, unsigned *level, unsigned *slot) {
     unsigned bit;
     if (d->left) {
         bit = (unsigned)FIND_LOWEST_64(d->left);
@@ -402,15 +422,20 @@ INLINE bool take_slot(struct descent *d, float limit, unsigned *level, unsigned 
     }
     *level = bit >> 3;
     *slot = (bit & 7) ^ d->flips[*level];
-    *is_near = d->near[*level][*slot] <= limit;
     return true;
 }
 
 /* Casts a ray at the body in a leaf's slot. Is it done? */
-INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, size_t leaf, unsigned slot) {
+INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, struct descent *d, unsigned slot) {
+    const size_t leaf = d->node[0];
+    const float limit = w->limit;
     struct body_frame frame;
-    return load_slot_frame(batch, leaf, slot, &frame) &&
-           cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]);
+    if (load_slot_frame(batch, leaf, slot, &frame) &&
+        cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]))
+        return true;
+    if (w->limit < limit)
+        drop_slots(d, 0, w->limit);
+    return false;
 }
 
 /* Leaves the slots of a node that the ray meets to be visited. */
@@ -427,13 +452,13 @@ NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     unsigned slot, level = batch->index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
-    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+    d.levels = level + 1;
+    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         visit_node(batch->index, w, level, below, &d);
         do {
-            if (!take_slot(&d, w->limit, &level, &slot, &is_near) ||
-                (is_near && level == 0 && visit_slot(batch, w, d.node[0], slot)))
+            if (!take_slot(&d, &level, &slot) || (level == 0 && visit_slot(batch, w, &d, slot)))
                 return;
-        } while (!is_near || level == 0);
+        } while (level == 0);
     }
 }
 
@@ -733,7 +758,8 @@ NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct 
     }
 }
 
-INLINE void visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size_t leaf, uint32_t slots,
+/* Is the largest limit less now? */
+INLINE bool visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size_t leaf, uint32_t slots,
                                 const float *near) {
     const narc_index *const index = batch->index;
     unsigned slot;
@@ -752,7 +778,9 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size
                 cast_one(batch, f, &frame, index->body[number], k);
         }
     }
+    const float limit = f->limit;
     f->limit = find_largest_limit(f);
+    return f->limit < limit;
 }
 
 static void walk_together(const narc_ray_batch *batch, struct fan *f) {
@@ -762,24 +790,22 @@ static void walk_together(const narc_ray_batch *batch, struct fan *f) {
     unsigned slot, level = index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
+    d.levels = index->level_count;
     begin_fan(batch, f);
-    for (bool is_near;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
             mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), f->mask);
         d.node[level] = below;
         if (level > 0)
             leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->left, first->aslant));
-        else
-            visit_leaf_together(batch, f, node, slots, d.near[0]);
-        do {
-            if (!take_slot(&d, f->limit, &level, &slot, &is_near)) {
-                if (goes_in_lanes(f))
-                    put_hits(batch, f, UINT32_MAX);
-                return;
-            }
-        } while (!is_near);
+        else if (visit_leaf_together(batch, f, node, slots, d.near[0]))
+            drop_slots(&d, 1, f->limit);
+        if (!take_slot(&d, &level, &slot))
+            break;
     }
+    if (goes_in_lanes(f))
+        put_hits(batch, f, UINT32_MAX);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays side by side */
@@ -796,11 +822,8 @@ struct stepper {
 
 /* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
 INLINE bool find_step(struct stepper *s) {
-    bool is_near;
-    do {
-        if (!take_slot(&s->d, s->walk.limit, &s->level, &s->slot, &is_near))
-            return false;
-    } while (!is_near);
+    if (!take_slot(&s->d, &s->level, &s->slot))
+        return false;
     s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
     return true;
 }
@@ -819,7 +842,7 @@ INLINE bool begin_steps(const narc_ray_batch *batch, struct loners *loners, stru
     begin_walk(batch, loners->rays, loners->number[loners->next++], &out->walk);
     out->d.left = out->d.above = 0;
     out->below = 0;
-    out->level = batch->index->level_count;
+    out->level = out->d.levels = batch->index->level_count;
     return true;
 }
 
@@ -845,7 +868,7 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
             struct stepper *const s = at_body[k];
             bool goes_on;
             do {
-                goes_on = !visit_slot(batch, &s->walk, s->d.node[0], s->slot) && find_step(s);
+                goes_on = !visit_slot(batch, &s->walk, &s->d, s->slot) && find_step(s);
             } while (goes_on && s->level == 0);
             if (goes_on || begin_steps(batch, loners, s))
                 at_node[node_count++] = s;
@@ -867,7 +890,7 @@ static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) 
 INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
     narc_ray_hit *const rows = get_rows(batch, rays, k);
     for (size_t i = 0; i < batch->most; i++)
-        rows[i] = (narc_ray_hit){.ray = (uint32_t)(rays->first + k)};
+        rows[i] = (narc_ray_hit){.ray = rays->number[k]};
     return rays->length[k] > 0;
 }
 
@@ -885,11 +908,12 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
         if (!(rays->length[k] > 0) || rays->base[k] < 0)
             continue;
         count = gather_fan(batch, scene, rays, k, &fan);
-        if (count >= LEAST_TOGETHER)
+        if (count >= LEAST_TOGETHER) {
             walk_together(batch, &fan);
-        else
-            for (size_t i = k; i < k + count; i++)
-                loners.number[loners.count++] = (uint8_t)i;
+            continue;
+        }
+        for (size_t i = k; i < k + count; i++)
+            loners.number[loners.count++] = (uint8_t)i;
     }
     if (IN_LANES && loners.count >= LEAST_TOGETHER)
         walk_apart(batch, &loners);
@@ -899,9 +923,7 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
 }
 
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
-    const bool is_empty = batch->index->level_count == 0;
-    const narc_box scene =
-        is_empty ? (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY} : find_scene_box(batch->index);
+    const narc_box scene = narc_find_index_box(batch->index);
     size_t skipped = 0;
     struct read_rays rays;
     for (size_t k = first; k < first + count; k += READ) {

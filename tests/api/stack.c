@@ -139,8 +139,12 @@ static narc_status ask_index(narc_error *error) {
     const narc_float_column shift = NARC_ARRAY(shifts);
     const narc_rays rays = {
         .count = BODIES, .x = at.x, .y = at.y, .motion_x = shift, .motion_y = shift, .fraction = NARC_ARRAY(margins)};
-    const narc_ray_options leave = {
-        .search.workers = query.workers, .inside = NARC_INSIDE_LEAVES, .most = 3, .out_skipped = &skipped};
+    static uint32_t order[BODIES];
+    const narc_ray_options leave = {.search.workers = query.workers,
+                                    .inside = NARC_INSIDE_LEAVES,
+                                    .most = 3,
+                                    .out_skipped = &skipped,
+                                    .out_order = query.workers ? order : NULL};
     narc_index *index = NULL;
     narc_pairs met;
     const bool fine =
@@ -154,7 +158,9 @@ static narc_status ask_index(narc_error *error) {
         narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&
         narc_find_distances(store, &bodies, &at, &NARC_ARRAY(selection), query.workers, distances, error) ==
             NARC_ERROR_INDEX &&
-        narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK;
+        narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK &&
+        narc_find_inside(store, &bodies, &at, NULL, query.workers, bits, error) == NARC_OK &&
+        narc_cast_ray_pairs(store, &bodies, &rays, NULL, &leave, hits, BODIES, error) == NARC_OK;
     narc_destroy_index(index);
     return TRUE(fine);
 }

@@ -183,8 +183,12 @@ static void ask_rays(size_t count, const narc_workers *workers, answers *out) {
                             .y = bodies.y,
                             .motion_x = NARC_ARRAY(motions),
                             .motion_y = {motions + 2, sizeof *motions}};
-    const narc_ray_options options = {
-        .search.workers = workers, .inside = NARC_INSIDE_LEAVES, .most = 2, .out_skipped = &skipped};
+    static uint32_t order[BODIES];
+    const narc_ray_options options = {.search.workers = workers,
+                                      .inside = NARC_INSIDE_LEAVES,
+                                      .most = 2,
+                                      .out_skipped = &skipped,
+                                      .out_order = order};
     narc_index *index = NULL;
     OK(narc_create_index(NULL, &index));
     OK(narc_build_index(index, boxes, count, NULL, NULL));

@@ -469,4 +469,65 @@ TEST(rays_go_in_any_company) {
     destroy_room(&room);
 }
 
+/* With room for an order, each ray is asked once, and its rows are those that it has without. */
+TEST(rays_are_put_in_order) {
+    enum { COUNT = 700, MOST_RAYS = 3000, MOST = 3 };
+    struct test_random random = test_random_named("order of rays");
+    size_t moved = 0;
+    for (size_t trial = 0; trial < test_trials(12); trial++) {
+        const narc_precision precision = trial % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+        struct room room = create_room(&random, precision, trial % 6 ? COUNT : random_below(&random, 9) + 1, 40);
+        const size_t count = trial % 4 ? 1 + random_below(&random, MOST_RAYS) : random_below(&random, 40);
+        struct test_ray *const rays = make_rays(&random, &room, count, 40);
+        uint32_t owner[COUNT];
+        uint64_t *const mask = calloc(count + 1, sizeof *mask);
+        uint32_t *const order = guard_allocate(count * sizeof *order);
+        bool *const asked = calloc(count + 1, sizeof *asked);
+        for (size_t k = 0; k < COUNT; k++)
+            owner[k] = (uint32_t)k / 4;
+        for (size_t k = 0; k < count; k++) {
+            mask[k] = random_below(&random, 8) ? UINT64_MAX : random_below(&random, 4);
+            if (random_below(&random, 30) == 0)
+                rays[k].motion_x = rays[k].motion_y = random_below(&random, 2) ? NAN : 0;
+            if (random_below(&random, 50) == 0)
+                rays[k].x = random_below(&random, 2) ? (double)NAN : -1e30;
+        }
+        index_room(&room, trial % 3, trial % 5);
+        const narc_owners owners = {.owner = NARC_ARRAY(owner)};
+        const narc_ray_options ways[] = {{.any = 1},
+                                         {.any = 1, .search.mask = NARC_ARRAY(mask)},
+                                         {.most = MOST, .search.mask = NARC_ARRAY(mask)},
+                                         {.most = MOST, .inside = NARC_INSIDE_LEAVES, .search.owners = &owners},
+                                         {.inside = NARC_INSIDE_STOPS},
+                                         {.inside = NARC_INSIDE_LEAVES},
+                                         {.inside = NARC_INSIDE_IGNORES}};
+        for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
+            const narc_rays view = view_rays(rays, count);
+            size_t skipped = 0, skipped_too = 1;
+            narc_ray_options options = ways[way];
+            options.out_skipped = &skipped;
+            narc_ray_hit *const right = cast_in_room(&room, &view, &options);
+            options.out_skipped = &skipped_too;
+            options.out_order = order;
+            narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+            assert_memory_equal(found, right, count * (options.most ? options.most : 1) * sizeof *found);
+            assert_int_equal(skipped, skipped_too);
+            memset(asked, 0, count * sizeof *asked);
+            for (size_t k = 0; k < count; k++) {
+                assert_true(order[k] < count && !asked[order[k]]);
+                asked[order[k]] = true;
+                moved += order[k] != k;
+            }
+            guard_release(right);
+            guard_release(found);
+        }
+        free(rays);
+        free(mask);
+        free(asked);
+        guard_release(order);
+        destroy_room(&room);
+    }
+    assert_true(moved > 0);
+}
+
 TEST_MAIN("searches")
