@@ -171,7 +171,8 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
  * With one lane a junction is asked in the frame of the shape whose it is, so that nothing is placed. The edge that faces
  * the other body is looked up by the axis of the inscribed circles; from there on, on both sides, junctions are asked until
  * these circles rule them out, and so all beyond. The other shape's corner is looked up, too, by 16 bits: a gap is too
- * large if that is the wrong one, and if the largest is, F does not lie within that corner's sector (polygon_contact.inl).
+ * large if that is the wrong one, by less than LOOSE slacks (certificates.inl), and if the largest is, F does not lie within
+ * that corner's sector (polygon_contact.inl).
  * Otherwise values differ from the formula's by as little as those of lanes. Corners may have radii, equal ones. */
 
 /* Two polygons, seen from the one whose junctions are asked. */

@@ -535,6 +535,15 @@ TEST(kinds_with_ways_of_their_own) {
                 contact.pair = manifold.pair = (uint32_t)k;
                 assert_memory_equal(&contact, &all.rows[k], sizeof contact);
                 assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
+                if (query.margin < INFINITY || contact.count == 0)
+                    continue;
+                const narc_query just = {.margin = nextafterf(all.rows[k].separation, INFINITY)},
+                                 not = {.margin = all.rows[k].separation};
+                expect_ok(narc_find_contact(store, &rows[2 * k], &rows[2 * k + 1], &just, &contact, &error), &error);
+                contact.pair = (uint32_t)k;
+                assert_memory_equal(&contact, &all.rows[k], sizeof contact);
+                expect_ok(narc_find_contact(store, &rows[2 * k], &rows[2 * k + 1], &not, &contact, &error), &error);
+                assert_int_equal(contact.count, 0);
             }
         }
         test_use_isa(test_isa());
