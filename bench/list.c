@@ -58,7 +58,8 @@ static const struct group groups[] = {
     {"nearest", "n8", SCENES, "BEST BEST/by1"},
     {"distance", "n8", SCENES, "BEST"},
     {FLIGHTS, "squares slabs gons8 n8", "flights", BOTH " box2d"},
-    {"index-good index-fast index-refit", "gons8", SCENES, "BEST"},
+    {"index-good index-fast", "gons8", SCENES, "BEST"},
+    {"move-1 move-100 move-2000 move-near-2000", "gons8", SCENES, "BEST box2d"},
     {"ground-none ground-among", "boxes", "hills short-hills", "BEST avx2"},
     {"ground-among ground-pairs", "balls boxes", "few-hills", "BEST avx2 box2d"},
 };

@@ -246,17 +246,14 @@ static void prepare_nearest(struct row *row) {
 
 /* ------------------------------------------------------------------------------------------------ builds of an index */
 
-enum build { GOOD, FAST, REFIT };
+enum build { GOOD, FAST };
 
 static void run_build(struct row *row) {
     struct scene *scene = row->scene;
     const narc_index_options options = {.fast = row->question->what == FAST, .workers = &row->workers};
     narc_index *index = row->state;
     narc_error error;
-    if (row->question->what == REFIT)
-        must(narc_refit_index(index, scene->boxes, scene->body_count, &options, NULL, &error), &error);
-    else
-        must(narc_build_index(index, scene->boxes, scene->body_count, &options, &error), &error);
+    must(narc_build_index(index, scene->boxes, scene->body_count, &options, &error), &error);
 }
 
 static void prepare_build(struct row *row) {
@@ -268,6 +265,53 @@ static void prepare_build(struct row *row) {
     row->state = index;
 }
 
+/* ------------------------------------------------------------------------------------------------ updates of an index */
+
+struct moves {
+    narc_index *index;
+    narc_box *boxes;
+    uint32_t *moved;
+    uint64_t random;
+};
+
+/* Some bodies go to where others began, or a little away. */
+static void run_moves(struct row *row) {
+    const struct scene *scene = row->scene;
+    struct moves *m = row->state;
+    for (size_t k = 0; k < row->bench.count; k++) {
+        const uint32_t body = m->moved[k] = (uint32_t)(random_bits(&m->random) % scene->body_count);
+        const bool near = row->question->what < 0;
+        const narc_box from = near ? m->boxes[body] : scene->boxes[random_bits(&m->random) % scene->body_count];
+        const float by = 0.05f * (float)random_between(&m->random, -1, 1);
+        m->boxes[body] = (narc_box){from.min_x + by, from.min_y - by, from.max_x + by, from.max_y - by};
+    }
+    if (row->peer) {
+        const struct asked asked = {.count = row->bench.count, .regions = m->boxes, .moved = m->moved};
+        row->peer->ask(row->peer_state, &asked, NULL);
+    } else {
+        const narc_index_column moved = {m->moved, sizeof *m->moved};
+        const narc_index_options options = {.workers = &row->workers};
+        narc_error error;
+        must(narc_update_index(m->index, m->boxes, scene->body_count, &moved, row->bench.count, &options, &error),
+             &error);
+    }
+}
+
+static void prepare_moves(struct row *row) {
+    const size_t count = (size_t)abs(row->question->what);
+    struct moves *m = row->state = allocate(1, sizeof *m);
+    struct scene *scene = row->scene;
+    index_scene(scene);
+    row->bench.count = count;
+    m->boxes = allocate(scene->body_count, sizeof *m->boxes);
+    m->moved = allocate(count, sizeof *m->moved);
+    memcpy(m->boxes, scene->boxes, scene->body_count * sizeof *m->boxes);
+    if (row->peer)
+        row->peer_state = row->peer->create(scene);
+    must(narc_create_index(NULL, &m->index), NULL);
+    must(narc_build_index(m->index, m->boxes, scene->body_count, NULL, NULL), NULL);
+}
+
 const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, RAY_FAN, false},
                                            {"ray-long", prepare_rays, run_rays, RAY_LONG, false},
                                            {"ray-short", prepare_rays, run_rays, RAY_SHORT, false},
@@ -277,5 +321,8 @@ const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, R
                                            {"distance", prepare_nearest, run_nearest, DISTANCE, false},
                                            {"index-good", prepare_build, run_build, GOOD, false},
                                            {"index-fast", prepare_build, run_build, FAST, false},
-                                           {"index-refit", prepare_build, run_build, REFIT, false},
+                                           {"move-1", prepare_moves, run_moves, 1, false},
+                                           {"move-100", prepare_moves, run_moves, 100, false},
+                                           {"move-2000", prepare_moves, run_moves, 2000, false},
+                                           {"move-near-2000", prepare_moves, run_moves, -2000, false},
                                            {.name = NULL}};

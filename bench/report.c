@@ -96,10 +96,11 @@ static const struct table tables[] = {
      "one by one = impact-$2/$1/flights/BEST/by1 / 5; AVX2 = impact-$2/$1/flights/avx2/by1 / 5;"
      "Box2D = impact-$2/$1/flights/box2d",
      1},
-    {"ns a box of an index", SCENES, "",
-     "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST;"
-     "refitted = index-refit/gons8/$1/BEST",
+    {"ns a box of an index", SCENES, "", "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST",
      1},
+    {"ns a box that moves in an index | so many", SCENES,
+     "1, anywhere = 1; 100 = 100; 2,000 = 2000; 2,000, a little = near-2000",
+     "narc = move-$2/gons8/$1/BEST; Box2D = move-$2/gons8/$1/box2d", 1},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",

@@ -28,6 +28,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
+  python     the Python package: a wheel in out/python/, installed into the environment build/python and tested
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -52,13 +53,16 @@ fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-li
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libccd-dev libgeos-dev"
-test_packages="$run_packages g++ binutils python3 python3-numpy dpkg-dev file meson"
+test_packages="$run_packages g++ binutils python3-dev python3-numpy python3-pytest python3-hypothesis python3-shapely dpkg-dev file
+    meson"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
 windows_packages="$run_packages gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev wine64"
+python_packages="$library_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
+    python3-hypothesis python3-shapely mypy"
 dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
 
 missing_of() {
@@ -524,6 +528,23 @@ coverage() {
     gcovr --root . --object-directory build/coverage --filter 'soa/|kernels/|dispatch/' build/coverage
 }
 
+# In an environment that has Debian's packages and nothing from a network; installed, the wheel needs NumPy alone.
+make_wheel() {
+    require_packages $python_packages
+    rm -rf out/python bindings/python/build
+    mkdir -p out/python
+    say "build/python"
+    /usr/bin/python3 -m venv --system-site-packages build/python || fail "making build/python failed"
+    pip="build/python/bin/python -m pip --disable-pip-version-check --no-input"
+    $pip wheel --no-index --no-build-isolation --no-deps -w out/python bindings/python || fail "building the wheel failed"
+    $pip install --no-index --no-deps --force-reinstall out/python/narc-*-cp311-abi3-*.whl || fail "installing the wheel failed"
+    say "its tests"
+    build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
+    (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
+    say "written"
+    ls -l out/python
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -540,6 +561,7 @@ platforms) platforms ;;
 fuzz) fuzz "${2:-60}" 0 ;;
 soak) soak "${2:-}" ;;
 coverage) coverage ;;
+python) make_wheel ;;
 docs) reference ;;
 bench)
     shift

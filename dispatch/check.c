@@ -28,6 +28,13 @@ narc_status narc_check_count(size_t count, size_t most, const char *items, narc_
     return NARC_OK;
 }
 
+narc_status narc_check_origin(const narc_point *origin, const char *owner, narc_error *error) {
+    if (origin && !(isfinite(origin->x) && isfinite(origin->y)))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, isfinite(origin->x) ? origin->y : origin->x,
+                         "%s.origin is (%g, %g)", owner, origin->x, origin->y);
+    return NARC_OK;
+}
+
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error) {
     if (first > total || *count > total - first)
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)*count,
@@ -200,6 +207,8 @@ struct search {
     const narc_batch *batch;
     narc_index_column column; /* or without a batch: are all of its items below the limit? */
     size_t limit;
+    const narc_shapes *shapes; /* or are the bodies that they name there, and their shapes? */
+    const narc_bodies *bodies;
     size_t first, count, parts;
     atomic_bool fine;
     atomic_size_t bad; /* the first that was found */
@@ -234,17 +243,22 @@ static void look_at_columns(void *argument, size_t part) {
         atomic_store_explicit(&search->fine, false, memory_order_relaxed);
 }
 
-static bool is_body_fine(const narc_batch *batch, narc_index_column column, const narc_bodies *bodies, size_t pair) {
-    const size_t body = column.base ? narc_index_at(column, pair) : pair;
-    return body < bodies->count && narc_index_at(bodies->shape, body) < batch->shapes->count;
+/* The body of an item: that in the column, or without one that of the same number. */
+static size_t find_named(narc_index_column column, size_t item) {
+    return column.base ? narc_index_at(column, item) : item;
+}
+
+static bool is_body_fine(const narc_shapes *shapes, narc_index_column column, const narc_bodies *bodies, size_t item) {
+    const size_t body = find_named(column, item);
+    return body < bodies->count && narc_index_at(bodies->shape, body) < shapes->count;
 }
 
 /* The first place from `place` on of a pair that is not fine, or `end`. */
 static size_t find_bad_place(const narc_batch *batch, size_t place, size_t end) {
     for (; place < end; place++) {
         const size_t pair = narc_pair_at(batch, place);
-        if (pair >= batch->pairs->count || !is_body_fine(batch, batch->pairs->a, batch->a, pair) ||
-            !is_body_fine(batch, batch->pairs->b, batch->b, pair))
+        if (pair >= batch->pairs->count || !is_body_fine(batch->shapes, batch->pairs->a, batch->a, pair) ||
+            !is_body_fine(batch->shapes, batch->pairs->b, batch->b, pair))
             break;
     }
     return place;
@@ -303,6 +317,32 @@ size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count,
     atomic_init(&search.bad, first + count);
     narc_run_parts(workers, count / PART + (count % PART != 0), look_at_items, &search);
     return atomic_load(&search.bad);
+}
+
+static void look_at_named(void *argument, size_t part) {
+    struct search *const search = argument;
+    size_t item, end;
+    find_part(search, part, &item, &end);
+    while (item < end && is_body_fine(search->shapes, search->column, search->bodies, item))
+        item++;
+    if (item < end)
+        keep_first(search, item);
+}
+
+narc_status narc_check_named(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column column,
+                             size_t count, const char *item, const narc_workers *workers, narc_error *error) {
+    struct search search = {.shapes = shapes, .bodies = bodies, .column = column, .count = count};
+    atomic_init(&search.bad, count);
+    narc_run_parts(workers, count / PART + (count % PART != 0), look_at_named, &search);
+    const size_t bad = atomic_load(&search.bad), body = bad < count ? find_named(column, bad) : 0;
+    if (bad == count)
+        return NARC_OK;
+    if (body >= bodies->count)
+        return narc_fail(error, NARC_ERROR_INDEX, bad, (double)body,
+                         "%s %zu: the body is %zu, but there are %zu bodies", item, bad, body, bodies->count);
+    const uint32_t shape = narc_index_at(bodies->shape, body);
+    return narc_fail(error, NARC_ERROR_INDEX, bad, shape, "%s %zu: body %zu has shape %lu, but there are %zu shapes",
+                     item, bad, body, (unsigned long)shape, shapes->count);
 }
 
 /* ------------------------------------------------------------------------------------------------ the whole */

@@ -27,7 +27,7 @@ static const char isa_names[] =
 #include "isa.def"
     ;
 
-static _Atomic(const narc_kernel_table *) active;
+_Atomic(const narc_kernel_table *) narc_active_kernels;
 
 static bool is_supported(const struct isa *isa) { return isa->table && (narc_detect_cpu() & isa->needs) == isa->needs; }
 
@@ -67,17 +67,16 @@ static const narc_kernel_table *table_by_name(const char *name, const char *orig
     return isa->table;
 }
 
-const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error) {
-    const narc_kernel_table *table = atomic_load_explicit(&active, memory_order_acquire);
-    if (table)
-        return table;
+const narc_kernel_table *narc_choose_kernels(narc_status *out_status, narc_error *error) {
     const char *wanted = getenv("NARC_ISA");
-    table = wanted && *wanted ? table_by_name(wanted, "NARC_ISA", out_status, error) : best_table();
+    const narc_kernel_table *const table =
+        wanted && *wanted ? table_by_name(wanted, "NARC_ISA", out_status, error) : best_table();
     if (!table)
         return NULL;
     /* Another thread may have been first, perhaps through narc_set_isa(): then its choice stands. */
     const narc_kernel_table *first = NULL;
-    if (!atomic_compare_exchange_strong_explicit(&active, &first, table, memory_order_acq_rel, memory_order_acquire))
+    if (!atomic_compare_exchange_strong_explicit(&narc_active_kernels, &first, table, memory_order_acq_rel,
+                                                 memory_order_acquire))
         return first;
     return table;
 }
@@ -86,7 +85,7 @@ narc_status narc_set_isa(const char *name, narc_error *error) {
     narc_status status = NARC_OK;
     const narc_kernel_table *table = name ? table_by_name(name, "narc_set_isa", &status, error) : best_table();
     if (table)
-        atomic_store_explicit(&active, table, memory_order_release);
+        atomic_store_explicit(&narc_active_kernels, table, memory_order_release);
     return status;
 }
 

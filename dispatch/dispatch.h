@@ -5,6 +5,8 @@
 #ifndef NARC_DISPATCH_H
 #define NARC_DISPATCH_H
 
+#include <stdatomic.h>
+
 #include "kernels.h"
 #include "narc.h"
 
@@ -13,7 +15,12 @@ enum { NARC_CPU_AVX2 = 1, NARC_CPU_AVX512 = 2, NARC_CPU_NEON = 4, NARC_CPU_SSE41
 unsigned narc_detect_cpu(void);
 
 /* The table in use, chosen at the first call; NULL if NARC_ISA asks for what can't be had (`*out_status` says why). */
-const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error);
+extern _Atomic(const narc_kernel_table *) narc_active_kernels;
+const narc_kernel_table *narc_choose_kernels(narc_status *out_status, narc_error *error);
+static inline const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error) {
+    const narc_kernel_table *const table = atomic_load_explicit(&narc_active_kernels, memory_order_acquire);
+    return table ? table : narc_choose_kernels(out_status, error);
+}
 
 /* "`name` is NULL". */
 narc_status narc_fail_missing(narc_error *error, const char *name);
@@ -23,6 +30,9 @@ narc_status narc_check_reserved(void *const *reserved, size_t count, const char 
 
 /* Are there no more than `most`? `items` are named in the message. */
 narc_status narc_check_count(size_t count, size_t most, const char *items, narc_error *error);
+
+/* Is `owner`.origin finite? NULL is fine. */
+narc_status narc_check_origin(const narc_point *origin, const char *owner, narc_error *error);
 
 /* The margins and the flat angle of a query, which is called `name`. */
 narc_status narc_check_numbers(const narc_query *query, const char *name, narc_error *error);
@@ -74,6 +84,11 @@ size_t narc_find_bad_pair(const narc_batch *batch);
 /* The first of items first .. first + count - 1 of a column that is not below `limit`; first + count if all are. */
 size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
                            const narc_workers *workers);
+
+/* Are there the bodies, and their shapes, that `count` items name in a column, or without one items themselves? `item` is what
+ * a message calls one. */
+narc_status narc_check_named(const narc_shapes *shapes, const narc_bodies *bodies, narc_index_column column,
+                             size_t count, const char *item, const narc_workers *workers, narc_error *error);
 
 /* Checks a set of bodies by itself: their number and columns. */
 narc_status narc_check_set(const narc_bodies *bodies, narc_error *error);

@@ -59,6 +59,10 @@ static void move_row(row_list *list, size_t from, size_t to) {
         list->contacts[to] = list->contacts[from];
 }
 
+static uint32_t get_count(const row_list *list, size_t k) {
+    return list->manifolds ? list->manifolds[k].count : list->contacts[k].count;
+}
+
 static size_t find_body_of(const row_list *list, size_t k) {
     const narc_pairs *const pairs = list->pairs;
     const uint32_t pair = list->manifolds ? list->manifolds[k].pair : list->contacts[k].pair;
@@ -247,8 +251,8 @@ static bool compare_rows(row_list *list, size_t j, size_t k) {
 
 /* Compares row k with those from `first` to `last`, and what it is joined to again with all of them. */
 static void compare_with(row_list *list, size_t k, size_t first, size_t last) {
-    for (size_t i = last + 1; i-- > first && get_row(list, k).count > 0;)
-        if (i != k && get_row(list, i).count > 0 && compare_rows(list, i < k ? i : k, i < k ? k : i)) {
+    for (size_t i = last + 1; i-- > first && get_count(list, k) > 0;)
+        if (i != k && get_count(list, i) > 0 && compare_rows(list, i < k ? i : k, i < k ? k : i)) {
             k = i < k ? i : k;
             i = last + 1;
         }
@@ -262,21 +266,22 @@ static size_t merge_body(row_list *list, size_t kept, size_t k, size_t end) {
     const size_t first = kept;
     for (; k < end; k++) {
         move_row(list, k, kept);
-        compare_with(list, kept, kept - first > LOOK_BACK ? kept - LOOK_BACK : first, kept);
-        kept += get_row(list, kept).count > 0;
+        if (kept > first)
+            compare_with(list, kept, kept - first > LOOK_BACK ? kept - LOOK_BACK : first, kept);
+        kept += get_count(list, kept) > 0;
     }
     size_t left = first;
     for (size_t j = first; j < kept; j++)
-        if (get_row(list, j).count > 0)
+        if (get_count(list, j) > 0)
             move_row(list, j, left++);
     return left;
 }
 
 static size_t merge_rows(row_list *list, size_t count) {
-    size_t kept = 0;
+    size_t kept = 0, next = count > 0 ? find_body_of(list, 0) : 0;
     for (size_t k = 0, end; k < count; k = end) {
-        const size_t body = find_body_of(list, k);
-        for (end = k + 1; end < count && find_body_of(list, end) == body;)
+        const size_t body = next;
+        for (end = k + 1; end < count && (next = find_body_of(list, end)) == body;)
             end++;
         kept = merge_body(list, kept, k, end);
     }

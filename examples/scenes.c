@@ -304,6 +304,45 @@ static void build_dominoes(world *w, uint64_t seed) {
     add_ball(w, 0.4, t.x + 1.6, t.y + 0.4, 0.6f)->velocity.x = 1;
 }
 
+/* ------------------------------------------------------------------------------------------------ platforms */
+
+void add_platform(world *w, double left, double right, double height) {
+    track t = {.x = right, .y = height, .normal = pi / 2};
+    put_arc(&t, 0, 0);
+    put_edge(&t, right - left);
+    put_arc(&t, 0, 0);
+    if (w->error.status == NARC_OK)
+        world_add_platform(w, t.arcs, t.count, 0.6f);
+}
+
+/* A floor, and above it platforms, the second of which goes to and fro, and the third up and down. */
+static void build_platforms(world *w, uint64_t seed) {
+    add_block(w, 40, 2, 0, -1);
+    add_platform(w, -6, 6, 2);
+    add_platform(w, -4, 4, 4);
+    add_platform(w, -5, 5, 6);
+    for (int k = 0; k < KINDS; k++)
+        add_body(w, make_body(add_kind(w, k, 0.8), random_between(&seed, -3, 3), 1 + (float)k, 0));
+}
+
+/* In turns a body jumps, and the next one drops for a quarter of a second. */
+static narc_status act_platforms(world *w, long step) {
+    const float turn = (float)(step % 240) < 120 ? 1 : -1;
+    world_move_platform(w, 2, (vec){turn, 0});
+    world_move_platform(w, 3, (vec){0, 0.5f * turn});
+    for (size_t k = 1; k < w->body_count; k++)
+        w->bodies[k].drops = w->bodies[k].drops && step % 15 != 0;
+    if (step % 30 != 0)
+        return NARC_OK;
+    world_body *const body = &w->bodies[1 + (size_t)(step / 30) % (w->body_count - 1)];
+    world_wake_body(body);
+    if (step % 60 == 0)
+        body->velocity.y = 8;
+    else
+        body->drops = true;
+    return NARC_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------ the list */
 
 const scene scenes[] = {
@@ -318,6 +357,7 @@ const scene scenes[] = {
     {"looping", "a marble comes through it, another one does not", 3.2f, 64, build_looping, NULL},
     {"bowl", "a box slides in it, and rests on two corners", 20, 32, build_bowl, NULL},
     {"dominoes", "fall on a slope", 8, 128, build_dominoes, NULL},
+    {"platforms", "bodies jump and drop through them", 20, 64, build_platforms, act_platforms},
     {0},
 };
 

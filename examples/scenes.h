@@ -33,6 +33,9 @@ typedef struct track {
 void put_arc(track *t, double radius, double sweep);
 void put_edge(track *t, double length);
 
+/* From left to right. */
+void add_platform(world *w, double left, double right, double height);
+
 /* A looping of radius 2 around (x, 2), a ramp on its left, and on the ramp a marble, so far above its lowest place. */
 void add_looping(world *w, double x, double height);
 

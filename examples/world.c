@@ -108,7 +108,8 @@ void world_remove_body(world *w, world_body *body) {
 }
 
 /* Solid however deep: what is fast against it is so by its own measure. */
-narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction) {
+static narc_status add_entries(world *w, const narc_arc *arcs, size_t count, bool closed, float friction,
+                               uint32_t platform) {
     const size_t room = w->capacity - w->body_count - w->ground_count;
     const narc_chain_options options = {.closed = closed, .first_run = w->run_count};
     narc_chain_entry *const entries = calloc(room + 1, sizeof *entries);
@@ -125,11 +126,35 @@ narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool 
                                                                     .kind = NARC_STATIC,
                                                                     .friction = friction,
                                                                     .id = ++w->last_id,
+                                                                    .owner = UINT32_MAX,
                                                                     .run = entry->run,
+                                                                    .platform = platform,
                                                                     .stop = 1};
     }
     free(entries);
     return status;
+}
+
+narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction) {
+    return add_entries(w, arcs, count, closed, friction, 0);
+}
+
+narc_status world_add_platform(world *w, const narc_arc *arcs, size_t count, float friction) {
+    const narc_status status = add_entries(w, arcs, count, false, friction, w->platform_count + 1);
+    w->platform_count += status == NARC_OK;
+    return status;
+}
+
+void world_move_platform(world *w, uint32_t platform, vec velocity) {
+    world_body *const ground = w->bodies + w->body_count;
+    for (size_t k = 0; k < w->ground_count; k++)
+        if (ground[k].platform == platform)
+            ground[k].velocity = velocity;
+    for (size_t k = 0; w->result && k < w->result->count; k++) { /* bodies stand before ground in a pair */
+        const world_contact *const c = world_contact_of(w, k);
+        if (c->touching && c->b->platform == platform)
+            world_wake_body(c->a);
+    }
 }
 
 narc_status world_pin(world *w, world_body *a, world_body *b, vec point) {
@@ -153,7 +178,7 @@ world_body *world_find_body(const world *w, uint64_t id) {
 /* What each body will move, so that pairs that meet on the way are found; nothing has moved so far. */
 static void predict_motion(world *w) {
     const float time = w->settings.time_step;
-    for (size_t k = 0; k < w->body_count; k++) {
+    for (size_t k = 0; k < w->body_count + w->ground_count; k++) {
         world_body *body = &w->bodies[k];
         const bool falls = body->inverse_mass > 0 && body->kind == 0;
         body->motion = scale(time, falls ? add(body->velocity, scale(time, w->settings.gravity)) : body->velocity);

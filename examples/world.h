@@ -34,10 +34,12 @@ typedef struct world_body {
     vec velocity;
     float spin; /* radians per second */
     float friction, restitution;
+    bool drops; /* it falls through platforms */
 
     /* What follows is the world's. */
     uint64_t id;                         /* never given twice, whatever number the body has */
     uint32_t run;                        /* of ground: see narc_chain_entry */
+    uint32_t platform;                   /* of ground: its number, from 1 on; 0: it is solid */
     vec start;                           /* where it was added */
     float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
     vec motion;                          /* in this step, at first if nothing stops it, then as it was */
@@ -95,6 +97,7 @@ typedef struct world_contact {
     float margin;
     float depth;   /* above 0: the bodies could pass through each other in this step, and may get so deep */
     bool touching; /* has begun and has not ended */
+    bool passes;   /* one of them is a platform, and the other came from behind, or drops: until it is clear of it */
     unsigned point_count;
     float friction, restitution;
     float rolling_impulse; /* of rotation */
@@ -113,7 +116,7 @@ typedef struct world {
     world_shape *shapes;
     world_body *bodies; /* behind them the ground's entries, which nothing but contacts knows of */
     size_t body_count, ground_count, capacity, pair_room;
-    uint32_t run_count;
+    uint32_t run_count, platform_count;
     uint64_t last_id;
     narc_contacts *contacts;        /* pairs that are close, their rows, and a world_contact of each */
     const narc_step_result *result; /* of this step; `contacts` owns it */
@@ -137,6 +140,12 @@ narc_status world_add_body(world *w, world_body body);
 
 /* Adds a chain (narc_chains.h), whose entries are static bodies behind all others. */
 narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction);
+
+/* The same of a platform, which bodies stand on, but pass from behind, and where they drop. The first one has number 1. */
+narc_status world_add_platform(world *w, const narc_arc *arcs, size_t count, float friction);
+
+/* A platform moves like that from now on, and what stands on it with it. */
+void world_move_platform(world *w, uint32_t platform, vec velocity);
 
 /* Joins two bodies at a point, about which they may turn. Neither can be removed, nor the last body in its place. */
 narc_status world_pin(world *w, world_body *a, world_body *b, vec point);

@@ -39,6 +39,7 @@ narc_status world_update_contacts(world *w) {
                             .id = NARC_COLUMN(w->bodies, id),
                             .run = NARC_COLUMN(w->bodies, run),
                             .filter = &filter,
+                            .front_only = w->platform_count > 0,
                             .workers = &w->settings.workers};
     const narc_status status = narc_update_contacts(w->contacts, w->store, &step, &w->result, &w->error);
     w->event_count = 0;
@@ -111,6 +112,23 @@ static void make_contact(world_contact *c, const narc_manifold *row, const narc_
     c->rolling_impulse = c->point_count > 0 ? c->rolling_impulse : 0;
 }
 
+/* Does a body pass the other one, a platform? It drops; or it was not there before, and rises, or is deeper by now than it may
+ * have come from the front: narc tells of what comes from behind when its middle is in front (front_only). It passes until it
+ * is clear. */
+static bool passes(const world *w, const world_contact *c, const narc_manifold *row, const narc_manifold *more,
+                   size_t more_count) {
+    const vec motion = subtract(c->b->motion, c->a->motion), normal = {row->normal_x, row->normal_y};
+    const float way = length(motion) + c->a->turn_reach + c->b->turn_reach;
+    float nearest = INFINITY;
+    if (c->a->platform + c->b->platform == 0 || row->count == 0)
+        return false;
+    for (size_t k = 0; k <= more_count; k++, row = more++)
+        for (unsigned i = 0; i < row->count; i++)
+            nearest = fminf(nearest, row->point[i].separation);
+    const bool is_new = c->point_count == 0 && (dot(motion, normal) > 0 || nearest < -w->settings.margin - way);
+    return c->a->drops || c->b->drops || ((c->passes || is_new) && nearest < 0);
+}
+
 /* Has the normal of a row that followed its bodies turned? They turned together, as in a column that falls over. */
 static bool has_turned(const world *w, const world_contact *c, const narc_manifold *row) {
     const vec turned = subtract((vec){row->normal_x, row->normal_y}, c->points[0].normal);
@@ -132,11 +150,16 @@ void world_make_contacts(world *w) {
         while (more < end && more->pair == slot)
             more++;
         if (r->state[slot] & NARC_TURNED) /* what is known is that of (b, a) */
-            *c = (world_contact){.a = c->a, .b = c->b, .touching = c->touching};
+            *c = (world_contact){.a = c->a, .b = c->b, .touching = c->touching, .passes = c->passes};
         find_depth(w, c);
         const narc_manifold *const row = &r->manifolds[slot];
-        if (r->state[slot] & NARC_ASKED || (r->state[slot] & NARC_FOLLOWED && has_turned(w, c, row)))
-            make_contact(c, row, first, (size_t)(more - first));
+        const size_t more_count = (size_t)(more - first);
+        const bool passed = c->passes;
+        c->passes = passes(w, c, row, first, more_count);
+        if (c->passes)
+            make_contact(c, &(narc_manifold){.count = 0}, NULL, 0);
+        else if (passed || r->state[slot] & NARC_ASKED || (r->state[slot] & NARC_FOLLOWED && has_turned(w, c, row)))
+            make_contact(c, row, first, more_count);
     }
 }
 
@@ -150,7 +173,7 @@ narc_status world_stop_bullets(world *w) {
     before.y = NARC_POSITION_COLUMN(all, from.y);
     before.cosine = NARC_COLUMN(all, from_rotation.x);
     before.sine = NARC_COLUMN(all, from_rotation.y);
-    for (world_body *body = w->bodies; body < end; body++)
+    for (world_body *body = w->bodies; body < end + w->ground_count; body++)
         body->motion = subtract(body->position, body->from);
     for (size_t k = 0; k < w->result->count; k++) {
         const uint32_t slot = w->result->order[k];
@@ -159,9 +182,10 @@ narc_status world_stop_bullets(world *w) {
         const float deepest = fminf(c->points[0].separation, c->points[1].separation);
         const narc_pairs one = {.count = 1, .a = {&pair[0], 0}, .b = {&pair[1], 0}};
         const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest),
-                                           .tolerance = 0.01f * c->depth};
+                                           .tolerance = 0.01f * c->depth,
+                                           .front_only = w->platform_count > 0};
         narc_impact hit = {.count = 0};
-        if (c->depth > 0 &&
+        if (c->depth > 0 && !c->passes &&
             narc_cast_pairs(w->store, &before, &motions, &one, NULL, &options, &hit, 1, &w->error) != NARC_OK)
             return w->error.status;
         if (hit.count > 0)

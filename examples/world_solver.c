@@ -190,9 +190,10 @@ static void integrate_velocities(world *w, float time) {
 }
 
 static void integrate_positions(world *w, float time) {
-    for (size_t k = 0; k < w->body_count; k++) {
+    for (size_t k = 0; k < w->body_count + w->ground_count; k++) {
         world_body *body = &w->bodies[k];
-        if (body->kind & (NARC_STATIC | NARC_ASLEEP))
+        const bool rests = body->velocity.x == 0 && body->velocity.y == 0;
+        if (body->kind & NARC_ASLEEP || (body->kind & NARC_STATIC && (rests || body->platform == 0)))
             continue;
         const float turn = time * body->spin;
         const float cosine = body->cosine - turn * body->sine, sine = body->sine + turn * body->cosine;

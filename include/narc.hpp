@@ -453,6 +453,19 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
                                        : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
 }
 
+struct box_options : detail::options<box_options, narc_box_options> {
+    box_options &margin(float value) noexcept { return set(&narc_box_options::margin, value); }
+    box_options &motion(narc_float_column x, narc_float_column y) noexcept {
+        return set(&narc_box_options::motion_x, x).set(&narc_box_options::motion_y, y);
+    }
+    box_options &range(size_t from, size_t items) noexcept {
+        return set(&narc_box_options::first, from).set(&narc_box_options::count, items);
+    }
+    box_options &skipped(size_t &out) noexcept { return set(&narc_box_options::out_skipped, &out); }
+    box_options &origin(const narc_point &value) noexcept { return set(&narc_box_options::origin, &value); }
+    box_options &origin(const narc_point &&) = delete;
+};
+
 class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_phase, narc_destroy_broad_phase> {
   public:
     using owner::owner;
@@ -494,6 +507,8 @@ struct step : detail::options<step, narc_step> {
     step &run(narc_index_column value) noexcept { return set(&narc_step::run, value); }
     step &filter(const narc_pair_filter &value) noexcept { return set(&narc_step::filter, &value); }
     step &filter(const narc_pair_filter &&) = delete;
+    step &origin(const narc_point &value) noexcept { return set(&narc_step::origin, &value); }
+    step &origin(const narc_point &&) = delete;
     // These are the pairs that there are; `same`: those of the last step.
     step &pairs(const narc_pairs &value, bool same = false) noexcept {
         return set(&narc_step::pairs, &value).set(&narc_step::same_pairs, same ? 1u : 0u);
@@ -565,6 +580,8 @@ class contacts : public detail::owner<narc_contacts, detail::create_contacts, na
 struct index_options : detail::options<index_options, narc_index_options> {
     index_options &category(narc_word_column value) noexcept { return set(&narc_index_options::category, value); }
     index_options &fast() noexcept { return set(&narc_index_options::fast, 1u); }
+    index_options &origin(const narc_point &value) noexcept { return set(&narc_index_options::origin, &value); }
+    index_options &origin(const narc_point &&) = delete;
 };
 
 struct index_query : detail::options<index_query, narc_index_query> {
@@ -580,9 +597,17 @@ class index : public detail::owner<narc_index, narc_create_index, narc_destroy_i
     result<void> build(span<const narc_box> boxes, const narc_index_options &options = {}) {
         return detail::ask<void>(narc_build_index, get(), boxes.data(), boxes.size(), &options);
     }
-    // The slack.
-    result<float> refit(span<const narc_box> boxes, const narc_index_options &options = {}) {
-        return detail::ask<float>(narc_refit_index, get(), boxes.data(), boxes.size(), &options);
+    // Of all boxes those that are listed have changed; without a list all may have.
+    result<void> update(span<const narc_box> boxes, span<const uint32_t> changed,
+                        const narc_index_options &options = {}) {
+        const narc_index_column list = {changed.data(), sizeof(uint32_t)};
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), &list, changed.size(), &options);
+    }
+    result<void> update(span<const narc_box> boxes, const narc_index_options &options = {}) {
+        return detail::ask<void>(narc_update_index, get(), boxes.data(), boxes.size(), nullptr, size_t{0}, &options);
+    }
+    result<narc_index_statistics> describe() const {
+        return detail::ask<narc_index_statistics>(narc_describe_index, get());
     }
     // Its columns stay until the next query.
     result<narc_pairs> query(span<const narc_box> boxes, const narc_index_query &query = {}) {

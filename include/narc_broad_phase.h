@@ -32,26 +32,30 @@ extern "C" {
  *                       motion, and everywhere between.
  *   first, count        a sub-range of the bodies; count 0: to the end. Only its boxes are written
  *   workers             threads to use; NULL: the calling one
- *   out_skipped         how many bodies have no box; NULL: nobody asks */
+ *   out_skipped         how many bodies have no box; NULL: nobody asks
+ *   origin              where in the world the boxes' (0, 0) is, finite; NULL: at its own. Boxes are float: far from it they
+ *                       grow by roundings, so that the more pairs are found the further away the bodies are. Positions are
+ *                       subtracted in double precision */
 typedef struct narc_box_options {
     float margin;
     narc_float_column motion_x, motion_y;
     size_t first, count;
     const narc_workers *workers;
     size_t *out_skipped;
-    void *reserved[4]; /* NULL */
+    const narc_point *origin;
+    void *reserved[3]; /* NULL */
 } narc_box_options;
 
-/* The axis-aligned boxes of all bodies in the world, as tight as single precision allows: never too small for the body,
- * however large its position, and on each side at most NARC_BOX_ROOM * (|coordinate of the position| + |motion| +
- * margin + extent) too large, the extent as in narc.h. (Where a shape's arcs were given a little apart, see
+/* The axis-aligned boxes of all bodies, in the world's axes, as tight as single precision allows: never too small for the body,
+ * however large its position, and on each side at most NARC_BOX_ROOM * (|coordinate of the position, from the origin| +
+ * |motion| + margin + extent) too large, the extent as in narc.h. (Where a shape's arcs were given a little apart, see
  * NARC_TOLERANCE, that much more is uncertain.)
  *   options    NULL: defaults
  *   out_boxes  bodies->count items, overlapping none of the inputs. A body that is broken (see narc_bodies), that has a
  *              NaN or an infinity as its motion, or whose box is beyond the range of floats, gets the empty box from
  *              (INFINITY, INFINITY) to (-INFINITY, -INFINITY), which narc_find_pairs() leaves out.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, 2^32 bodies or more, a
- * negative margin), NARC_ERROR_NOT_FINITE (margin), NARC_ERROR_INDEX (`error` names the body and the shape), and as
+ * negative margin), NARC_ERROR_NOT_FINITE (margin, origin), NARC_ERROR_INDEX (`error` names the body and the shape), and as
  * narc_find_overlaps() for NARC_ISA. No bodies: NARC_OK. Allocates nothing. Thread-safe.
  * Source: the support function of an arc shape (docs/algorithm.md) along four axes; kernels/broad/boxes.c. */
 NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies,

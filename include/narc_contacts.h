@@ -96,6 +96,9 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *                       not looked at. Left out ({0}, base and stride): all may. An empty list is one, as NARC_ARRAY()
  *                       makes it
  *   workers             threads to use; NULL: the calling one
+ *   origin              a place near the bodies, finite, such as where the camera is; NULL: (0, 0). Boxes are float, and
+ *                       relative to it: further away than 100,000 times the skin they grow by roundings, and there are more
+ *                       pairs (narc_box_options). It may be another one in each step: pairs, rows and the caller's bytes stay
  * Columns have one item for each body. */
 typedef struct narc_step {
     const narc_bodies *bodies;
@@ -111,7 +114,8 @@ typedef struct narc_step {
     narc_index_column moved;
     size_t moved_count;
     const narc_workers *workers;
-    void *reserved[4]; /* NULL */
+    const narc_point *origin;
+    void *reserved[3]; /* NULL */
 } narc_step;
 
 /* Something that began or ended to touch: a pair with a row, or with a sensor an overlap.

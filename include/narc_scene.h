@@ -5,8 +5,8 @@
  *
  * The mental model
  *
- *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once for what stands
- *   still, and refitted or built anew for what moves. Questions go through it and answer in rows, exactly: boxes only
+ *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once, and
+ *   updated with what moves, comes and goes. Questions go through it and answer in rows, exactly: boxes only
  *   say which bodies need not be asked.
  *
  *       narc_query_index()    which boxes meet these boxes?            pairs (query, body)
@@ -14,10 +14,12 @@
  *       narc_cast_shapes()    what does each moving body hit first?    narc_impact
  *       narc_find_nearest()   which bodies are nearest to a point?     narc_distance
  *
- *   Two ask of pairs of bodies, and need no index:
+ *   Others ask of pairs, and need no index:
  *
+ *       narc_cast_ray_pairs() does a ray hit a body, and where?        narc_ray_hit
  *       narc_cast_pairs()     when do two moving bodies meet?          narc_impact
  *       narc_find_distances() how far is a point from a body?          narc_distance
+ *       narc_find_inside()    is a point within a body?                bits
  *
  *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
  *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
@@ -65,32 +67,57 @@ NARC_API void narc_destroy_index(narc_index *index);
 /* What is 0 or NULL is left out, as all is for {0}.
  *   category   64 bits for each box, which questions compare with their masks; left out: all bits set
  *   fast       1: in the order of a curve, in a fraction of the time; questions then take up to twice as long
- *   workers    threads to use; NULL: the calling one. The index does not depend on them */
+ *   workers    threads to use; NULL: the calling one. The index does not depend on them
+ *   origin     that of the boxes (narc_box_options), finite; NULL: (0, 0). Rays, points, movers are in the world as ever, and
+ *              boxes that ask are relative to it, too */
 typedef struct narc_index_options {
     narc_word_column category;
     uint32_t fast;
     const narc_workers *workers;
-    void *reserved[4]; /* NULL */
+    const narc_point *origin;
+    void *reserved[3]; /* NULL */
 } narc_index_options;
 
 /* Makes the index one of these boxes; box k is that of body k, as narc_compute_boxes() gives them. An empty box is
  * found by no question.
  *   count     at most 2^31
  *   options   NULL: defaults
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY, and those for NARC_ISA; the index is as it was then.
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE (origin), NARC_ERROR_MEMORY, and those for NARC_ISA; the index is as it
+ * was then.
  * Fast: of boxes whose centres lie closer together than 1/65,536 of all of them are apart, no order is made.
  * Source: k-d splits at medians (Bentley 1975); sorting by Morton's curve (Morton 1966) if fast. */
 NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, narc_error *error);
 
-/* Fits the index to bodies that have moved a little, as many boxes as it was built from: nodes keep their bodies.
- *   options     as when building; `fast` has no meaning
- *   out_slack   NULL: nobody asks. The mean perimeter of its nodes, as a multiple of what it was when it was built:
- *               questions take longer as it grows; above 1.5 it should be built anew
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one), and those for
- * NARC_ISA; the index is as it was then. */
-NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
-                                      const narc_index_options *options, float *out_slack, narc_error *error);
+/* Brings the index up to date with boxes of which some have changed, in proportion to how many: afterwards it answers as one
+ * that was built from these boxes. Where bodies go far, parts of the tree are built anew, now and then all of it, so that it
+ * stays good. Bodies keep their numbers; one that is gone has an empty box, one that comes a number of its own.
+ *   boxes, count    all of them. Those with numbers from the last count on have come, if there were fewer, and those from
+ *                   `count` on are gone, if there were more
+ *   changed         the numbers of all other boxes that are not as they were, or whose category is not, `changed_count` of
+ *                   them, in any order. NULL: all may have changed
+ *   options         as when building, the columns those of all boxes. With a category column where it was built without, or
+ *                   the other way around, it is built anew; with another origin all boxes have changed
+ * Errors: those of narc_build_index(), NARC_ERROR_INDEX (no such box); the index is as it was then. */
+NARC_API narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t count,
+                                       const narc_index_column *changed, size_t changed_count,
+                                       const narc_index_options *options, narc_error *error);
+
+/* How a tree is, for who tunes.
+ *   boxes, bodies    numbers; those whose boxes are not empty
+ *   nodes, leaves    all nodes; those of the lowest level
+ *   depth            levels
+ *   bytes            of all memory that the index has
+ *   mean_perimeter   of the nodes' boxes
+ *   slack            their perimeters together, as a multiple of what they were when the whole tree was built */
+typedef struct narc_index_statistics {
+    size_t boxes, bodies, nodes, leaves, depth, bytes;
+    double mean_perimeter, slack;
+} narc_index_statistics;
+
+/* Looks at all nodes. Errors: NARC_ERROR_ARGUMENT (NULL). */
+NARC_API narc_status narc_describe_index(const narc_index *index, narc_index_statistics *out_statistics,
+                                         narc_error *error);
 
 /* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
  * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
@@ -116,7 +143,7 @@ typedef struct narc_index_query {
 } narc_index_query;
 
 /* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).
- *   boxes       `count` query boxes, at most 2^32 - 2; an empty one finds nothing
+ *   boxes       `count` query boxes, at most 2^32 - 2, from the index' origin; an empty one finds nothing
  *   query       NULL: defaults
  *   out_pairs   columns a (the query's number) and b (the body), which belong to the index until its next call of this
  *               function or of narc_cast_shapes(), or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:
@@ -212,6 +239,17 @@ NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *
                                     const narc_rays *rays, const narc_ray_options *options, narc_ray_hit *out_rows,
                                     size_t capacity, narc_error *error);
 
+/* Whether each ray hits one body, and where: row k is that of ray k and body k of the column, or without one of body k itself.
+ *   body       numbers of bodies, one for each ray; with a stride of 0 all rays ask of the same one; NULL: ray k and body k
+ *   options    NULL: defaults. What counts of it is inside, out_skipped and search.workers
+ *   out_rows   room for `capacity` rows, at least rays->count
+ * Rows are those of narc_cast_rays() with an index of that body alone, to the last bit, whatever the bodies' boxes.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
+ * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. Not in narc_small.wasm. */
+NARC_API narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
+                                         const narc_index_column *body, const narc_ray_options *options,
+                                         narc_ray_hit *out_rows, size_t capacity, narc_error *error);
+
 /* ------------------------------------------------------------------------------------------------ casts */
 
 /* How bodies move during a step, `count` as the bodies: from their place to their place + (x, y), while they turn at a
@@ -283,19 +321,20 @@ typedef struct narc_impact {
  *   options         NULL: defaults
  *   out_rows        room for `capacity` rows, at least pairs->count
  * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
- * no further than the target at the start hit at fraction 0, parting or not; those with `parting` only if they come deeper. Without turning, such a cast is exact, too: separations are convex in time. With turning a body is clear where
- * the cast sees it so at one of the times at which it looks, so one that is clear for a short time and comes back hits at 0, or
- * does not hit if it comes no deeper than it was. Without turning, the time is exact up to
- * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
+ * no further than the target at the start hit at fraction 0, parting or not; with `parting` only if they come deeper.
+ * Without turning, the time is exact up to rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
  * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
  * and none below the target earlier; a miss has none below the target (up to the same rounding, but three times that of
  * what turning moves). Where the least separation lies within target .. target + tolerance both are lawful. Turning
  * counts for what it moves: a circle about its position is cast as if it did not turn, to the bit.
+ * Let go, what does not turn never comes back to a body, as separations are convex in time, but for concave arcs. There, and
+ * with turning, a body is clear where the cast sees it so at one of the times that it looks at: one that is clear for a
+ * short time only and comes back hits at 0, or not at all if it comes no deeper than it was.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
  * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
  * body comes past an open end; not by a body that comes from behind, before it has left the piece.
- * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target, tolerance, parting, or
- * one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance or parting below 0), NARC_ERROR_NOT_FINITE (target,
+ * tolerance, parting, or one of `targets`, whose number is the error's index), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                                      const narc_pairs *pairs, const narc_motions *other_motions,
@@ -360,6 +399,16 @@ typedef struct narc_distance {
 NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies,
                                          const narc_points *points, const narc_index_column *body,
                                          const narc_workers *workers, narc_distance *out_rows, narc_error *error);
+
+/* Is each point within one body? Bit k % 64 of out_bits[k / 64] is that of point k; the bits behind the last are 0.
+ *   body       as in narc_find_distances(); NULL: point k and body k. Fastest where points of one body follow each other
+ *   workers    threads to use; NULL: the calling one
+ *   out_bits   NARC_BIT_WORDS(points->count) words
+ * The bit is set exactly if the separation that narc_find_distances() tells is below 0, so a point on the outline is not
+ * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. Not in narc_small.wasm. */
+NARC_API narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                                      const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
+                                      narc_error *error);
 
 /* What is 0 or NULL has its default, as all has for {0}.
  *   search     mask, ignored, workers, owners: of each thing the nearest part counts. Within a thing that is the part which

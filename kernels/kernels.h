@@ -111,12 +111,14 @@ typedef struct narc_kept_row {
     float radius_a, radius_b, apart, lever;
 } narc_kept_row;
 
-/* One pair by itself: the position of B less that of A, as a batch has it, and the rest of both bodies. */
+/* One pair by itself. Of the batch the shapes are read and, of manifolds, the flat sine and the query's second margin. */
 typedef struct narc_one_pair {
-    uint32_t number; /* in its batch */
-    uint32_t shape_a, shape_b;
-    float x, y, cosine_a, sine_a, scale_a, cosine_b, sine_b, scale_b;
+    const narc_batch *batch;
+    const narc_body *a, *b;
+    void *out_row;
     float margin;
+    uint32_t number; /* in its batch */
+    bool manifold;
 } narc_one_pair;
 
 /* The batch's number of the pair that is asked of at `place`. */
@@ -141,6 +143,7 @@ typedef struct narc_box_batch {
     const narc_bodies *bodies;
     float margin;
     narc_float_column motion_x, motion_y; /* base NULL: none */
+    const narc_point *origin;             /* NULL: (0, 0) */
 } narc_box_batch;
 
 /* What the kernel of parts works on. */
@@ -172,6 +175,7 @@ typedef struct narc_ray_batch {
     const narc_ray_options *options;
     size_t most; /* rows of each ray, at least 1 */
     narc_ray_hit *out;
+    narc_index_column body; /* of pairs: the body of each ray; base NULL: ray k has body k */
 } narc_ray_batch;
 
 /* What the kernel of regions works on. */

@@ -168,6 +168,8 @@ struct narc_broad_phase {
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */
     narc_box *boxes_now, *kept_boxes;
+    narc_point origin;      /* of the coordinates of both, in the world */
+    bool reframed;          /* it is another one than in the last call */
     narc_known_poses known; /* those of boxes_now */
     narc_body_filter *filters;
     uint8_t *kinds;

@@ -32,24 +32,29 @@ void narc_destroy_index(narc_index *index) {
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
-/* The nodes of one level above so many boxes or nodes. */
+/* The nodes of one level above so many slots or nodes. */
 static size_t count_parents(size_t count) { return (count + NARC_NODE_SLOTS - 1) / NARC_NODE_SLOTS; }
 
-/* All nodes above so many boxes. */
+size_t narc_count_index_slots(size_t bodies, bool packed) {
+    const size_t room = packed || bodies <= NARC_NODE_SLOTS ? 0 : bodies / 3;
+    return count_parents(bodies > 0 ? bodies + room : 1) * NARC_NODE_SLOTS;
+}
+
+/* All nodes above so many slots. */
 static size_t count_all_nodes(size_t count) {
     size_t all = 0;
-    while (count > 1 || (count == 1 && all == 0)) {
+    while (count > 1) {
         count = count_parents(count);
         all += count;
     }
     return all;
 }
 
-void narc_lay_out_index(narc_index *index, size_t count) {
-    size_t first = 0;
+void narc_lay_out_index(narc_index *index, size_t slots) {
+    size_t first = 0, count = slots;
     unsigned level = 0;
-    index->count = count;
-    for (; count > 1 || (count == 1 && level == 0); level++) {
+    index->slots = slots;
+    for (; count > 1; level++) {
         count = count_parents(count);
         index->first_node[level] = (uint32_t)first;
         index->node_count[level] = (uint32_t)count;
@@ -69,15 +74,21 @@ static size_t fill_lines(size_t bytes) { return (bytes + LINE - 1) / LINE * LINE
 
 /* Memory for a tree of so many boxes: what lies where in it, from its first whole cache line on. */
 struct tree_layout {
-    size_t body, order, end;
+    size_t home, body, place, waiting, filled, changes, order, touched, end;
 };
 
 static struct tree_layout lay_out_tree(size_t count) {
-    const size_t nodes = count_all_nodes(count);
+    const size_t slots = narc_count_index_slots(count, false), nodes = count_all_nodes(slots);
     struct tree_layout at;
-    at.body = fill_lines(nodes * sizeof(narc_index_node) + NARC_NODE_PADDING * sizeof(float));
-    at.order = at.body + fill_lines((count_parents(count) * NARC_NODE_SLOTS + NARC_NODE_PADDING) * sizeof(uint32_t));
-    at.end = at.order + fill_lines(nodes);
+    at.home = fill_lines(nodes * sizeof(narc_index_node) + NARC_NODE_PADDING * sizeof(float));
+    at.body = at.home + fill_lines(slots / NARC_NODE_SLOTS * sizeof(narc_box));
+    at.place = at.body + fill_lines((slots + NARC_NODE_PADDING) * sizeof(uint32_t));
+    at.waiting = at.place + fill_lines(count * sizeof(uint32_t));
+    at.filled = at.waiting + fill_lines(count * sizeof(uint32_t));
+    at.changes = at.filled + fill_lines(nodes * sizeof(uint32_t));
+    at.order = at.changes + fill_lines(nodes * sizeof(uint32_t));
+    at.touched = at.order + fill_lines(nodes);
+    at.end = at.touched + fill_lines(nodes);
     return at;
 }
 
@@ -86,6 +97,10 @@ struct piece {
     void **place, *fresh;
     size_t *capacity, count, bytes;
 };
+
+bool narc_has_index_room(const narc_index *index, size_t count, bool masks) {
+    return count <= index->tree_capacity && (!masks || count <= index->mask_capacity);
+}
 
 narc_status narc_reserve_index(narc_index *index, size_t count, bool masks) {
     enum { BYTES = 64 }; /* for a box, more than any piece of memory takes */
@@ -97,7 +112,7 @@ narc_status narc_reserve_index(narc_index *index, size_t count, bool masks) {
         {&index->tree_memory, NULL, &index->tree_capacity, count, tree.end + LINE},
         {&index->build_memory, NULL, &index->build_capacity, count, n * NARC_INDEX_BUILD_BYTES},
         {&index->mask_memory, NULL, &index->mask_capacity, masks ? count : 0,
-         count_all_nodes(n) * NARC_NODE_SLOTS * sizeof(uint64_t)},
+         count_all_nodes(narc_count_index_slots(n, false)) * NARC_NODE_SLOTS * sizeof(uint64_t)},
     };
     enum { PIECES = sizeof pieces / sizeof pieces[0] };
     bool fine = true;
@@ -120,10 +135,28 @@ narc_status narc_reserve_index(narc_index *index, size_t count, bool masks) {
     if (pieces[0].fresh) {
         char *const base = (char *)index->tree_memory + (LINE - (uintptr_t)index->tree_memory % LINE) % LINE;
         index->nodes = (narc_index_node *)(void *)base;
+        index->home = (narc_box *)(void *)(base + tree.home);
         index->body = (uint32_t *)(void *)(base + tree.body);
+        index->place = (uint32_t *)(void *)(base + tree.place);
+        index->waiting = (uint32_t *)(void *)(base + tree.waiting);
+        index->filled = (uint32_t *)(void *)(base + tree.filled);
+        index->changes = (uint32_t *)(void *)(base + tree.changes);
         index->order = (uint8_t *)(base + tree.order);
+        index->touched = (uint8_t *)(base + tree.touched);
     }
     return NARC_OK;
+}
+
+size_t narc_count_index_bytes(const narc_index *index) {
+    size_t bytes = sizeof *index;
+    if (index->tree_memory)
+        bytes += lay_out_tree(index->tree_capacity).end + LINE;
+    if (index->mask_memory)
+        bytes +=
+            count_all_nodes(narc_count_index_slots(index->mask_capacity, false)) * NARC_NODE_SLOTS * sizeof(uint64_t);
+    bytes += index->build_capacity * NARC_INDEX_BUILD_BYTES + index->region_capacity * sizeof *index->regions;
+    bytes += index->found_capacity * sizeof *index->found + 2 * index->row_capacity * sizeof *index->rows;
+    return bytes + index->sweep_capacity * sizeof *index->sweeps;
 }
 
 /* Makes room for `count` items of an array, with `padding` behind them. */

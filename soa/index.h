@@ -2,10 +2,12 @@
  *
  * index.h - the layout of an index, as the kernels read it. Internal.
  *
- * A tree without pointers. LEAVES are nodes of level 0 and hold up to eight boxes of bodies; eight nodes that follow
+ * A tree without pointers. LEAVES are nodes of level 0 and have eight slots for bodies; eight nodes that follow
  * each other in a level are the children of one node of the next, in their order; the last level has one node, the
  * root. So child `slot` of node i of a level is node 8 i + slot of the level below, and body 8 i + slot of a leaf is
- * narc_index.body[8 i + slot].
+ * narc_index.body[8 i + slot]. A quarter of all slots are free, evenly, unless an index is built fast, so that bodies may go to
+ * other leaves; where some nodes are too full, or too much of what is below one has come later, its bodies are spread
+ * over its slots anew.
  *
  * Slots are what three halvings of a node make: bit 2 of a slot's number says in which half it is by the first one, bit
  * 1 by the second, bit 0 by the third. For each bit `order` of the node says along which axis the halves lie, and
@@ -41,8 +43,12 @@ static inline bool narc_is_full_box(const narc_box *box) {
 #define NARC_ORDER_ALONG_Y(b)  (1u << (b)) /* the halves lie one above the other; else side by side */
 #define NARC_ORDER_DOWNWARD(b) (8u << (b)) /* the half with bit 0 is the upper one, or that on the right */
 
-/* What building takes for each box: two numbers of 32 bits twice, and once more one. */
-enum { NARC_INDEX_BUILD_BYTES = 20 };
+/* What building takes for each box: two numbers of 32 bits twice, and of one kind two lists. */
+enum { NARC_INDEX_BUILD_BYTES = 24 };
+
+/* In narc_index.place: the body is in no leaf; or it waits for one, while the index is updated. */
+#define NARC_NO_PLACE      UINT32_MAX
+#define NARC_WAITING_PLACE (UINT32_MAX - 1)
 
 /* What a query of narc_query_index() has found: `count` bodies from narc_index.found[first] on, whose pairs begin at
  * `row`. */
@@ -53,15 +59,23 @@ typedef struct narc_region {
 
 struct narc_index {
     narc_allocator allocator;
-    size_t count;                           /* boxes that it was built from */
+    narc_point origin;                      /* of their coordinates, in the world */
+    size_t count;                           /* boxes; those that are empty are in no leaf */
+    size_t slots;                           /* of leaves, eight each */
     unsigned level_count;                   /* 0: there are no boxes, and no nodes */
     uint32_t first_node[NARC_INDEX_LEVELS]; /* of each level, in `nodes` and `order`; level 0 begins at 0 */
     uint32_t node_count[NARC_INDEX_LEVELS];
     narc_index_node *nodes; /* at cache lines */
     uint8_t *order;         /* of each node */
-    uint64_t *masks;  /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
-    uint32_t *body;   /* for each slot of each leaf; UINT32_MAX: none */
-    double perimeter; /* of all nodes together, when it was built */
+    uint64_t *masks;   /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
+    uint32_t *body;    /* for each slot of each leaf; UINT32_MAX: none */
+    uint32_t *place;   /* of each body the slot of a leaf, or NARC_..._PLACE */
+    uint32_t *filled;  /* of each node: how many bodies are below, */
+    uint32_t *changes; /* how many came since they were spread over its slots, */
+    uint8_t *touched;  /* and while the index is updated a bit for each child of which something has changed */
+    narc_box *home;    /* of each leaf: a body that moves within this stays */
+    uint32_t *waiting; /* while the index is updated: bodies that are to go to a leaf */
+    double perimeter;  /* of all nodes together, when it was built */
     /* memory, and for how many boxes */
     void *tree_memory, *mask_memory, *build_memory;
     size_t tree_capacity, mask_capacity, build_capacity;
@@ -88,8 +102,17 @@ narc_status narc_reserve_sweeps(narc_index *index, size_t count);
 /* Four of the widest vectors. */
 enum { NARC_FOUND_PADDING = 64 };
 
-/* Sets the number of boxes, and the levels that they make. There is room for them. */
-void narc_lay_out_index(narc_index *index, size_t count);
+/* Is there room for so many boxes already? Then narc_reserve_index() changes nothing. */
+bool narc_has_index_room(const narc_index *index, size_t count, bool masks);
+
+/* All memory that the index has. */
+size_t narc_count_index_bytes(const narc_index *index);
+
+/* How many slots so many bodies get when an index is built: packed as few as there may be. */
+size_t narc_count_index_slots(size_t bodies, bool packed);
+
+/* Sets the number of slots, and the levels that they make. There is room for them. */
+void narc_lay_out_index(narc_index *index, size_t slots);
 
 /* How many nodes it has: the root is the last. */
 static inline size_t narc_count_nodes(const narc_index *index) {

@@ -273,3 +273,85 @@ bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, dou
         return depth <= most / 2 && meets_front(&seen);
     return lies_near_end(&seen, w) || meets_front(&seen);
 }
+
+/* ------------------------------------------------------------------------------------------------ the way to a contact
+ *
+ * While no point of a body, and no centre of an arc, moves by more than d, no gap along a direction changes by more: there is
+ * none below the margin where one exceeds that by d.
+ *   Nor is there a contact with the front of a run whose end E lies aside of the body's deepest place p (kernels/piece/
+ * beside.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from n, at
+ * the end, to m beyond it, the gap grows by the turn times how far the centre lies beyond E. That is more than what two gaps
+ * are rounded by if it lies NEED beyond. The other normals of the front have smaller gaps where p lies nearer to E along none
+ * of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher now. */
+#define NEED 0x1.2p-8 /* 2^-18 by the turn of 2^-10, and more: D grows by a sixteenth of the sum */
+
+static double find_way_to_end(const view *v, narc_point end, narc_point n, narc_point other_n, double side,
+                              double need) {
+    const narc_shape_header *const header = v->body->header;
+    const narc_point beyond = {-side * n.y, side * n.x}, down = {-n.x, -n.y}, turn = narc_subtract(n, other_n);
+    const double turned = sqrt(narc_dot(turn, turn));
+    double size, way = INFINITY;
+    const double depth = narc_find_front_height(header, v->body->arcs, down.x, down.y, 0, &size);
+    for (size_t k = 0; k < header->count; k++) {
+        const seen_arc arc = see_own(&v->body->arcs[k].arc);
+        const narc_point place = narc_add_scaled(arc.center, arc.radius, down), from = narc_subtract(place, end);
+        const double ends = get_most(narc_dot(arc.first, down), narc_dot(arc.last, down));
+        const double height = depth - (holds(arc.start, arc.end, down) ? narc_dot(place, down) : ends);
+        const double off = narc_dot(from, beyond) - need,
+                     nearer = turned > 0 ? narc_dot(from, turn) / turned : INFINITY;
+        way = get_least(way, get_most(get_least(off, nearer), height / 2));
+    }
+    return way;
+}
+
+/* Between a body and what the piece's arc has along a direction of its sector. */
+static double find_gap(const view *v, const seen_arc *arc, narc_point n) {
+    double size;
+    return -narc_find_front_height(v->body->header, v->body->arcs, -n.x, -n.y, 0, &size) - narc_dot(arc->center, n) -
+           arc->radius;
+}
+
+static double find_way_to_run(const view *v, double margin, double need) {
+    const size_t last_number = v->piece->header->count - 5u;
+    const narc_shape_header *const header = v->body->header;
+    const narc_point middle = {(double)header->bound_x, (double)header->bound_y};
+    const seen_arc first = see_arc(v, 0), last = see_arc(v, last_number);
+    double gap = get_most(find_gap(v, &first, first.start), find_gap(v, &last, last.end));
+    for (size_t number = 1; number <= last_number; number++) {
+        const seen_arc arc = number < last_number ? see_arc(v, number) : last;
+        const narc_point up = narc_subtract(middle, arc.center);
+        const double length = sqrt(narc_dot(up, up));
+        gap = get_most(gap, find_gap(v, &arc, arc.start));
+        if (length > 0 && holds(arc.start, arc.end, up))
+            gap = get_most(gap, find_gap(v, &arc, (narc_point){up.x / length, up.y / length}));
+    }
+    return get_most(gap - margin, get_most(find_way_to_end(v, first.last, first.end, last.start, -1, need),
+                                           find_way_to_end(v, last.first, last.start, first.end, 1, need)));
+}
+
+/* Each arc of a body has a contact with a concave one, if any, where its centre lies in the sector (kernels/piece/concave.inl). */
+static double find_way_to_concave(const view *v, double margin) {
+    const narc_stored_arc *const a = &v->piece->arcs[0].arc;
+    const narc_point center = see_point(v, (narc_point){(double)a->center_x, (double)a->center_y});
+    const narc_point start = turn_by(v->turn, (narc_point){(double)a->start_x, (double)a->start_y}),
+                     end = turn_by(v->turn, (narc_point){(double)a->end_x, (double)a->end_y});
+    const double radius = v->part * fabs((double)a->radius);
+    double least = INFINITY;
+    for (size_t k = 0; k < v->body->header->count; k++) {
+        const narc_stored_arc *const own = &v->body->arcs[k].arc;
+        const narc_point back = {center.x - (double)own->center_x, center.y - (double)own->center_y};
+        const double gap = radius - sqrt(narc_dot(back, back)) - (double)own->radius;
+        const double off = -get_least(narc_cross(start, back), narc_cross(back, end));
+        least = get_least(least, get_most(gap - margin, off - FRONT_ROOM * (radius + (double)own->radius)));
+    }
+    return least;
+}
+
+double narc_find_free_way(const narc_contact_side *piece, const narc_contact_side *body, double margin, double size) {
+    if (!narc_is_piece(piece->header) || narc_is_piece(body->header))
+        return 0;
+    const view v = make_view(piece, body);
+    const double own = margin / body->scale, need = NEED * size / body->scale;
+    const double way = narc_is_concave(piece->header) ? find_way_to_concave(&v, own) : find_way_to_run(&v, own, need);
+    return get_least(body->scale * way, size / 16) - 0x1p-17 * size;
+}

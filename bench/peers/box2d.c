@@ -244,14 +244,20 @@ static size_t cast(void *world, const struct asked *asked, void *out) {
 
 static b2AABB box_from(const narc_box *box) { return (b2AABB){{box->min_x, box->min_y}, {box->max_x, box->max_y}}; }
 
+struct tree {
+    b2DynamicTree tree;
+    int *proxies; /* of bodies */
+};
+
 static void *create_tree(struct scene *scene) {
-    b2DynamicTree *tree = allocate(1, sizeof *tree);
-    *tree = b2DynamicTree_Create((int)scene->body_count);
+    struct tree *t = allocate(1, sizeof *t);
+    t->tree = b2DynamicTree_Create((int)scene->body_count);
+    t->proxies = allocate(scene->body_count, sizeof *t->proxies);
     index_scene(scene);
     for (size_t k = 0; k < scene->body_count; k++)
-        b2DynamicTree_CreateProxy(tree, box_from(&scene->boxes[k]), 1, k);
-    b2DynamicTree_Rebuild(tree, true);
-    return tree;
+        t->proxies[k] = b2DynamicTree_CreateProxy(&t->tree, box_from(&scene->boxes[k]), 1, k);
+    b2DynamicTree_Rebuild(&t->tree, true);
+    return t;
 }
 
 struct found {
@@ -269,8 +275,16 @@ static bool add_pair(int proxy, uint64_t body, void *context) {
 static size_t find_regions(void *tree, const struct asked *asked, void *out) {
     struct found found = {.out = out};
     for (; found.region < asked->count; found.region++)
-        b2DynamicTree_Query(tree, box_from(&asked->regions[found.region]), 1, add_pair, &found);
+        b2DynamicTree_Query(&((struct tree *)tree)->tree, box_from(&asked->regions[found.region]), 1, add_pair, &found);
     return found.count;
+}
+
+static size_t move_proxies(void *context, const struct asked *asked, void *out) {
+    struct tree *t = context;
+    (void)out;
+    for (size_t k = 0; k < asked->count; k++)
+        b2DynamicTree_MoveProxy(&t->tree, t->proxies[asked->moved[k]], box_from(&asked->regions[asked->moved[k]]));
+    return 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ times of impact */
@@ -335,4 +349,5 @@ const struct peer box2d_ground = BOX2D("ground", .own_clock = true, .create = cr
                                        .step = step, .count_touching = count_touching);
 const struct peer box2d_rays = BOX2D("ray", .create = create_still, .ask = cast);
 const struct peer box2d_regions = BOX2D("region", .create = create_tree, .ask = find_regions);
+const struct peer box2d_moves = BOX2D("move", .create = create_tree, .ask = move_proxies);
 const struct peer box2d_impacts = BOX2D("impact", .create = create_nothing, .ask = find_impacts);

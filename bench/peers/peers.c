@@ -16,6 +16,7 @@ MISSING(box2d_world, "stay", "box2d", "Box2D");
 MISSING(box2d_ground, "ground", "box2d", "Box2D");
 MISSING(box2d_rays, "ray", "box2d", "Box2D");
 MISSING(box2d_regions, "region", "box2d", "Box2D");
+MISSING(box2d_moves, "move", "box2d", "Box2D");
 MISSING(box2d_impacts, "impact", "box2d", "Box2D");
 #endif
 #ifndef BENCH_CCD
@@ -27,8 +28,8 @@ MISSING(geos_regions, "region", "geos", "GEOS");
 #endif
 
 static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_rays,
-                                           &box2d_ground,  &box2d_regions, &box2d_impacts, &ccd_gjk,
-                                           &ccd_mpr,       &geos_regions,  &disc_loop};
+                                           &box2d_ground,  &box2d_regions, &box2d_impacts, &box2d_moves,
+                                           &ccd_gjk,       &ccd_mpr,       &geos_regions,  &disc_loop};
 
 const struct peer *find_peer(const char *query, const char *name) {
     for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)

@@ -31,6 +31,7 @@ typedef struct box_job {
     narc_float_column reach, ahead; /* known, too */
     narc_index_column run;
     narc_index_column moved; /* the bodies, where they are listed */
+    bool reframed;           /* all boxes are to be computed */
     size_t first;
     narc_box *out_boxes;
     atomic_size_t skipped;
@@ -195,9 +196,9 @@ static size_t list_moved(const box_job *job, size_t first, size_t end, uint32_t 
             same_motion = same_motion && memcmp(&motion, &known.motions[k], sizeof motion) == 0;
             known.motions[k] = motion;
         }
-        if (same_pose && same_motion)
+        if (same_pose && same_motion && !job->reframed)
             continue;
-        const bool stays = same_shape && stays_in_box(job, &known.poses[k], &now, k);
+        const bool stays = !job->reframed && same_shape && stays_in_box(job, &known.poses[k], &now, k);
         known.poses[k] = now;
         if (!same_shape)
             known.changed[k] = NARC_ALL_CHANGED;
@@ -238,7 +239,8 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
 static narc_status compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
                                  size_t count, box_job *job, narc_error *error) {
     narc_status status = NARC_OK;
-    job->batch = (narc_box_batch){shapes, bodies, options->margin, options->motion_x, options->motion_y};
+    job->batch =
+        (narc_box_batch){shapes, bodies, options->margin, options->motion_x, options->motion_y, options->origin};
     job->kernels = narc_kernels(&status, error);
     job->first = options->first;
     if (job->kernels)
@@ -255,7 +257,9 @@ narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bod
     size_t count = o->count;
     narc_status status = narc_check_length(o->margin, "options", "margin", error);
     if (status == NARC_OK)
-        status = narc_check_reserved(o->reserved, 4, "options", error);
+        status = narc_check_origin(o->origin, "options", error);
+    if (status == NARC_OK)
+        status = narc_check_reserved(o->reserved, 3, "options", error);
     if (status == NARC_OK)
         status = narc_check_bodies(shapes, bodies, o->first, &count, o->workers, error);
     if (status != NARC_OK)
@@ -307,7 +311,8 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     const narc_box_options box_options = {.margin = step->margin * 0.5f + slack,
                                           .motion_x = step->motion_x,
                                           .motion_y = step->motion_y,
-                                          .workers = step->workers};
+                                          .workers = step->workers,
+                                          .origin = &broad->origin};
     narc_known_poses *const known = &broad->known;
     if (!narc_are_poses_known(broad, shapes, step))
         narc_forget_poses(broad);
@@ -318,6 +323,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
                    .reach = step->reach,
                    .ahead = step->ahead,
                    .run = step->run,
+                   .reframed = broad->reframed,
                    .out_boxes = step->pairs ? NULL : broad->boxes_now};
     size_t count = listed ? step->moved_count : 0;
     narc_status status = NARC_OK;

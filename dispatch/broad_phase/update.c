@@ -169,9 +169,10 @@ static uint64_t id_of(const update *u, size_t body) {
 static bool may_trust(const update *u, const narc_shapes *shapes) {
     const narc_broad_phase *const broad = u->broad;
     const narc_kept_list *const last = &broad->lists[broad->last];
-    return broad->is_current && u->count == last->body_count && u->count == broad->known.count && !are_other_pairs(u) &&
-           narc_are_poses_known(broad, shapes, u->step) && !broad->has_filter == !u->step->filter &&
-           broad->has_sets == has_sets(u) && !last->has_ids == !u->step->id.base;
+    return !broad->reframed && broad->is_current && u->count == last->body_count && u->count == broad->known.count &&
+           !are_other_pairs(u) && narc_are_poses_known(broad, shapes, u->step) &&
+           !broad->has_filter == !u->step->filter && broad->has_sets == has_sets(u) &&
+           !last->has_ids == !u->step->id.base;
 }
 
 /* What listed bodies ask for: nothing, REST, or a look at all, WHOLE. */
@@ -454,6 +455,35 @@ static narc_status finish(const update *u, bool listed, const narc_pair_list **o
     return NARC_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------ the origin */
+
+/* So many times as far as the skin is wide the step's origin may be from that of the boxes: rounding takes next to nothing of
+ * the skin there. */
+enum { NEAR_ORIGIN = 8192 };
+
+/* A side as it is from another origin, or further inwards (`in` 1 or -1): by what double precision and its own round. */
+static float move_side(float side, double by, double in) {
+    const double moved = (double)side + by;
+    return (float)(moved + in * ((fabs((double)side) + fabs(by)) * 0x1p-51 + fabs(moved) * 0x1p-23));
+}
+
+/* Boxes are from the step's origin if that is far from theirs. Kept ones are smaller then, so that bodies in them are where
+ * they were: the list has all their pairs still, and the next one is made of all boxes. */
+static void move_origin(narc_broad_phase *broad, const narc_step *step, size_t count) {
+    const narc_point to = step->origin ? *step->origin : (narc_point){0, 0}, from = broad->origin;
+    const double x = from.x - to.x, y = from.y - to.y, near = (double)step->skin * NEAR_ORIGIN;
+    broad->reframed = !(step->pairs || (x == 0 && y == 0) || (broad->is_current && fabs(x) + fabs(y) <= near));
+    if (!broad->reframed)
+        return;
+    broad->origin = to;
+    broad->is_sorted = false;
+    for (size_t k = 0; k < count && broad->is_current; k++) {
+        narc_box *const box = &broad->kept_boxes[k];
+        *box = (narc_box){move_side(box->min_x, x, 1), move_side(box->min_y, y, 1), move_side(box->max_x, x, -1),
+                          move_side(box->max_y, y, -1)};
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ the call */
 
 static narc_status check_own_pairs(const update *u) {
@@ -481,6 +511,7 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
         status = fail_memory(&u, count, "bodies");
     if (status != NARC_OK)
         return status;
+    move_origin(broad, step, last_count);
     const bool listed = (step->moved.base || step->moved.stride) && may_trust(&u, shapes);
     status = narc_compute_step_boxes(broad, shapes, step, listed, error);
     return status == NARC_OK ? finish(&u, listed, out_list) : status;

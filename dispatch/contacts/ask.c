@@ -155,6 +155,22 @@ static size_t recycle_slots(slot_job *job, const uint32_t *list, size_t count, u
     return left_count;
 }
 
+/* Pairs of the list, whose slots are listed in `known`: which have moved too far for what is kept of them? */
+static size_t find_moved(slot_job *job, const uint32_t *list, size_t count, uint32_t *left) {
+    const narc_contact_step *const s = job->step;
+    const narc_contacts *const c = s->contacts;
+    const narc_query query = make_query(s, c->ground_margins, list, count);
+    const uint32_t *const slots = c->known + (list - c->ground_asked);
+    narc_batch batch;
+    const narc_kernel_table *const kernels = narc_fill_slots(s, job->pairs, &query, &batch);
+    return kernels ? kernels->recycle(&batch, 0, count, slots, c->kept, s->step->recycling, NULL, left) : 0;
+}
+
+size_t narc_find_moved(const narc_contact_step *s, size_t count) {
+    slot_job job = {.run = find_moved, .step = s, .pairs = &s->list->pairs};
+    return run_slots(&job, s->contacts->ground_asked, count);
+}
+
 /* Answers slots from their entries. */
 static size_t follow_slots(slot_job *job, const uint32_t *list, size_t count, uint32_t *left) {
     const narc_contact_step *const s = job->step;

@@ -36,14 +36,16 @@ typedef struct narc_more_rows {
 } narc_more_rows;
 
 /* What a step does with a pair of the list whose bodies are others than in the last step. REST: nothing, as neither moves;
- * it is asked when one does. ASK_GROUND: of all ground that one body is near. APART: there is no row, by the boxes. */
-enum { NARC_NOTHING, NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
+ * it is asked when one does. ASK_GROUND: of all ground that one body is near; NO_GROUND: so, and it has no row by itself.
+ * APART: there is no row, by the boxes. */
+enum { NARC_NOTHING, NARC_REST, NARC_ASK, NARC_ASK_GROUND, NARC_NO_GROUND, NARC_ASK_SENSOR, NARC_FOLLOW, NARC_APART };
 
 /* Slots that a thread takes at a time: some 10 microseconds of work. */
 enum { NARC_SLOT_PART = 1024 };
 
 typedef struct narc_pair_work {
     uint32_t pair; /* of the list */
+    uint32_t slot; /* NARC_NO_MATCH while a new pair has none */
     uint32_t what;
 } narc_pair_work;
 
@@ -217,6 +219,13 @@ void narc_keep_rows(const narc_contact_step *s, const narc_pairs *pairs, const u
 
 /* Keeps how far the bodies of slots without a row may move against each other until there may be one. */
 void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, size_t count);
+
+/* The same of a body and a piece of a chain. */
+void narc_keep_bare_ground(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, size_t count);
+
+/* Of the first `count` pairs of the list in `ground_asked`, with their slots in `known`, those whose bodies have moved too
+ * far for what is kept of them: in `left`, in their order. Returns how many. */
+size_t narc_find_moved(const narc_contact_step *s, size_t count);
 
 /* May the row of pair `pair` of the list that was kept in kept[item] follow its bodies? */
 bool narc_may_follow(const narc_contact_step *s, uint32_t pair, uint32_t item, const narc_kept_row *kept);

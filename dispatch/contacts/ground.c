@@ -15,17 +15,28 @@ static uint32_t pair_of(const void *row) {
     return pair;
 }
 
+/* Which of the asked pairs have no row, before rows are merged? */
+static void note_without_rows(narc_contacts *c) {
+    size_t at = 0;
+    for (size_t i = 0; i < c->work_count; i++) {
+        narc_pair_work *const work = &c->work[i];
+        if (work->what != NARC_ASK_GROUND)
+            continue;
+        const size_t first = at;
+        while (at < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, at)) == work->pair)
+            at++;
+        work->what = at > first ? NARC_ASK_GROUND : NARC_NO_GROUND;
+    }
+}
+
 narc_status narc_ask_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const narc_pairs *const pairs = &s->list->pairs;
     narc_status status = NARC_OK;
     c->ground_count = c->ground.count = 0;
     for (size_t i = 0; i < c->work_count; i++)
-        if (c->work[i].what == NARC_ASK_GROUND) {
-            const uint32_t k = c->work[i].pair;
-            c->ground_margins[k] = narc_find_margin(s, pairs->a.base[k], pairs->b.base[k]);
-            c->ground_asked[c->ground_count++] = k;
-        }
+        if (c->work[i].what == NARC_ASK_GROUND)
+            c->ground_asked[c->ground_count++] = c->work[i].pair;
     if (c->ground_count > 0)
         status = narc_reserve_arrays(c, NARC_OF_GROUND, &c->ground.capacity, 2 * c->ground_count);
     while (status == NARC_OK && c->ground_count > 0) {
@@ -37,6 +48,8 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     }
     if (status == NARC_OK)
         status = narc_reserve_arrays(c, NARC_OF_NEXT_MORE, &c->next_more.capacity, c->more.count + c->ground.count);
+    if (status == NARC_OK)
+        note_without_rows(c);
     if (status == NARC_OK && s->step->run.base)
         c->ground.count = c->contact_rows ? narc_merge_contacts(pairs, s->step->run, c->ground.rows, c->ground.count)
                                           : narc_merge_manifolds(pairs, s->step->run, c->ground.rows, c->ground.count);
@@ -47,14 +60,15 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
 static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *rows, narc_kept_row *kept,
                     uint32_t item) {
     const narc_contacts *const c = s->contacts;
-    const narc_pairs pairs = narc_view_slots(c);
     const narc_rows view = narc_view_rows(c, rows);
     void *const row = (char *)view.base + (ptrdiff_t)item * view.stride;
     memcpy(row, from, c->row_size);
     memcpy(row, &slot, sizeof slot);
     memset(&kept[item], 0, sizeof *kept); /* it is saved, of use or not */
-    if (s->step->recycling > 0)
+    if (s->step->recycling > 0) {
+        const narc_pairs pairs = narc_view_slots(c);
         narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
+    }
 }
 
 /* The further rows of a pair that was not asked stay. */
@@ -68,15 +82,15 @@ static void keep_more(narc_contacts *c, uint32_t slot) {
 }
 
 /* The rows of pair k of the list, from number `at` of those asked for on; returns the number behind them. */
-static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
+static size_t take_rows(const narc_contact_step *s, size_t k, uint32_t slot, size_t at) {
     narc_contacts *const c = s->contacts;
-    const uint32_t slot = c->order[k];
     size_t end = at;
     while (end < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, end)) == k)
         end++;
-    narc_zero_row(c, slot);
-    c->flags[slot] =
-        (uint8_t)((c->flags[slot] & ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY)) | (end > at ? NARC_SLOT_KEPT : 0));
+    if (end == at && c->state[slot] & NARC_TOUCHING)
+        narc_zero_row(c, slot);
+    c->flags[slot] = (uint8_t)((c->flags[slot] & ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY)) | NARC_SLOT_SEEN |
+                               (end > at && s->step->recycling > 0 ? NARC_SLOT_KEPT : 0));
     if (end > at)
         put_row(s, slot, narc_row_at(c, c->ground.rows, at), c->rows, c->kept, slot);
     const size_t more = end > at ? end - at - 1 : 0;
@@ -92,17 +106,30 @@ static size_t take_rows(const narc_contact_step *s, size_t k, size_t at) {
 
 void narc_take_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
-    size_t at = 0, next = 0;
-    if (c->ground_count == 0 && (c->more.count == 0 || !c->changed))
+    const narc_pairs pairs = narc_view_slots(c);
+    const bool has_more = c->more.count > 0;
+    size_t at = 0, next = 0, bare_count = 0;
+    uint32_t *const bare = c->left;
+    if (c->ground_count == 0 && (!has_more || !c->changed))
         return;
     c->next_more.count = 0;
-    for (size_t k = 0; k < s->list->pairs.count; k++)
-        if (next < c->ground_count && c->ground_asked[next] == k) {
-            next++;
-            at = take_rows(s, k, at);
-        } else if (c->more_of[c->order[k]].count > 0)
-            keep_more(c, c->order[k]);
+    for (size_t i = 0; i < c->work_count; i++) {
+        const uint32_t k = c->work[i].pair, what = c->work[i].what, slot = c->work[i].slot;
+        if (what != NARC_ASK_GROUND && what != NARC_NO_GROUND)
+            continue;
+        for (; has_more && next < k; next++)
+            if (c->more_of[c->order[next]].count > 0)
+                keep_more(c, c->order[next]);
+        next = (size_t)k + 1;
+        bare[bare_count] = slot;
+        bare_count += what == NARC_NO_GROUND && c->flags[slot] & NARC_SLOT_SEEN;
+        at = take_rows(s, k, slot, at);
+    }
+    for (; has_more && next < s->list->pairs.count; next++)
+        if (c->more_of[c->order[next]].count > 0)
+            keep_more(c, c->order[next]);
     const narc_row_array made = c->next_more;
     c->next_more = c->more;
     c->more = made;
+    narc_keep_bare_ground(s, &pairs, bare, bare_count);
 }

@@ -107,49 +107,122 @@ static inline bool is_ground(const pair_view *v, size_t k) {
     return !(v->marks[k] & NARC_SENSOR) && (v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE));
 }
 
-/* May all rows of pair k, of ground, follow? A pair without one may, too. */
-static bool may_follow_ground(const narc_contact_step *s, uint32_t k, uint32_t slot) {
-    const narc_contacts *const c = s->contacts;
-    const narc_more_rows more = c->more_of[slot];
-    if (!(c->state[slot] & NARC_TOUCHING))
-        return true;
-    bool may = c->flags[slot] & NARC_SLOT_KEPT && narc_may_follow(s, k, slot, c->kept);
-    for (uint32_t i = more.first; may && i < more.first + more.count; i++)
-        may = narc_may_follow(s, k, i, c->more.kept);
-    return may;
-}
+/* What is known of a pair with ground while it is planned. OF_OLD: it must be asked, whatever has moved. OF_OTHER: so must
+ * all ground of the body, as a pair was ground, or is no sensor's any more. OF_HELD: what is kept of it still counts. */
+enum { OF_CHANGED = 1, OF_OLD = 2, OF_BARE = 4, OF_KEPT = 8, OF_MOVING = 16, OF_OTHER = 32, OF_HELD = 64 };
 
-/* The pairs first .. end - 1 of one body, some with ground: all of these are asked together, as their rows are merged. */
-static void plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end) {
+/* The pairs first .. end - 1 of one body, some with ground: these are listed, and what is kept of them and may decide, if
+ * something has changed. */
+static void list_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end) {
     narc_contacts *const c = s->contacts;
     const uint32_t a = v->a[first];
-    bool changed = false, stale = false, apart = true, touches = false, follows = s->step->recycling > 0;
-    bool ground_moves = false, some_bare = false; /* rows tell of other ground only while none of it moves */
+    const size_t planned = c->work_count;
+    const unsigned keeps =
+        s->step->recycling > 0 ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
+    unsigned any = 0;
     for (size_t k = first; k < end; k++) {
         const uint32_t b = v->b[k], slot = slot_of(v, k);
         const unsigned moved = v->changed[a] | v->changed[b];
+        unsigned what;
         if (!is_ground(v, k)) { /* it may have been */
             const bool other =
                 slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
-            stale |= other;
-            changed |= other;
+            any |= other ? OF_OTHER | OF_CHANGED : 0;
             continue;
         }
-        const bool old = is_stale(v, k, slot);
-        stale |= old;
-        changed |= old || moved;
-        apart = apart && are_apart(v, a, b);
-        const bool bare = slot == UINT32_MAX || !(c->state[slot] & NARC_TOUCHING);
-        touches |= !bare;
-        some_bare |= bare;
-        ground_moves |= v->changed[b] != 0;
-        follows = follows && !old && !(moved & NARC_RESHAPED) && may_follow_ground(s, (uint32_t)k, slot);
+        if (is_stale(v, k, slot) || moved & NARC_RESHAPED)
+            what = OF_OLD | OF_CHANGED;
+        else
+            what = (moved ? OF_CHANGED : 0u) |
+                   (v->flags[slot] & NARC_SLOT_KEPT ? OF_KEPT : 0u);
+        what |= slot == UINT32_MAX || !(v->state[slot] & NARC_TOUCHING) ? OF_BARE : 0u;
+        what |= v->changed[b] ? OF_MOVING : 0u;
+        any |= what;
+        c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, slot, what};
     }
-    follows = follows && touches && !stale && !(ground_moves && some_bare);
-    const unsigned what = apart ? NARC_APART : follows ? NARC_FOLLOW : NARC_ASK_GROUND;
-    for (size_t k = first; k < end && changed; k++)
-        if (is_ground(v, k))
-            c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, are_at_rest(s, a, v->b[k]) ? NARC_REST : what};
+    if (!(any & OF_CHANGED)) {
+        c->work_count = planned;
+        return;
+    }
+    c->work[planned].what |= any & OF_OTHER;
+    for (size_t i = planned; i < c->work_count; i++) {
+        const narc_pair_work *const work = &c->work[i];
+        if (s->step->ahead.base)
+            c->ground_margins[work->pair] = narc_find_margin(s, a, v->b[work->pair]);
+        c->known[c->ground_count] = work->slot;
+        c->ground_asked[c->ground_count] = work->pair;
+        c->ground_count += (work->what & keeps) == keeps;
+    }
+}
+
+/* May all further rows of a slot follow? */
+static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *work) {
+    const narc_contacts *const c = s->contacts;
+    const narc_more_rows more = c->more_of[work->slot];
+    bool may = true;
+    for (uint32_t i = more.first; may && i < more.first + more.count; i++)
+        may = narc_may_follow(s, work->pair, i, c->more.kept);
+    return may;
+}
+
+/* Do all rows that a body has with ground follow it, and are there some? Rows tell of other ground only while none moves. */
+static bool do_all_follow(const narc_contact_step *s, size_t first, size_t end) {
+    const narc_pair_work *const work = s->contacts->work;
+    unsigned any = 0, bare = OF_BARE;
+    for (size_t i = first; i < end; i++) {
+        any |= work[i].what;
+        bare &= work[i].what;
+        if (!(work[i].what & (OF_BARE | OF_HELD)))
+            return false;
+    }
+    if (bare || any & (OF_OLD | OF_OTHER) || (any & OF_MOVING && any & OF_BARE))
+        return false;
+    for (size_t i = first; i < end; i++)
+        if (!(work[i].what & OF_BARE) && !may_more_follow(s, &work[i]))
+            return false;
+    return true;
+}
+
+/* The plan of the listed pairs of one body, which are asked together, as their rows are merged; but those that have none are
+ * not while what is kept of them holds. Returns the end of what is planned. */
+static size_t plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end, size_t to) {
+    narc_pair_work *const work = s->contacts->work;
+    const uint32_t a = v->a[work[first].pair];
+    const bool follows = s->step->recycling > 0 && do_all_follow(s, first, end);
+    bool apart = true, holds = true;
+    for (size_t i = first; i < end; i++)
+        holds = holds && (work[i].what & OF_HELD) && (work[i].what & OF_BARE);
+    for (size_t i = first; i < end && apart && !follows && !holds; i++)
+        apart = are_apart(v, a, v->b[work[i].pair]);
+    const unsigned planned = follows ? NARC_FOLLOW : apart && !holds ? NARC_APART : NARC_ASK_GROUND;
+    for (size_t i = first; i < end; i++) {
+        const narc_pair_work one = work[i];
+        const unsigned what = are_at_rest(s, a, v->b[one.pair]) ? NARC_REST : planned;
+        work[to] = (narc_pair_work){one.pair, one.slot, what};
+        to += what != NARC_ASK_GROUND || !(one.what & OF_HELD) || !(one.what & OF_BARE);
+    }
+    return to;
+}
+
+static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
+    narc_contacts *const c = s->contacts;
+    const size_t kept_count = c->ground_count, moved_count = narc_find_moved(s, kept_count);
+    size_t moved = 0, at = 0, to = 0;
+    for (size_t i = 0; i < kept_count; i++) {
+        if (moved < moved_count && c->left[moved] == c->ground_asked[i]) {
+            moved++;
+            continue;
+        }
+        while (c->work[at].pair != c->ground_asked[i])
+            at++;
+        c->work[at].what |= OF_HELD;
+    }
+    for (size_t i = 0, end; i < c->work_count; i = end) {
+        for (end = i + 1; end < c->work_count && v->a[c->work[end].pair] == v->a[c->work[i].pair];)
+            end++;
+        to = plan_ground(s, v, i, end, to);
+    }
+    c->work_count = to;
 }
 
 /* The first slot from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -201,7 +274,7 @@ void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
     const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
-    c->work_count = 0;
+    c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
     for (size_t k = 0; c->changed && (k = c->again ? k : find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies;
          k++) {
@@ -217,8 +290,9 @@ void narc_plan_ground(const narc_contact_step *s) {
         for (end = k; end < count && v.a[end] == v.a[k]; end++)
             ground = ground || is_ground(&v, end);
         if (ground)
-            plan_ground(s, &v, k, end);
+            list_ground(s, &v, k, end);
     }
+    plan_all_ground(s, &v);
 }
 
 /* ------------------------------------------------------------------------------------------------ slots */
@@ -269,10 +343,10 @@ static void mark_slots(const narc_contact_step *s) {
 }
 
 /* What is to be done with a slot whose bodies have changed, or are `stale`, and not both of which move, or which are no
- * plain bodies? Ground has been planned. */
+ * plain bodies? */
 NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, uint32_t slot, bool changed) {
     const unsigned marks = v->marks[slot];
-    if (marks & NARC_GONE || (v->grounds && is_ground(v, slot)) || !changed)
+    if (marks & NARC_GONE || !changed)
         return NARC_NOTHING;
     s->contacts->marks[slot] = (uint8_t)(marks & ~(unsigned)NARC_FLIPPED); /* but once */
     if (marks & NARC_RESTS && !(marks & NARC_FLIPPED))
@@ -301,6 +375,7 @@ static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SE
                                 [NARC_FOLLOW] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
                                 [NARC_ASK] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
                                 [NARC_ASK_GROUND] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
+                                [NARC_NO_GROUND] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
                                 [NARC_ASK_SENSOR] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT),
                                 [NARC_APART] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR | NARC_SLOT_KEPT)};
 
@@ -324,6 +399,8 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
     if (!(changed | stale))
         return;
     unsigned what = NARC_ASK;
+    if (special && is_ground(v, k) && !(marks & NARC_GONE))
+        return; /* it is planned */
     if (special || marks & SPECIAL)
         what = find_special(s, v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
@@ -410,12 +487,13 @@ void narc_sort_pairs(const narc_contact_step *s) {
             sort_slot(s, &v, k, found, ground, more, flags, &to);
     }
     for (size_t i = 0; i < c->work_count; i++) {
-        const uint32_t slot = c->order[c->work[i].pair], what = c->work[i].what;
+        const uint32_t slot = c->work[i].slot = c->order[c->work[i].pair], what = c->work[i].what;
         const bool reshaped = (v.changed[v.a[slot]] | v.changed[v.b[slot]]) & NARC_RESHAPED;
         flags[slot] = (uint8_t)find_flags(flags[slot], reshaped, 0, what);
         *to.candidates = slot;
         to.candidates += what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING;
-        do_more(s, slot, what);
+        if (s->step->ahead.base || what == NARC_APART)
+            do_more(s, slot, what);
     }
     c->asked_count = (size_t)(to.asked - c->asked);
     c->known_count = (size_t)(to.known - c->known);

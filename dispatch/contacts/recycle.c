@@ -3,8 +3,11 @@
  * recycle.c - rows that are kept while their bodies have hardly moved against each other, and follow them
  * (kernels/sat/recycle.c).
  */
+#include "column.h"
 #include "contacts.h"
 #include "dispatch.h"
+#include "piece.h"
+#include "vec2.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -44,6 +47,47 @@ void narc_keep_bare(const narc_contact_step *s, const narc_pairs *pairs, const u
             c->flags[slot] |= NARC_SLOT_KEPT;
         else
             *kept = (narc_kept_row){.lever = 0}; /* it is saved, of use or not */
+    }
+}
+
+/* One of two bodies, with the world's x axis as the direction. */
+static narc_contact_side find_side(const narc_contact_step *s, uint32_t body, narc_point way) {
+    const narc_bodies *const bodies = s->step->bodies;
+    const narc_shape_header *const header = &s->shapes->headers[narc_index_at(bodies->shape, body)];
+    const double x = (double)narc_float_at(bodies->cosine, body), y = (double)narc_float_at(bodies->sine, body);
+    const double length = sqrt(x * x + y * y), c = x / length, d = y / length;
+    return (narc_contact_side){.header = header,
+                               .arcs = narc_arcs_of(s->shapes, header),
+                               .scale = (double)narc_float_or(bodies->scale, body, 1),
+                               .x = c,
+                               .y = -d,
+                               .other_x = c * way.x + d * way.y,
+                               .other_y = c * way.y - d * way.x};
+}
+
+void narc_keep_bare_ground(const narc_contact_step *s, const narc_pairs *pairs, const uint32_t *slots, size_t count) {
+    narc_contacts *const c = s->contacts;
+    const narc_bodies *const bodies = s->step->bodies;
+    narc_keep_rows(s, pairs, slots, NULL, count, c->rows, c->kept);
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t slot = slots[i], a = c->a[slot], b = c->b[slot];
+        const narc_point way = {narc_position_at(bodies->x, b) - narc_position_at(bodies->x, a),
+                                narc_position_at(bodies->y, b) - narc_position_at(bodies->y, a)};
+        const narc_contact_side of_a = find_side(s, a, way), of_b = find_side(s, b, (narc_point){-way.x, -way.y});
+        const bool is_b = narc_is_piece(of_b.header);
+        const double extent_a = 0x1p17 * (double)c->room[a], extent_b = 0x1p17 * (double)c->room[b];
+        const double distance = sqrt(narc_dot(way, way)), lever = is_b ? extent_a : distance + extent_b;
+        const double margin = (double)narc_find_margin(s, a, b);
+        const double free =
+            narc_find_free_way(is_b ? &of_b : &of_a, is_b ? &of_a : &of_b, margin, distance + extent_a + extent_b);
+        narc_kept_row *const kept = &c->kept[slot];
+        if (free > 0 && free < (double)INFINITY) {
+            kept->apart = (float)free;
+            kept->lever = -(float)lever;
+            c->flags[slot] |= NARC_SLOT_KEPT;
+        } else {
+            *kept = (narc_kept_row){.lever = 0}; /* it is saved, of use or not */
+        }
     }
 }
 

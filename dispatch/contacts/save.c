@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* VERSION is another one whenever what is saved is. */
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 16, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
+enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, BROAD_ARRAYS = 16, SAVED_ARRAYS = NARC_ARRAYS + BROAD_ARRAYS };
 
 static const char magic[8] = "NARCCNTS";
 
@@ -27,6 +27,7 @@ typedef struct start {
     uint64_t slots, free, parted, pairs, touching, sensors, began, ended, more, bodies, known;
     uint64_t skipped, asked, history;
     narc_asked last;
+    narc_point origin;
     float known_margin, known_skin;
     uint32_t wait, waits, precision;
     uint8_t has_ids, has_gone, is_current, is_given, has_filter, has_sets, is_marked, has_motions, has_boxes,
@@ -129,6 +130,7 @@ static start describe(const saved *s) {
                 .asked = r->asked_count,
                 .history = b->known.history,
                 .last = c->last,
+                .origin = b->origin,
                 .known_margin = b->known.margin,
                 .known_skin = b->known.skin,
                 .wait = c->wait,
@@ -168,6 +170,7 @@ static void take_over(narc_contacts *c, int list, const start *at) {
     r->asked_count = (size_t)at->asked;
     b->known.history = at->history;
     c->last = at->last;
+    b->origin = at->origin;
     b->known.margin = at->known_margin;
     b->known.skin = at->known_skin;
     c->wait = at->wait;

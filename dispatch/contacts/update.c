@@ -139,7 +139,10 @@ static narc_status check_step(const narc_contacts *c, const narc_shapes *shapes,
     const narc_status status = narc_check_numbers(&query, "step", error);
     if (status != NARC_OK)
         return status;
-    return narc_check_reserved(step->reserved, 4, "step", error) == NARC_OK ? narc_check_set(step->bodies, error)
+    const narc_status origin = narc_check_origin(step->origin, "step", error);
+    if (origin != NARC_OK)
+        return origin;
+    return narc_check_reserved(step->reserved, 3, "step", error) == NARC_OK ? narc_check_set(step->bodies, error)
                                                                             : NARC_ERROR_ARGUMENT;
 }
 

@@ -35,7 +35,8 @@ static float round_down(double x) {
 /* What turns lies in the circle about its position that holds its bounding circle, whatever its angle. */
 static narc_box turn_box(const struct job *job, size_t k) {
     const narc_shape_header *const header = &job->boxes.shapes->headers[narc_index_at(job->movers->shape, k)];
-    const double x = narc_position_at(job->movers->x, k), y = narc_position_at(job->movers->y, k);
+    const double x = narc_position_at(job->movers->x, k) - job->index->origin.x;
+    const double y = narc_position_at(job->movers->y, k) - job->index->origin.y;
     const double bound_x = (double)header->bound_x, bound_y = (double)header->bound_y;
     const double scale = (double)narc_float_or(job->movers->scale, k, 1);
     const double bound = (double)header->bound_radius, tolerance = (double)job->casts.batch.tolerance;
@@ -135,7 +136,7 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
         return status;
     job.index = index;
     job.movers = movers;
-    job.boxes = (narc_box_batch){.shapes = shapes, .bodies = movers};
+    job.boxes = (narc_box_batch){.shapes = shapes, .bodies = movers, .origin = &index->origin};
     narc_run_ranges(q->workers, movers->count, PART, find_boxes, &job);
     status = narc_query_index(index, index->sweeps, movers->count, q, &pairs, error);
     pairs.other_bodies = bodies;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * points.c - narc_find_distances() and narc_find_nearest(): argument checks, then points part by part to the kernels.
+ * points.c - narc_find_distances(), narc_find_inside() and narc_find_nearest(): argument checks, then points part by part to the kernels.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -8,15 +8,15 @@
 #include "index.h"
 
 #include <math.h>
-#include <stdatomic.h>
 
-/* Points in a part: some 20 microseconds of work. */
-enum { CHECK_PART = 16384, PART = 512, NEAREST_PART = 128 };
+/* Points in a part: some 20 microseconds of work; a multiple of 64. */
+enum { PART = 512, NEAREST_PART = 128 };
 
 typedef struct point_job {
     narc_point_batch batch;
     void (*kernel)(const narc_point_batch *batch, size_t first, size_t end);
-    atomic_size_t bad; /* the first point whose body or shape does not exist */
+    const narc_kernel_table *kernels;
+    uint64_t *out_bits; /* of points that may be within bodies */
 } point_job;
 
 static void answer_part(void *argument, size_t part, size_t first, size_t end) {
@@ -25,7 +25,7 @@ static void answer_part(void *argument, size_t part, size_t first, size_t end) {
     job->kernel(&job->batch, first, end);
 }
 
-/* What both calls begin with. Shapes are looked at where bodies are named. */
+/* What all calls begin with. Shapes are looked at where bodies are named. */
 static narc_status check_points(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                 narc_error *error) {
     if (!shapes || !bodies || !points)
@@ -45,36 +45,6 @@ static const narc_kernel_table *find_kernels(size_t count, narc_status *out_stat
 
 /* ------------------------------------------------------------------------------------------------ distances */
 
-static size_t find_body(const narc_point_batch *batch, size_t point) {
-    return batch->body.base ? narc_index_at(batch->body, point) : point;
-}
-
-static void check_part(void *argument, size_t part, size_t first, size_t end) {
-    point_job *job = argument;
-    const narc_point_batch *const batch = &job->batch;
-    (void)part;
-    for (; first < end; first++) {
-        const size_t body = find_body(batch, first);
-        if (body >= batch->bodies->count || narc_index_at(batch->bodies->shape, body) >= batch->shapes->count)
-            break;
-    }
-    size_t bad = atomic_load_explicit(&job->bad, memory_order_relaxed);
-    while (first < end && first < bad && !atomic_compare_exchange_weak(&job->bad, &bad, first))
-        continue;
-}
-
-/* Says what of a point is out of range. */
-static narc_status describe_bad_point(const narc_point_batch *batch, size_t point, narc_error *error) {
-    const size_t body = find_body(batch, point);
-    if (body >= batch->bodies->count)
-        return narc_fail(error, NARC_ERROR_INDEX, point, (double)body,
-                         "point %zu: the body is %zu, but there are %zu bodies", point, body, batch->bodies->count);
-    const uint32_t shape = narc_index_at(batch->bodies->shape, body);
-    return narc_fail(error, NARC_ERROR_INDEX, point, shape,
-                     "point %zu: body %zu has shape %lu, but there are %zu shapes", point, body, (unsigned long)shape,
-                     batch->shapes->count);
-}
-
 narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                 const narc_index_column *body, const narc_workers *workers, narc_distance *out_rows,
                                 narc_error *error) {
@@ -92,14 +62,44 @@ narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bo
                      .kernel = kernels->distance};
     if (body)
         job.batch.body = *body;
-    atomic_init(&job.bad, points->count);
-    narc_run_ranges(workers, points->count, CHECK_PART, check_part, &job);
-    const size_t bad = atomic_load(&job.bad);
-    if (bad < points->count)
-        return describe_bad_point(&job.batch, bad, error);
-    narc_run_ranges(workers, points->count, PART, answer_part, &job);
-    return NARC_OK;
+    status = narc_check_named(shapes, bodies, job.batch.body, points->count, "point", workers, error);
+    if (status == NARC_OK)
+        narc_run_ranges(workers, points->count, PART, answer_part, &job);
+    return status;
 }
+
+/* ------------------------------------------------------------------------------------------------ within */
+
+#if !NARC_SMALL
+static void answer_bits(void *argument, size_t part, size_t first, size_t end) {
+    const point_job *job = argument;
+    (void)part;
+    job->kernels->inside(&job->batch, first, end, job->out_bits);
+}
+
+narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                             const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
+                             narc_error *error) {
+    narc_status status = check_points(shapes, bodies, points, error);
+    if (status == NARC_OK)
+        status = narc_check_set(bodies, error);
+    if (status != NARC_OK || points->count == 0)
+        return status;
+    if (!out_bits)
+        return narc_fail_missing(error, "out_bits");
+    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points},
+                     .kernels = find_kernels(points->count, &status, error),
+                     .out_bits = out_bits};
+    if (!job.kernels)
+        return status;
+    if (body)
+        job.batch.body = *body;
+    status = narc_check_named(shapes, bodies, job.batch.body, points->count, "point", workers, error);
+    if (status == NARC_OK)
+        narc_run_ranges(workers, points->count, PART, answer_bits, &job);
+    return status;
+}
+#endif
 
 /* ------------------------------------------------------------------------------------------------ nearest */
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * rays.c - narc_cast_rays(): argument checks, rays into an order if asked, then part by part to the kernel.
+ * rays.c - narc_cast_rays() and narc_cast_ray_pairs(): argument checks, rays into an order if asked, then part by part
+ * to the kernels.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -61,7 +62,8 @@ static void find_cells(void *argument, size_t part, size_t first, size_t end) {
 static void order_rays(const narc_index *index, const narc_rays *rays, const narc_workers *workers, void *room,
                        uint32_t *out) {
     const narc_box scene = narc_find_index_box(index);
-    struct ordering o = {rays, (double)scene.min_x, (double)scene.min_y, 0, 0, 1, room};
+    struct ordering o = {rays, index->origin.x + (double)scene.min_x, index->origin.y + (double)scene.min_y, 0, 0, 1,
+                         room};
     uint32_t *const place = o.cell + rays->count;
     while (4 * o.cells * o.cells * RAYS_IN_CELL <= rays->count && o.cells < MOST_CELLS)
         o.cells *= 2;
@@ -92,7 +94,7 @@ static narc_status check_options(const narc_index *index, const narc_ray_options
     if ((unsigned)options->inside > NARC_INSIDE_IGNORES)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->inside, "options.inside is %d",
                          (int)options->inside);
-    const narc_status status = narc_check_search(index, &options->search, "options.search", error);
+    const narc_status status = index ? narc_check_search(index, &options->search, "options.search", error) : NARC_OK;
     return status == NARC_OK ? narc_check_reserved(options->reserved, 3, "options", error) : status;
 }
 
@@ -116,7 +118,7 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
                          "%zu rows for each of %zu rays, but there is room for %zu", most, rays->count, capacity);
     if (rays->count > 0 && !out_rows)
         return narc_fail_missing(error, "out_rows");
-    struct ray_job job = {{index, shapes, bodies, rays, o, most, out_rows}, narc_kernels(&status, error), 0};
+    struct ray_job job = {{index, shapes, bodies, rays, o, most, out_rows, {NULL, 0}}, narc_kernels(&status, error), 0};
     if (!job.kernels)
         return status;
     if (o->out_order && rays->count > 0)
@@ -126,3 +128,47 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;
 }
+
+#if !NARC_SMALL
+static void cast_pairs_part(void *argument, size_t part, size_t first, size_t end) {
+    struct ray_job *const job = argument;
+    (void)part;
+    const size_t skipped = job->kernels->ray_pairs(&job->batch, first, end - first);
+    if (skipped > 0)
+        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
+}
+
+narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
+                                const narc_index_column *body, const narc_ray_options *options, narc_ray_hit *out_rows,
+                                size_t capacity, narc_error *error) {
+    static const narc_ray_options defaults = {0};
+    const narc_ray_options *const o = options ? options : &defaults;
+    const narc_index_column column = body ? *body : (narc_index_column){NULL, 0};
+    if (!shapes || !bodies || !rays)
+        return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "rays");
+    narc_status status = check_rays(rays, error);
+    if (status == NARC_OK)
+        status = check_options(NULL, o, error);
+    if (status == NARC_OK)
+        status = narc_check_set(bodies, error);
+    if (status != NARC_OK)
+        return status;
+    if (rays->count > capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)rays->count, "%zu rows, but there is room for %zu",
+                         rays->count, capacity);
+    if (rays->count > 0 && !out_rows)
+        return narc_fail_missing(error, "out_rows");
+    const narc_kernel_table *const kernels = narc_kernels(&status, error);
+    if (!kernels)
+        return status;
+    status = narc_check_named(shapes, bodies, column, rays->count, "ray", o->search.workers, error);
+    if (status != NARC_OK)
+        return status;
+    struct ray_job job = {
+        {NULL, shapes, bodies, rays, o, 1, out_rows, column}, NARC_KERNELS_FOR(rays->count, kernels), 0};
+    narc_run_ranges(o->search.workers, rays->count, PART, cast_pairs_part, &job);
+    if (o->out_skipped)
+        *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
+    return NARC_OK;
+}
+#endif

@@ -238,11 +238,12 @@ struct placed_bodies {
     vf scale;
 };
 
-/* Splits the positions along one axis. */
-INLINE void split_positions(narc_position_column column, const int32_t *index, vf *out_high, vf *out_low) {
+/* Splits the positions along one axis, less the origin. */
+INLINE void split_positions(narc_position_column column, double origin, const int32_t *index, vf *out_high,
+                            vf *out_low) {
     float high[V_WIDTH], low[V_WIDTH];
     for (int l = 0; l < V_WIDTH; l++) {
-        const double whole = narc_double_at(column, (uint32_t)index[l]);
+        const double whole = narc_position_at(column, (uint32_t)index[l]) - origin;
         high[l] = (float)whole;
         low[l] = (float)(whole - (double)high[l]);
     }
@@ -250,20 +251,21 @@ INLINE void split_positions(narc_position_column column, const int32_t *index, v
     *out_low = v_load(low);
 }
 
+/* Positions are less the origin; NULL: as they are. */
 INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum pose_layout layout,
-                                               const int32_t *index) {
+                                               const narc_point *origin, const int32_t *index) {
     struct placed_bodies out = {.rest = {v_set(0), v_set(0)}};
     vf row[4];
-    if (layout == POSE_ROWS) {
+    if (layout == POSE_ROWS && !origin) {
         v_rows(bodies->x.base, bodies->x.stride, index, row);
         out.position = (vec2){row[0], row[1]};
         out.rotation = (vec2){row[2], row[3]};
         out.scale = load_column_or(bodies->scale, index, 1);
         return out;
     }
-    if (bodies->x.precision == NARC_FLOAT64) {
-        split_positions(bodies->x, index, &out.position.x, &out.rest.x);
-        split_positions(bodies->y, index, &out.position.y, &out.rest.y);
+    if (bodies->x.precision == NARC_FLOAT64 || origin) {
+        split_positions(bodies->x, origin ? origin->x : 0, index, &out.position.x, &out.rest.x);
+        split_positions(bodies->y, origin ? origin->y : 0, index, &out.position.y, &out.rest.y);
     } else {
         out.position = (vec2){load_column(get_singles(bodies->x), index), load_column(get_singles(bodies->y), index)};
     }

@@ -226,7 +226,7 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, const uint32_t *list, size_t
             to[l] = (char *)(out + own);
         }
         const struct headers headers = load_headers(batch->shapes->headers, shape);
-        const struct placed_bodies placed = load_placed_bodies(bodies, layout, body);
+        const struct placed_bodies placed = load_placed_bodies(bodies, layout, batch->origin, body);
         vm valid;
         const vec2 rotation = normalise_rotation(placed.rotation, &valid);
         struct reaches r = find_reaches(batch->shapes, shape, &headers, &placed, rotation, margin);

@@ -130,9 +130,10 @@ static void answer_capsule_overlaps(const struct call *call, const struct box_qu
 }
 
 static void answer_circle_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
-    const struct box_pair pair = {queue, k, false};
-    const struct circle_contact c = find_circle_contact(&pair);
-    mark_pairs(call, vi_bits(get_box_field(&pair, BOX_PAIR)), vm_and(vm_front(live), v_lt(c.separation, v_set(0))));
+    const struct circle_pair pair = load_circle_pairs(queue, k);
+    const struct circle_contact c =
+        vm_any(pair.sides) ? find_circle_contact(&pair, ANY_CIRCLES) : find_circle_contact(&pair, TWO_CIRCLES);
+    mark_pairs(call, find_circle_numbers(queue, k), vm_and(vm_front(live), v_lt(c.separation, v_set(0))));
 }
 
 /* All pairs; of those with a piece, which ones are near. */

@@ -43,41 +43,39 @@ enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 #include "sat/stages.inl"
 #include "simd/simd.h"
 
-/* The call of one pair. */
-struct one {
-    struct call call;
-    struct rows rows;
-    struct placement placement;
-};
-
 static const struct question contacts = {.kind = CONTACT_ROWS}, manifolds = {.kind = MANIFOLD_ROWS};
 
-/* No initialiser: that would clear much that nobody reads. */
-INLINE void start_one(struct one *one, const narc_batch *batch, const narc_one_pair *at, bool manifold, void *out) {
-    const struct body_pair bodies = {{v_set(at->x), v_set(at->y)},
-                                     {v_set(at->cosine_a), v_set(at->sine_a)},
-                                     {v_set(at->cosine_b), v_set(at->sine_b)},
-                                     v_set(at->scale_a),
-                                     v_set(at->scale_b)};
-    one->call.batch = batch;
-    one->call.first = at->number;
-    one->call.margin = at->margin;
-    one->call.question = manifold ? &manifolds : &contacts;
-    one->call.rows = &one->rows;
-    one->call.bits = NULL;
-    one->rows.out.base = out;
-    one->rows.dense = false;
-    one->rows.known[0] = 0;
-    one->placement = place_bodies(&bodies, v_set(at->margin));
+/* The call of one pair. No initialiser: that would clear much that nobody reads. */
+INLINE void start_one(const narc_one_pair *asked, struct call *call, struct rows *out_rows) {
+    call->batch = asked->batch;
+    call->first = asked->number;
+    call->margin = asked->margin;
+    call->question = asked->manifold ? &manifolds : &contacts;
+    call->rows = out_rows;
+    call->bits = NULL;
+    out_rows->out.base = asked->out_row;
+    out_rows->dense = false;
+    out_rows->known[0] = 0;
 }
 
-INLINE int end_one(const struct one *one) { return one->rows.known[0] ? WITH_ROW : WITHOUT_ROW; }
+INLINE int end_one(const struct rows *out_rows) { return out_rows->known[0] ? WITH_ROW : WITHOUT_ROW; }
 
-INLINE struct filter set_up_one(const struct one *one, const narc_one_pair *at, vf item[FIELDS]) {
+INLINE struct placement place_one(const narc_one_pair *asked) {
+    const narc_body *const a = asked->a, *const b = asked->b;
+    const struct body_pair bodies = {{v_set((float)(b->x - a->x)), v_set((float)(b->y - a->y))},
+                                     {v_set(a->cosine), v_set(a->sine)},
+                                     {v_set(b->cosine), v_set(b->sine)},
+                                     v_set(a->scale),
+                                     v_set(b->scale)};
+    return place_bodies(&bodies, v_set(asked->margin));
+}
+
+INLINE struct filter set_up_one(const struct call *call, const narc_one_pair *asked, vf item[FIELDS]) {
+    const struct placement placement = place_one(asked);
     struct pair_indices in;
-    in.shape_a[0] = (int32_t)at->shape_a;
-    in.shape_b[0] = (int32_t)at->shape_b;
-    return set_up_pairs(&one->call, &in, 0, &one->placement, vm_front(1), 0, item);
+    in.shape_a[0] = (int32_t)asked->a->shape;
+    in.shape_b[0] = (int32_t)asked->b->shape;
+    return set_up_pairs(call, &in, 0, &placement, vm_front(1), 0, item);
 }
 
 /* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
@@ -95,16 +93,20 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
 }
 
 /* Pairs of polygons and all that is searched for, in the order of rows.c's stages. */
-NOINLINE int search_one(struct one *one, const narc_one_pair *at, bool manifold) {
+NOINLINE int search_one(const narc_one_pair *asked) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
+    struct call own;
+    struct rows found;
     vf item[FIELDS];
-    const struct filter circles = set_up_one(one, at, item);
+    const struct call *const call = &own;
+    const bool manifold = asked->manifold;
+    start_one(asked, &own, &found);
+    const struct filter circles = set_up_one(call, asked, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
-    const struct call *const call = &one->call;
     const bool polygons = vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B])),
                smooth = !polygons && vm_any(both_have(item, NARC_SHAPE_SMOOTH));
     for (int s = PROBE; s <= CLIMB; s++)
@@ -125,67 +127,81 @@ NOINLINE int search_one(struct one *one, const narc_one_pair *at, bool manifold)
     const bool edges = queues[ANSWER_EDGES].count > 0;
     if (edges || queues[ANSWER].count > 0)
         answer_settled(call, queues, 0, edges);
-    return end_one(one);
+    return end_one(&found);
 }
 
 /* Two boxes or two capsules. */
-INLINE int find_of_forms(struct one *one, const narc_one_pair *at, bool manifold, bool capsules) {
+INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
     struct box_queue queue = {.count = 0};
-    const narc_box_form *const forms = one->call.batch->shapes->boxes;
-    const int32_t shape_a = (int32_t)at->shape_a, shape_b = (int32_t)at->shape_b;
+    struct call call;
+    struct rows found;
+    const narc_box_form *const forms = asked->batch->shapes->boxes;
+    const int32_t shape_a = (int32_t)asked->a->shape, shape_b = (int32_t)asked->b->shape;
     const struct box_form a = load_box_forms(forms, &shape_a), b = load_box_forms(forms, &shape_b);
-    const vm in_range = one->placement.in_range;
-    const vm taken = capsules ? take_capsules(&one->call, &a, &b, &one->placement, in_range, 0, &queue)
-                              : take_boxes(&one->call, &a, &b, &one->placement, in_range, 0, &queue);
+    const struct placement placement = place_one(asked);
+    start_one(asked, &call, &found);
+    const vm taken = capsules ? take_capsules(&call, &a, &b, &placement, placement.in_range, 0, &queue)
+                              : take_boxes(&call, &a, &b, &placement, placement.in_range, 0, &queue);
     if (!vm_any(taken))
-        return search_one(one, at, manifold);
-    if (queue.count > 0 && !answer_boxes(&one->call, &queue, 0, 1, capsules, manifold))
+        return search_one(asked);
+    if (queue.count > 0 && !answer_boxes(&call, &queue, 0, 1, capsules, asked->manifold))
         return UNANSWERED;
-    return end_one(one);
+    return end_one(&found);
 }
 
-NOINLINE int find_of_boxes(struct one *one, const narc_one_pair *at, bool manifold) {
-    return find_of_forms(one, at, manifold, false);
-}
+NOINLINE int find_of_boxes(const narc_one_pair *asked) { return find_of_forms(asked, false); }
 
-NOINLINE int find_of_capsules(struct one *one, const narc_one_pair *at, bool manifold) {
-    return find_of_forms(one, at, manifold, true);
-}
+NOINLINE int find_of_capsules(const narc_one_pair *asked) { return find_of_forms(asked, true); }
 
 /* A circle, and any shape that has a form. */
-NOINLINE int find_with_circle(struct one *one, const narc_one_pair *at, bool manifold) {
-    struct box_queue queue;
-    const narc_box_form *const forms = one->call.batch->shapes->boxes;
-    const int32_t shape_a = (int32_t)at->shape_a, shape_b = (int32_t)at->shape_b;
+INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
+    struct call call;
+    struct rows found;
+    struct circle_pair pair;
+    const narc_box_form *const forms = asked->batch->shapes->boxes;
+    const int32_t shape_a = (int32_t)asked->a->shape, shape_b = (int32_t)asked->b->shape;
     const struct box_form a = load_box_forms(forms, &shape_a), b = load_box_forms(forms, &shape_b);
-    queue.count = 0;
-    if (!vm_any(take_circles(&one->call, &a, &b, &one->placement, one->placement.in_range, 0, &queue)))
-        return search_one(one, at, manifold);
-    if (queue.count > 0)
-        answer_circles(&one->call, &queue, 0, 1);
-    return end_one(one);
+    const struct placement placement = place_one(asked);
+    vm near;
+    start_one(asked, &call, &found);
+    if (!vm_any(judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &near, &pair)))
+        return search_one(asked);
+    if (!vm_any(near))
+        return WITHOUT_ROW;
+    const struct circle_contact c = find_circle_contact(&pair, of);
+    if (!vm_any(is_below(c.separation, v_set(asked->margin))))
+        return WITHOUT_ROW;
+    write_circles(&call, &pair, &c, vi_set(0), of, &found.out.base);
+    return WITH_ROW;
 }
 
-int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_one_pair *at, bool manifold,
-                                               void *out_row) {
-    const narc_shapes *const shapes = batch->shapes;
-    const narc_shape_header *const a = &shapes->headers[at->shape_a], *const b = &shapes->headers[at->shape_b];
-    struct one one;
-    if (narc_is_piece(a) || narc_is_piece(b))
+NOINLINE int find_of_circles(const narc_one_pair *asked) { return find_with_circle(asked, TWO_CIRCLES); }
+
+NOINLINE int find_beside_a(const narc_one_pair *asked) { return find_with_circle(asked, CIRCLE_IS_FIRST); }
+
+NOINLINE int find_beside_b(const narc_one_pair *asked) { return find_with_circle(asked, CIRCLE_IS_LAST); }
+
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
+    const narc_shapes *const shapes = asked->batch->shapes;
+    const uint32_t a = asked->a->shape, b = asked->b->shape;
+    const uint32_t form_a = shapes->boxes[a].info, form_b = shapes->boxes[b].info;
+    if (form_a & form_b & NARC_IS_CIRCLE)
+        return find_of_circles(asked);
+    if (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE)
+        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
+    if (form_a & form_b & NARC_IS_BOX)
+        return find_of_boxes(asked);
+    if (form_a & form_b & NARC_IS_CAPSULE)
+        return find_of_capsules(asked);
+    if (narc_is_piece(&shapes->headers[a]) || narc_is_piece(&shapes->headers[b]))
         return UNANSWERED;
-    start_one(&one, batch, at, manifold, out_row);
-    const uint32_t form_a = shapes->boxes[at->shape_a].info, form_b = shapes->boxes[at->shape_b].info;
-    return (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE ? find_with_circle
-            : form_a & form_b & NARC_IS_BOX                        ? find_of_boxes
-            : form_a & form_b & NARC_IS_CAPSULE                    ? find_of_capsules
-                                                                   : search_one)(&one, at, manifold);
+    return search_one(asked);
 }
 
 #else
 
-int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_batch *batch, const narc_one_pair *at, bool manifold,
-                                               void *out_row) {
-    (void)batch, (void)at, (void)manifold, (void)out_row;
+int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
+    (void)asked;
     return UNANSWERED;
 }
 

@@ -274,7 +274,7 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     for (int side = 0; side < 2; side++) {
         struct narc_cast_side *const its = &casts->side[side];
         const narc_motions *const motions = &given->motions[side];
-        const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], item[side]);
+        const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], NULL, item[side]);
         const vi pairs = vi_load(number);
         vi_store(body[side], call->own ? vi_add(vi_add(pairs, pairs), vi_set(side)) : vi_load(item[side]));
         memcpy(its->shape + to, shape[side], V_WIDTH * sizeof(int32_t));
@@ -568,19 +568,11 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
     batch.shapes = given->batch->shapes;
     batch.query = &all_rows;
     for (size_t k = 0; k < casts->count; k++) {
-        const narc_one_pair at = {.number = (uint32_t)k,
-                                  .shape_a = a->shape[k],
-                                  .shape_b = b->shape[k],
-                                  .x = casts->x_now[k],
-                                  .y = casts->y_now[k],
-                                  .cosine_a = casts->cosine_now[0][k],
-                                  .sine_a = casts->sine_now[0][k],
-                                  .scale_a = a->scale[k],
-                                  .cosine_b = casts->cosine_now[1][k],
-                                  .sine_b = casts->sine_now[1][k],
-                                  .scale_b = b->scale[k],
-                                  .margin = INFINITY};
-        if (given->kernels->pair(&batch, &at, false, &casts->contact[k]) < 0)
+        const narc_body at[2] = {{0, 0, casts->cosine_now[0][k], casts->sine_now[0][k], a->scale[k], a->shape[k]},
+                                 {casts->x_now[k], casts->y_now[k], casts->cosine_now[1][k], casts->sine_now[1][k],
+                                  b->scale[k], b->shape[k]}};
+        const narc_one_pair asked = {&batch, &at[0], &at[1], &casts->contact[k], INFINITY, (uint32_t)k, false};
+        if (given->kernels->pair(&asked) < 0)
             ask_contacts(batch.shapes, casts, k, 1);
     }
 }

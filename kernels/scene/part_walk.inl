@@ -41,9 +41,10 @@ INLINE void enter_part_node(struct part_walk *w, unsigned level, uint32_t node) 
     w->slots[level] = mask_slots(w->index, at, slots & ((1u << NARC_NODE_SLOTS) - 1), w->chosen->mask);
 }
 
-/* Boxes no further than `reach` from the place. The index is not empty. */
+/* Boxes no further than `reach` from the place, which is one in the world. The index is not empty. */
 INLINE struct part_walk begin_part_walk(const narc_index *index, const struct chosen *chosen, uint32_t owner, place at,
                                         double reach) {
+    at = (place){at.x - index->origin.x, at.y - index->origin.y};
     const double room = reach + (fabs(at.x) + fabs(at.y)) * 0x1p-22;
     struct part_walk w = {.index = index, .chosen = chosen, .owner = owner};
     w.min_x = (float)find_most(-(double)FLT_MAX, at.x - room);

@@ -304,21 +304,27 @@ static double find_entering(const struct scene *scene, int arc, double target, p
     return least;
 }
 
-/* Does an arc that moves along a line come clear of a target by more than `room`, if it is not so at the start? */
-static bool comes_clear(const struct scene *scene, int arc, double target, double room, place motion) {
-    const place u = find_way(scene, arc);
-    const double most = scene->arc.radius - get_radius(scene, arc) - target - room, along = find_dot(u, motion),
-                 across = find_cross(u, motion), square = find_dot(motion, motion);
-    return most > sqrt(find_dot(u, u)) || (along < 0 && most > 0 && most * most * square > across * across);
+/* Is one that was let go seen clear of a target before a time: is no contact at it, or within `room`? */
+static bool is_seen_clear(const struct scene *scene, double time, double target, double room, place motion) {
+    enum { LOOKS = 16 };
+    bool clear = false;
+    for (int k = 1; k < LOOKS && !clear; k++) {
+        struct scene then = *scene;
+        then.body.position.x += time * k / LOOKS * motion.x;
+        then.body.position.y += time * k / LOOKS * motion.y;
+        const struct nearest nearest = find_nearest(&then, false);
+        clear = nearest.separation > target + room && !nearest.unreached;
+    }
+    return clear;
 }
 
-/* When does it have a contact that is at a target, after the start? Of arcs that come clear of it before, by some room. */
-static double find_contact_time(const struct scene *scene, double target, double room, place motion, double meeting) {
+/* When has it a contact that is at a target, and was not at the start? */
+static double find_contact_time(const struct scene *scene, double target, place motion) {
+    const double meeting = find_meeting(scene, motion);
     double least = INFINITY;
     for (int arc = 0; arc < scene->body.header->count; arc++) {
         const double goal = scene->arc.radius - get_radius(scene, arc) - target;
-        if (comes_clear(scene, arc, target, room, motion))
-            least = find_least(least, find_leaving(scene, arc, goal, motion));
+        least = find_least(least, find_leaving(scene, arc, goal, motion));
         least = find_least(least, find_entering(scene, arc, target, motion, meeting));
     }
     return least;
@@ -329,13 +335,13 @@ static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t sl
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
-    const double meeting = find_meeting(&scene, motion);
-    double least = nearest.separation <= target ? 0 : find_contact_time(&scene, target, -INFINITY, motion, meeting);
+    double least = nearest.separation <= target ? 0 : find_contact_time(&scene, target, motion);
     if (!(least <= 1))
         return NARC_CAST_MISS;
     if (target < wanted) {
-        const double again = find_contact_time(&scene, wanted, casts->enough[slot], motion, meeting);
-        if (again < least && round_time(again) > 0) {
+        const double again = find_contact_time(&scene, wanted, motion);
+        if (again < least && round_time(again) > 0 &&
+            is_seen_clear(&scene, again, wanted, casts->enough[slot], motion)) {
             casts->target[slot] = (float)wanted;
             least = again;
         }
@@ -352,9 +358,10 @@ static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t sl
 /* ------------------------------------------------------------------------------------------------ steps in time */
 
 /* What is known of a contact at a time: for how long there is none yet; below 0: for how long there is one. In
- * `separation` what it has, if there is one; does it reach the piece? */
+ * `separation` what it has, if there is one; does it reach the piece? `apart`: how far the bodies are from each other at
+ * least, whatever is told of them. */
 struct outlook {
-    double wait, separation;
+    double wait, separation, apart;
     bool reached;
 };
 
@@ -411,7 +418,7 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
     for (int round = 0; round < MOST_CONTACTS; round++) {
         casts->time[slot] = round_time(time);
         struct outlook o = look(shapes, casts, slot, (double)casts->time[slot]);
-        if (casts->target[slot] < wanted && o.separation > (double)wanted + enough) { /* it was let go, and is clear */
+        if (casts->target[slot] < wanted && o.apart > (double)wanted + enough) { /* it was let go, and is clear */
             casts->target[slot] = wanted;
             o = look(shapes, casts, slot, (double)casts->time[slot]);
         }
@@ -466,7 +473,8 @@ static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *cas
     const struct nearest nearest = find_nearest(&scene, false);
     const bool reached = nearest.separation < INFINITY;
     const double target = (double)casts->target[slot], between = find_circle_gap(&scene);
-    struct outlook out = {INFINITY, !reached && nearest.unreached ? -INFINITY : nearest.separation, reached};
+    const double separation = !reached && nearest.unreached ? -INFINITY : nearest.separation;
+    struct outlook out = {INFINITY, separation, separation, reached};
     for (int arc = 0; arc < scene.body.header->count; arc++)
         if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
             out.wait = find_least(out.wait, find_arc_wait(&scene, arc, target, between, &s, side));
@@ -706,7 +714,7 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
     const struct speeds s = find_speeds(bodies, casts, slot);
     const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1],
                  target = (double)casts->target[slot];
-    struct outlook out = {(g.most - target) / speed, INFINITY, true};
+    struct outlook out = {(g.most - target) / speed, INFINITY, g.most, true};
     bool told = true;
     for (int side = 0; side < 2; side++) {
         if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || is_of_front(&g, side, s.reach[0] + s.reach[1]))

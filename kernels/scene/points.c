@@ -28,6 +28,7 @@
 #include "scene/concave.inl"
 #include "scene/piece_places.inl"
 #include "scene/things.inl"
+#include "simd/doubles.h"
 #include "simd/simd.h"
 
 /* ------------------------------------------------------------------------------------------------ separations */
@@ -269,6 +270,80 @@ void NARC_NAMED(distance)(const narc_point_batch *batch, size_t first, size_t en
     answer(batch->shapes, &waiting);
 }
 
+/* ------------------------------------------------------------------------------------------------ within */
+
+#if !NARC_SMALL
+/* As place_point(), points from k on, in lanes. One without an answer lies outside of all that there is. */
+INLINE vec2 place_points(const struct body_frame *frame, const narc_points *points, size_t k, int lanes) {
+    double x[V_WIDTH], y[V_WIDTH];
+    float out_x[V_WIDTH], out_y[V_WIDTH];
+    const vd limit = d_set(NARC_MAX_DISTANCE), nowhere = d_set(8 * NARC_MAX_DISTANCE);
+    const vd c = d_set(frame->rotation.x), s = d_set(frame->rotation.y);
+    const vd middle_x = d_set(frame->scale * (double)frame->header->bound_x);
+    const vd middle_y = d_set(frame->scale * (double)frame->header->bound_y);
+    for (int l = 0; l < V_WIDTH; l++) {
+        const place point = load_point(points, k + (size_t)(l < lanes ? l : 0));
+        x[l] = point.x;
+        y[l] = point.y;
+    }
+    for (int l = 0; l < V_WIDTH; l += D_WIDTH) {
+        const vd from_x = d_load(x + l) - d_set(frame->position.x), from_y = d_load(y + l) - d_set(frame->position.y);
+        const vl near = d_le(d_abs(from_x), limit) & d_le(d_abs(from_y), limit);
+        d_put_floats(out_x + l, d_select(near, c * from_x + s * from_y - middle_x, nowhere));
+        d_put_floats(out_y + l, d_select(near, c * from_y - s * from_x - middle_y, nowhere));
+    }
+    return (vec2){v_load(out_x), v_load(out_y)};
+}
+
+/* Is the separation of points below 0? As find_separation(), with points in lanes. */
+INLINE vm are_within(const struct body_frame *frame, vec2 point) {
+    const vec2 middle = {v_set(frame->header->bound_x), v_set(frame->header->bound_y)};
+    const vf scale = v_set((float)frame->scale), zero = v_set(0);
+    vm within = vm_front(V_WIDTH);
+    for (int k = 0; k < (int)frame->header->count && vm_any(within); k++) {
+        const narc_stored_arc *const arc = &frame->arcs[k].arc;
+        const vec2 center = {v_set(arc->center_x), v_set(arc->center_y)};
+        const vec2 u = v2_sub(point, v2_scale(v2_sub(center, middle), scale));
+        const struct arc_view view =
+            view_arc(u, (vec2){v_set(arc->start_x), v_set(arc->start_y)}, (vec2){v_set(arc->end_x), v_set(arc->end_y)});
+        within = vm_and(within, v_lt(find_arc_separation(&view, v_mul(v_set(arc->radius), scale)), zero));
+    }
+    return within;
+}
+
+INLINE bool is_within(const struct body_frame *frame, place point) {
+    float x, y;
+    return place_point(frame, point, &x, &y) && find_separation(frame, x, y) < 0;
+}
+
+/* Points that follow each other and ask of one body go in lanes; others have the arcs there. */
+void NARC_NAMED(inside)(const narc_point_batch *batch, size_t first, size_t end, uint64_t *out_bits) {
+    enum { LEAST = V_WIDTH > 1 ? 3 : 1 };
+    for (size_t word = first / 64; 64 * word < end; word++)
+        out_bits[word] = 0;
+    for (size_t k = first, next; k < end; k = next) {
+        const narc_index_column column = batch->body;
+        const size_t body = column.base ? narc_index_at(column, k) : k;
+        struct body_frame frame;
+        for (next = k + 1; next < end && column.base && narc_index_at(column, next) == body;)
+            next++;
+        if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) || narc_is_piece(frame.header))
+            continue;
+        for (int lanes; k < next; k += (size_t)lanes) {
+            const size_t left = next - k;
+            const bool alone = left < LEAST;
+            lanes = alone ? 1 : left < V_WIDTH ? (int)left : V_WIDTH;
+            const vm within = alone ? vm_front(0) : are_within(&frame, place_points(&frame, batch->points, k, lanes));
+            const uint64_t bits =
+                alone ? is_within(&frame, load_point(batch->points, k)) : vm_bits(vm_and(within, vm_front(lanes)));
+            out_bits[k / 64] |= bits << k % 64;
+            if (k % 64 + (size_t)lanes > 64)
+                out_bits[k / 64 + 1] |= bits >> (64 - k % 64);
+        }
+    }
+}
+#endif
+
 /* ------------------------------------------------------------------------------------------------ nearest */
 
 /* Boxes and the values that are compared with them leave room for the rounding of separations, so that the answer
@@ -295,7 +370,7 @@ struct step {
 struct search {
     const narc_point_batch *batch;
     place point;
-    float x, y, room; /* the point in single precision, and what that may be off by */
+    float x, y, room; /* the point in the index' coordinates, in single precision, and what that may be off by */
     struct chosen chosen;
     narc_distance *rows; /* the nearest so far, in their order: point, body and separation */
     size_t found;
@@ -455,10 +530,11 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
     waiting.count = 0;
     for (size_t k = first; k < end; k++) {
         struct search search = {.batch = batch, .point = load_point(batch->points, k), .chosen = read_chosen(query, k)};
-        search.x = (float)search.point.x;
-        search.y = (float)search.point.y;
-        search.room =
-            (float)((fabs(search.point.x - (double)search.x) + fabs(search.point.y - (double)search.y)) * 1.001);
+        const narc_point *const origin = &batch->index->origin;
+        const place at = {search.point.x - origin->x, search.point.y - origin->y};
+        search.x = (float)at.x;
+        search.y = (float)at.y;
+        search.room = (float)((fabs(at.x - (double)search.x) + fabs(at.y - (double)search.y)) * 1.001);
         search.rows = batch->out + k * batch->most;
         search.limit = -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance));
         search.limit_key = find_limit_key(search.limit);

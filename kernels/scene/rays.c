@@ -166,7 +166,8 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         out->fraction[k] = narc_float_or(rays->fraction, out->number[k], 1);
     for (size_t k = 0; k < end; k += D_WIDTH) {
         const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
-        const vd x = get_lanes(out->origin_x + k, single), y = get_lanes(out->origin_y + k, single);
+        const vd x = get_lanes(out->origin_x + k, single) - d_set(batch->index->origin.x);
+        const vd y = get_lanes(out->origin_y + k, single) - d_set(batch->index->origin.y);
         const vd motion_x = get_lanes(out->direction_x + k, single), motion_y = get_lanes(out->direction_y + k, single);
         const vd length = d_sqrt(motion_x * motion_x + motion_y * motion_y), inverse_length = one / length;
         const vl is_finite = d_le(d_abs(x), largest) & d_le(d_abs(y), largest) & d_le(length, largest);
@@ -514,7 +515,8 @@ INLINE bool joins(const struct read_rays *rays, size_t first, size_t k) {
 /* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
  * any hit will do: which is found depends on the way. */
 INLINE bool is_open(const narc_ray_batch *batch, const narc_box *scene, const struct read_rays *rays, size_t k) {
-    const place o = {rays->origin_x[k], rays->origin_y[k]};
+    const narc_point *const origin = &batch->index->origin;
+    const place o = {rays->origin_x[k] - origin->x, rays->origin_y[k] - origin->y};
     return (double)scene->min_x <= o.x && o.x <= (double)scene->max_x && (double)scene->min_y <= o.y &&
            o.y <= (double)scene->max_y && rays->room[k] <= 0x1p80f && !batch->options->any;
 }

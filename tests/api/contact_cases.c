@@ -756,4 +756,95 @@ TEST(bodies_that_creep_are_found) {
     }
 }
 
+/* A crowd of boxes, 20 in a row, that nearly touch. */
+static struct few *make_crowd(double x, double y) {
+    struct few *const few = make_few(box_of(1, 1, 0), 600, NULL);
+    for (size_t k = 0; k < 600; k++) {
+        few->body[k].x = x + (double)(k % 20) * 1.0001;
+        few->body[k].y = y + (double)(k / 20) * 1.0001;
+    }
+    few->step.skin = 0.03f;
+    return few;
+}
+
+/* However far away a crowd is, it has the pairs that it has at home: eight neighbours each. */
+TEST(worlds_far_away_have_the_pairs_of_near_ones) {
+    static const double far[] = {0, 1e6, 1e7, 1e8, 1e9};
+    size_t here = 0;
+    for (size_t k = 0; k < sizeof far / sizeof *far; k++) {
+        const narc_point origin = {far[k], -far[k]};
+        struct few *const few = make_crowd(far[k], -far[k]);
+        few->step.origin = k > 0 ? &origin : NULL;
+        const narc_step_result *const r = step_few(few);
+        here = k > 0 ? here : r->count;
+        assert_int_equal(r->count, here);
+        assert_true(r->count < 4 * 600);
+        destroy_few(few);
+    }
+}
+
+/* Nothing begins, ends, comes, goes or is asked where nothing moves but the origin, near or far; and those who move then are
+ * found. */
+TEST(an_origin_that_moves_keeps_everything) {
+    static const double ways[] = {0.5, 20, 300, 4e3, 1e6, -1e6, 7};
+    for (int recycling = 0; recycling < 2; recycling++) {
+        struct few *const few = make_crowd(3e5, 2e5);
+        narc_point origin = {3e5, 2e5};
+        narc_manifold rows[600 * 8];
+        uint32_t order[600 * 8];
+        few->step.origin = &origin;
+        few->step.recycling = recycling ? 0.01f : 0;
+        const narc_step_result *r = step_few(few);
+        few->body[7].x += 1e-4; /* within its box, so that it follows */
+        r = step_few(few);
+        const size_t count = r->count;
+        assert_true(count < 600 * 4);
+        memcpy(order, r->order, count * sizeof *order);
+        memcpy(rows, r->manifolds, count * sizeof *rows);
+        for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+            origin.x += ways[k];
+            origin.y -= ways[k];
+            r = step_few(few);
+            assert_int_equal(r->began_count + r->ended_count + r->asked_count, 0);
+            assert_int_equal(r->count, count);
+            assert_memory_equal(r->order, order, count * sizeof *order);
+            assert_memory_equal(r->manifolds, rows, count * sizeof *rows);
+            for (size_t i = 0; i < count; i++)
+                assert_false(r->state[order[i]] & (NARC_NEW | NARC_ASKED | NARC_FOLLOWED));
+        }
+        few->body[0].x += 1.5; /* over the next one */
+        r = step_few(few);
+        assert_true(r->began_count > 0);
+        destroy_few(few);
+    }
+}
+
+/* Contacts that were saved go on from their boxes' origin. */
+TEST(the_origin_is_saved) {
+    struct few *const few = make_crowd(1e7, 1e7);
+    narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    narc_point origin = {1e7, 1e7};
+    struct bytes from = {0}, to = {0};
+    few->step.origin = &origin;
+    step_few(few);
+    save(saved, &from);
+    expect_ok(narc_load_contacts(loaded, few->store, from.all, from.count, NULL, NULL), NULL);
+    for (int k = 0; k < 3; k++) {
+        origin.x += 5;
+        few->body[k].x += 0.02;
+        few->contacts = loaded;
+        step_few(few);
+        few->contacts = saved;
+        step_few(few);
+        save(saved, &from);
+        save(loaded, &to);
+        assert_int_equal(from.count, to.count);
+        assert_memory_equal(from.all, to.all, to.count);
+    }
+    free(from.all);
+    free(to.all);
+    narc_destroy_contacts(loaded);
+    destroy_few(few);
+}
+
 TEST_MAIN("contact cases")

@@ -160,6 +160,42 @@ TEST(rows_of_ground_are_those_of_the_plain_calls) {
         check_world((struct test_random){random_bits(&random)}, true, 60);
 }
 
+/* Bodies creep over ground, each as far as it likes: pairs without a row are asked when they may have one. */
+TEST(pairs_with_ground_are_asked_before_they_touch) {
+    struct test_random random = test_random_named("creeping over ground");
+    size_t asked = 0, pairs = 0, began = 0;
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        struct step_world *const w = make_step_world((struct test_random){random_bits(&random)}, true);
+        narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+        w->has_filter = w->has_motion = false;
+        for (size_t k = 0; k < 60; k++) {
+            narc_bodies bodies;
+            narc_view_bodies(w->body, w->count + w->ground, &bodies);
+            const narc_step step = make_step(w, &bodies, NULL);
+            const narc_step_result *r;
+            narc_error error;
+            expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
+            check_pairs(w, &step, r);
+            check_rows(w, &step, r);
+            asked += k > 3 ? r->asked_count : 0;
+            pairs += k > 3 ? r->count : 0;
+            began += k > 3 ? r->began_count : 0;
+            for (size_t i = 0; i < w->count; i++) {
+                const double most = pow(10, random_between(&w->random, -5, -1)),
+                             turn = random_between(&w->random, -most, most);
+                const double cosine = (double)w->body[i].cosine, sine = (double)w->body[i].sine;
+                w->body[i].x += random_between(&w->random, -most, most);
+                w->body[i].y += random_between(&w->random, -most, most);
+                w->body[i].cosine = (float)(cos(turn) * cosine - sin(turn) * sine);
+                w->body[i].sine = (float)(sin(turn) * cosine + cos(turn) * sine);
+            }
+        }
+        narc_destroy_contacts(contacts);
+        destroy_step_world(w);
+    }
+    assert_true(began > 100 && asked < 3 * pairs / 4);
+}
+
 /* ------------------------------------------------------------------------------------------------ recycling */
 
 /* Rows that were kept are off by less than the tolerance, and so is what is not told yet. */

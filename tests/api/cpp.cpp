@@ -562,9 +562,16 @@ void test_index() {
     const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
     const narc_index_options &c = options;
     CHECK(c.category.base == category.data() && c.fast == 1 && c.workers == &workers);
+    const narc_point far = {1e9, 0};
+    std::vector<narc_box> there(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, there, narc::box_options().origin(far)));
+    CHECK(there[0].max_x < -0.99e9f && narc::index_options().origin(far).narc_index_options::origin == &far);
+    CHECK(narc::step().origin(far).narc_step::origin == &far);
     CHECK(index.build(boxes, options));
-    CHECK(index.refit(boxes, options).value() == 1);
-    CHECK(status_of(index.refit(narc::span<const narc_box>(boxes.data(), 9))) == NARC_ERROR_ARGUMENT);
+    CHECK(index.update(boxes, options) && index.describe().value().bodies == 10);
+    const std::vector<uint32_t> changed = {9};
+    CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
+    CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
     const auto query = narc::index_query().mask(narc::column(mask)).ignored(narc::column(ignored)).workers(workers);
     CHECK(index.query({&boxes[3], 1}, query).value().count == 0);

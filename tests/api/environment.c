@@ -134,7 +134,7 @@ static void all_calls_unknown(void) {
     REQUIRE(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 0, 1, &count, NULL) == unknown);
     REQUIRE(narc_update_contacts(contacts, shapes, &step, &r, NULL) == unknown);
     REQUIRE(narc_build_index(index, &box, 1, NULL, NULL) == unknown);
-    REQUIRE(narc_refit_index(index, &box, 0, NULL, NULL, NULL) == unknown); /* it has no bodies yet */
+    REQUIRE(narc_update_index(index, &box, 0, NULL, 0, NULL, NULL) == unknown); /* it has no bodies yet */
     REQUIRE(narc_query_index(index, &box, 1, NULL, &pairs, NULL) == unknown);
     REQUIRE(narc_cast_pairs(shapes, bodies, &motions, &batch.pairs, NULL, NULL, &impact, 1, NULL) == unknown);
     REQUIRE(narc_find_distances(shapes, bodies, &points, NULL, NULL, &distance, NULL) == unknown);

@@ -115,7 +115,7 @@ static void check_pointers(void) {
            AT(bodies, 0) && AT(margin, 8) && AT(second_margin, 12) && AT(flat_angle, 16) && AT(front_only, 20) &&
                AT(skin, 24) && AT(recycling, 28) && AT(pairs, 32) && AT(same_pairs, 40) && AT(motion_x, 48) &&
                AT(motion_y, 64) && AT(reach, 80) && AT(ahead, 96) && AT(id, 112) && AT(run, 128) && AT(filter, 144) &&
-               AT(moved, 152) && AT(moved_count, 168) && AT(workers, 176) && AT(reserved, 184));
+               AT(moved, 152) && AT(moved_count, 168) && AT(workers, 176) && AT(origin, 184) && AT(reserved, 192));
     LAYOUT(narc_step_result, 240,
            AT(pairs, 0) && AT(order, 96) && AT(count, 104) && AT(state, 112) && AT(manifolds, 120) &&
                AT(contacts, 128) && AT(more, 136) && AT(more_count, 144) && AT(user, 152) && AT(touching, 160) &&
@@ -131,8 +131,9 @@ static void check_pointers(void) {
                AT(shift_x, 104) && AT(shift_y, 128) && AT(workers, 152) && AT(reserved, 160));
     LAYOUT(narc_box_options, 104,
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
-               AT(out_skipped, 64) && AT(reserved, 72));
-    LAYOUT(narc_index_options, 64, AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(reserved, 32));
+               AT(out_skipped, 64) && AT(origin, 72) && AT(reserved, 80));
+    LAYOUT(narc_index_options, 64,
+           AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(origin, 32) && AT(reserved, 40));
     LAYOUT(narc_owners, 64, AT(owner, 0) && AT(ignored, 16) && AT(reserved, 32));
     LAYOUT(narc_index_query, 72,
            AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(owners, 40) && AT(reserved, 48));

@@ -152,7 +152,7 @@ static narc_status ask_index(narc_error *error) {
         narc_compute_boxes(store, &bodies, NULL, boxes, error) == NARC_OK &&
         narc_build_index(index, boxes, BODIES, &fast, error) == NARC_OK &&
         narc_build_index(index, boxes, BODIES, &index_options, error) == NARC_OK &&
-        narc_refit_index(index, boxes, BODIES, &index_options, NULL, error) == NARC_OK &&
+        narc_update_index(index, boxes, BODIES, NULL, 0, &index_options, error) == NARC_OK &&
         narc_query_index(index, boxes, BODIES, &three.search, &met, error) == NARC_OK &&
         narc_find_nearest(index, store, &bodies, &at, &three, distances, 3 * BODIES, error) == NARC_OK &&
         narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&

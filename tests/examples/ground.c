@@ -225,4 +225,28 @@ TEST(test_dominoes) {
     }
 }
 
+/* Bullets that spin, against ground: none comes through, whatever its shape. */
+TEST(test_bullets_on_ground) {
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        run r = begin_run("bullets", world_defaults, seed);
+        world *const w = &r.world;
+        track t = {.x = 20, .y = 30, .normal = pi / 2};
+        put_arc(&t, 0, 0);
+        put_edge(&t, 40);
+        put_arc(&t, 0, 0);
+        assert_int_equal(world_add_ground(w, t.arcs, t.count, false, 0.6f), NARC_OK);
+        for (size_t k = 2; k < w->body_count; k++) {
+            world_body *const body = &w->bodies[k];
+            body->position = (vec){-8 + 2 * (float)k, 33 + 0.3f * (float)seed};
+            body->velocity = (vec){0, -120};
+        }
+        for (int steps = 0; steps < 60; steps++) {
+            step(w);
+            for (size_t k = 2; k < w->body_count; k++)
+                assert_true(w->bodies[k].position.y > 30 || fabsf(w->bodies[k].position.x) > 20);
+        }
+        end_run(&r);
+    }
+}
+
 TEST_MAIN("ground")

@@ -26,7 +26,7 @@ struct question {
     struct motion motions[BODIES];
     narc_ray_options rays_asked;
     uint32_t owner[BODIES];
-    float target;
+    float target, parting;
     size_t chosen; /* a ray and a pair for the references, which take long */
 };
 
@@ -49,7 +49,7 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     const narc_motions motions = {
         NARC_COLUMN(q->motions, x), NARC_COLUMN(q->motions, y), NARC_COLUMN(q->motions, angle), {NULL}};
     const narc_index_query search = {.workers = workers};
-    const narc_cast_options cast = {.target = q->target, .workers = workers};
+    const narc_cast_options cast = {.target = q->target, .parting = q->parting, .workers = workers};
     narc_nearest_options near = {.search = search, .distance = 5, .most = 2};
     narc_ray_options through = q->rays_asked;
     through.search.workers = workers;
@@ -139,8 +139,10 @@ static double separation_at(const struct question *q, uint32_t pair, double time
 }
 
 static void check_impact(const struct question *q, const narc_impact *impact) {
-    const double end = impact->count == NARC_CAST_MISS ? 1 : (double)impact->fraction, target = (double)q->target;
-    double bound, speed = 0;
+    const double end = impact->count == NARC_CAST_MISS ? 1 : (double)impact->fraction;
+    double bound, speed = 0, target = (double)q->target;
+    if (q->parting > 0) /* no deeper than that, and what turning may add */
+        target = fmin(target, separation_at(q, impact->pair, 0, &bound) - (double)q->parting - 0.1 - 2 * bound);
     for (int k = 0; k < 2; k++) {
         const struct motion *const motion =
             &q->motions[k ? q->scene.pairs[impact->pair].b : q->scene.pairs[impact->pair].a];
@@ -151,7 +153,7 @@ static void check_impact(const struct question *q, const narc_impact *impact) {
         assert_true(end == 0 || at >= target - bound - 0x1p-23 * speed);
     }
     if (impact->count == NARC_CAST_HIT && end > 0)
-        assert_true(separation_at(q, impact->pair, end, &bound) <= target + 0.05 + bound + 0x1p-23 * speed);
+        assert_true(separation_at(q, impact->pair, end, &bound) <= (double)q->target + 0.05 + bound + 0x1p-23 * speed);
 }
 
 static void check(const struct question *q, const struct answer *answer) {
@@ -189,6 +191,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const narc_bodies bodies = scene_bodies(&q.scene);
     q.rays_asked.inside = (narc_inside)take_below(&from, 3);
     q.target = (float)take_step(&from, 0.5);
+    q.parting = take_below(&from, 2) ? 0 : fabsf((float)take_step(&from, 0.25));
     for (size_t k = 0; k < BODIES; k++)
         q.motions[k] = (struct motion){(float)take_step(&from, 8), (float)take_step(&from, 8),
                                        take_below(&from, 2) ? (float)take_step(&from, 3) : 0};

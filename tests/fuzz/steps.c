@@ -41,6 +41,7 @@ struct world {
     bool give_pairs, use_filter, use_motion, use_run, use_ids;
     narc_contacts_settings settings;
     float margin, skin, recycling;
+    narc_point origin;
     struct object object[2];
     bool twins; /* both objects are the same */
     char *saved;
@@ -480,7 +481,8 @@ static bool step_object(struct bytes *from, struct world *w, struct object *o, b
     narc_view_bodies(w->body, count_all(w), &bodies);
     const narc_pair_filter filter = {.kind = NARC_ARRAY(w->kind), .owner = NARC_ARRAY(w->owner)};
     const narc_pairs pairs = {.count = w->pair_count, .a = NARC_ARRAY(w->pair_a), .b = NARC_ARRAY(w->pair_b)};
-    narc_step step = {.bodies = &bodies, .margin = w->margin, .skin = w->skin, .recycling = w->recycling};
+    narc_step step = {
+        .bodies = &bodies, .margin = w->margin, .skin = w->skin, .recycling = w->recycling, .origin = &w->origin};
     if (w->use_filter)
         step.filter = &filter;
     if (w->use_ids)
@@ -529,6 +531,9 @@ static bool step_object(struct bytes *from, struct world *w, struct object *o, b
 static void make_step(struct bytes *from, struct world *w) {
     const unsigned how = take_byte(from);
     const bool failing = how >> 2 & how >> 3 & 1, wrong = how >> 5 == 7;
+    const double far[8] = {0, 0, 0, 1, -30, 1000, 1e5, 0};
+    w->origin.x += far[how >> 5];
+    w->origin.y = w->origin.x > 1e6 ? 0 : w->origin.x;
     struct object *const o = &w->object[how & 1];
     if (w->give_pairs && !are_pairs_fine(w) && take_below(from, 2))
         take_pairs(from, w);

@@ -52,12 +52,13 @@ static void find_reaches(const struct reference_body *body, double reach[SIDES])
 
 struct question {
     double margin, motion_x, motion_y;
+    narc_point origin;
 };
 
 /* Differences of doubles are exact enough: their roundings are 2^-29 of those that are allowed. */
 static void check_box(const struct reference_body *body, const struct question *asked, const narc_box *box) {
     double reach[SIDES], found[SIDES];
-    const double at[SIDES] = {body->x, body->y, -body->x, -body->y};
+    const double x = body->x - asked->origin.x, y = body->y - asked->origin.y, at[SIDES] = {x, y, -x, -y};
     const double motion[SIDES] = {asked->motion_x, asked->motion_y, -asked->motion_x, -asked->motion_y};
     find_reaches(body, reach);
     unfold(box, found);
@@ -95,19 +96,24 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
             motion[k][i] = (float)(random_below(random, 4) ? random_between(random, -2, 2) * size : 0);
     }
     narc_box *const still = compute(scene, NULL, 1);
-    for (int round = 0; round < 4; round++) {
+    for (int round = 0; round < 8; round++) {
         size_t skipped = 7;
-        narc_box_options options = {.margin = round & 1 ? 0.125f : 0, .out_skipped = &skipped};
+        const struct body *const near = &scene->bodies[random_below(random, count)];
+        const bool away = random_below(random, 2);
+        const narc_point origin = {near->x + (away ? random_between(random, -9, 9) : 0), near->y};
+        narc_box_options options = {
+            .origin = round & 4 ? &origin : NULL, .margin = round & 1 ? 0.125f : 0, .out_skipped = &skipped};
         if (round & 2)
             options.motion_x = (narc_float_column){&motion[0][0], sizeof motion[0]};
-        if (round == 2) /* either may be alone */
+        if ((round & 3) == 2) /* either may be alone */
             options.motion_y = (narc_float_column){&motion[0][1], sizeof motion[0]};
         narc_box *const boxes = compute(scene, &options, 1 + (unsigned)round);
         assert_int_equal(skipped, 0);
         for (size_t k = 0; k < count; k++) {
             const struct reference_body body = scene_reference(scene, (uint32_t)k);
             const struct question asked = {(double)options.margin, round & 2 ? (double)motion[k][0] : 0,
-                                           round == 2 ? (double)motion[k][1] : 0};
+                                           (round & 3) == 2 ? (double)motion[k][1] : 0,
+                                           round & 4 ? origin : (narc_point){0, 0}};
             check_box(&body, &asked, &boxes[k]);
         }
         if (round == 0)

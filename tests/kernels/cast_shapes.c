@@ -160,6 +160,51 @@ TEST(test_loose_boxes) {
     narc_destroy_shapes(store);
 }
 
+/* A box that stands a little deep in a floor: what it hits when it is let go. */
+TEST(test_movers_that_touch) {
+    enum { FLOOR, WALL, BODIES };
+    static const struct {
+        float x, y, angle;
+        uint32_t count, body;
+        double fraction;
+    } casts[] = {
+        {16, 0, 0, NARC_CAST_HIT, WALL, 0.5},       /* along the floor to the wall */
+        {16, -0.004f, 0, NARC_CAST_HIT, WALL, 0.5}, /* hardly deeper */
+        {16, -1, 0, NARC_CAST_HIT, FLOOR, 0},
+        {0, -0.25f, 0, NARC_CAST_HIT, FLOOR, 0},
+        {0, 4, 0, NARC_CAST_MISS, 0, 0},
+        {-4, 4, 1, NARC_CAST_MISS, 0, 0},
+        {4, 0.25f, 1, NARC_CAST_HIT, FLOOR, 0}, /* its corner turns into it */
+    };
+    narc_shapes *const store = empty_store();
+    const uint32_t box = store_shape(store, box_of(2, 2, 0)), floor = store_shape(store, box_of(80, 2, 0));
+    const narc_body rows[BODIES] = {{0, -2, 1, 0, 1, floor}, {10, 0, 1, 0, 1, box}}, mover = {0, -0.001, 1, 0, 1, box};
+    narc_bodies bodies, movers;
+    narc_view_bodies(rows, BODIES, &bodies);
+    narc_view_bodies(&mover, 1, &movers);
+    narc_box boxes[BODIES];
+    narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
+    const uint32_t owner[BODIES] = {7, 3}, own = 3;
+    const narc_owners owners = {.owner = NARC_ARRAY(owner), .ignored = {&own, 0}};
+    const narc_index_query of_wall = {.owners = &owners};
+    narc_error error;
+    for (size_t k = 0; k < sizeof casts / sizeof casts[0]; k++)
+        for (int way = 0; way < 3; way++) { /* held; let go; let go by one that belongs to the wall */
+            const narc_motions motions = {{&casts[k].x, 0}, {&casts[k].y, 0}, {&casts[k].angle, 0}, {NULL}};
+            const narc_cast_options options = {.tolerance = 0.001f, .parting = way > 0 ? 0.005f : 0};
+            const bool held = way == 0, passes = way == 2 && casts[k].body == WALL;
+            narc_impact hit;
+            expect_ok(narc_cast_shapes(index, store, &bodies, &movers, &motions, way == 2 ? &of_wall : NULL, &options,
+                                       &hit, 1, &error),
+                      &error);
+            assert_int_equal(hit.count, held ? NARC_CAST_HIT : passes ? NARC_CAST_MISS : casts[k].count);
+            assert_int_equal(hit.body, held ? FLOOR : passes ? 0 : casts[k].body);
+            EXPECT(hit.fraction, held || passes ? 0 : casts[k].fraction, 1e-6);
+        }
+    narc_destroy_index(index);
+    narc_destroy_shapes(store);
+}
+
 TEST(test_known) {
     const struct body left = at(0, 0, 0, 0), right = at(10, 0, 0, 0);
     narc_impact i = cast_boxes(left, right, (struct test_motion){16, 0, 0}, NULL);

@@ -163,7 +163,8 @@ static uint64_t hash_impacts(struct impacts list) {
     return hash;
 }
 
-static uint64_t hash_casts(const struct scene *scene, int turning) {
+/* `way`: 0: straight; 1: turning; 2: turning, and what touches is let go. */
+static uint64_t hash_casts(const struct scene *scene, int way) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     float motion[BODIES];
@@ -171,9 +172,10 @@ static uint64_t hash_casts(const struct scene *scene, int turning) {
         motion[k] = ((float)(k % 17) - 8) / 4;
     const narc_float_column column = NARC_ARRAY(motion);
     const narc_motions motions = {
-        .x = column, .y = {motion + BODIES - 1, -column.stride}, .angle = {turning ? motion : NULL, column.stride}};
+        .x = column, .y = {motion + BODIES - 1, -column.stride}, .angle = {way ? motion : NULL, column.stride}};
+    const narc_cast_options options = {.parting = way == 2 ? 0x1p-6f : 0};
     struct impacts list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
-    assert_int_equal(narc_cast_pairs(scene->store, &bodies, &motions, &pairs, NULL, NULL, list.rows, PAIRS, NULL),
+    assert_int_equal(narc_cast_pairs(scene->store, &bodies, &motions, &pairs, NULL, &options, list.rows, PAIRS, NULL),
                      NARC_OK);
     const uint64_t hash = hash_impacts(list);
     free(list.rows);
@@ -287,6 +289,7 @@ TEST(test_scenes) {
 #endif
         {"straight casts", hash_casts, 0, {0x2634ea780a76a17au, 0x2634ea780a76a17au}},
         {"turning casts", hash_casts, 1, {0x8b787b23ced4e944u, 0x8b787b23ced4e944u}},
+        {"casts that let go", hash_casts, 2, {0x92129cf6bff7fc37u, 0x92129cf6bff7fc37u}},
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},

@@ -181,7 +181,7 @@ struct cast_question {
     const struct ground_scene *scene;
     const struct body *mover;
     const struct flight *flight;
-    float target;
+    float target, parting;
     bool ground_first;
 };
 
@@ -199,7 +199,8 @@ static void ask_casts(const void *question, const narc_workers *workers, void *o
                               .a = q->ground_first ? all : one,
                               .b = q->ground_first ? one : all,
                               .other_bodies = q->ground_first ? &mover : &entries};
-    const narc_cast_options options = {.target = q->target, .workers = workers};
+    const narc_cast_options options = {
+        .target = q->target, .parting = q->parting, .tolerance = q->parting > 0 ? 1e-3f : 0, .workers = workers};
     narc_error error = {0};
     expect_ok(narc_cast_pairs(s->store, q->ground_first ? &entries : &mover, q->ground_first ? NULL : &motion, &pairs,
                               q->ground_first ? &motion : NULL, &options, out_rows, s->count, &error),
@@ -211,7 +212,7 @@ static void ask_casts(const void *question, const narc_workers *workers, void *o
  * before that. */
 static narc_impact cast(const struct ground_scene *s, const struct body *mover, const struct flight *flight,
                         float target, bool ground_first) {
-    const struct cast_question question = {s, mover, flight, target, ground_first};
+    const struct cast_question question = {s, mover, flight, target, 0, ground_first};
     narc_impact *rows = ask_everywhere(ask_casts, &question, s->count * sizeof *rows, NULL), first = {.fraction = 2};
     for (size_t k = 0; k < s->count; k++)
         if (rows[k].count != NARC_CAST_MISS && rows[k].fraction < first.fraction)
@@ -388,6 +389,104 @@ static void fly_all(const char *name, bool turns) {
 
 TEST(test_straight_flights) { fly_all("straight flights", false); }
 TEST(test_turning_flights) { fly_all("turning flights", true); }
+
+/* ------------------------------------------------------------------------------------------------ let go */
+
+/* A body that touches the ground somewhere, as deep as it says. False if there is no such place. */
+static bool put_on_ground(struct test_random *random, struct ground_scene *s, double depth, struct flyer *out,
+                          narc_contact *out_contact) {
+    static narc_contact rows[TOLD_ROWS];
+    *out = choose_flyer(random, s);
+    put_near_end(random, &s->chain, &out->body);
+    for (int round = 0; round < 12; round++) {
+        const size_t count = ground_contacts(s, &out->body, (narc_query){.margin = 2}, rows, TOLD_ROWS);
+        size_t best = 0;
+        for (size_t k = 1; k < count; k++)
+            best = rows[k].separation < rows[best].separation ? k : best;
+        if (count == 0)
+            return false;
+        const double off = (double)rows[best].separation + depth;
+        *out_contact = rows[best];
+        if (fabs(off) < 1e-4)
+            return true;
+        out->body.x += off * (double)rows[best].normal_x;
+        out->body.y += off * (double)rows[best].normal_y;
+    }
+    return false;
+}
+
+/* What touches an entry at the start: let go unless it comes deeper, and hit again once it was clear. */
+static void check_let_go(struct ground_scene *s, const struct flyer *flyer, const struct flight *flight,
+                         const narc_impact *row, double parting, size_t counts[3]) {
+    const narc_query entry = {.margin = 1, .first = row->pair, .count = 1};
+    const double room = 2e-5 * (1 + find_extent(&s->chain)), tolerance = flight->angle != 0 ? 1e-3 : 0;
+    const double start = ground_separation(s, &flyer->body, entry), deep = start - parting;
+    if (start > -1e-4)
+        return;
+    const double until = row->count == NARC_CAST_MISS || row->fraction == 0 ? 1 : (double)row->fraction;
+    double least = INFINITY, most = -INFINITY, now = 0;
+    narc_circle inner;
+    narc_compute_inscribed_circle(flyer->shape.arcs, flyer->shape.count, &inner);
+    const double wide = 2 * (double)flyer->body.scale * inner.radius; /* what is deeper may be behind the ground */
+    for (int k = 0; k <= 4 * TIMES; k++) {
+        const struct body then = move_body(&flyer->body, flight, until * k / (4 * TIMES));
+        now = ground_separation(s, &then, entry);
+        if (row->count == NARC_CAST_MISS && now < deep - 2 * tolerance - room && now > -wide)
+            fail_msg("let go from %g, %g deep at %g", start, now, until * k / (4 * TIMES));
+        least = fmin(least, now);
+        most = fmax(most, now);
+    }
+    if (row->count == NARC_CAST_MISS)
+        counts[0]++;
+    else if (row->fraction == 0) {
+        enum { FINE = 200000 }; /* what comes past an end may be told of for a short time */
+        for (int k = 0; k <= FINE && least > deep + room; k++) {
+            const struct body then = move_body(&flyer->body, flight, (double)k / FINE);
+            least = fmin(least, ground_separation(s, &then, entry));
+        }
+        if (least > deep + room || fabs((double)row->separation - start) > room)
+            fail_msg("hit at %g from %g, but it comes to %g", (double)row->separation, start, least);
+        counts[1]++;
+    } else if (row->count == NARC_CAST_HIT) {
+        const struct body next = move_body(&flyer->body, flight, until + 2e-4); /* where it begins to be told of */
+        now = fmin(now, ground_separation(s, &next, entry));
+        if (!(most > 0) || now > tolerance + room)
+            fail_msg("hit again at %g with %g, from %g, at most %g", until, now, start, most);
+        counts[2]++;
+    }
+}
+
+/* What touches the ground parts and slides, straight or turning, and is hit elsewhere on the same entry: across a bowl. */
+TEST(test_letting_go) {
+    struct test_random random = test_random_named("letting go of ground");
+    size_t counts[3] = {0};
+    for (size_t round = 0; round < test_trials(20 * CHAIN_FAMILIES); round++) {
+        struct ground_scene *s = lay_random_ground(&random, (enum chain_family)(round % CHAIN_FAMILIES));
+        for (int k = 0; k < 8; k++) {
+            struct flyer flyer;
+            narc_contact contact;
+            if (!put_on_ground(&random, s, random_between(&random, 0.001, 0.01), &flyer, &contact))
+                continue;
+            const double along = atan2(-(double)contact.normal_y, -(double)contact.normal_x) +
+                                 (random_below(&random, 2) ? random_between(&random, -2, 2) : PI / 2),
+                         way = random_log_between(&random, 0.02, 4);
+            const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)),
+                                          random_below(&random, 2) ? (float)random_between(&random, -1, 1) : 0};
+            const struct cast_question question = {s, &flyer.body, &flight, 0, 0.005f, random_below(&random, 2)};
+            narc_impact *const rows = ask_everywhere(ask_casts, &question, s->count * sizeof *rows, NULL);
+            narc_impact *const held = malloc(s->count * sizeof *held);
+            ask_casts(&(struct cast_question){s, &flyer.body, &flight, 0, 0, question.ground_first}, NULL, held);
+            for (size_t i = 0; i < s->count; i++)
+                if (held[i].count == NARC_CAST_HIT && held[i].fraction == 0)
+                    check_let_go(s, &flyer, &flight, &rows[i], 0.005, counts);
+            free(held);
+            free(rows);
+        }
+        destroy_ground_scene(s);
+    }
+    print_message("%zu let go, %zu came deeper, %zu hit again\n", counts[0], counts[1], counts[2]);
+    assert_true(test_trials(20) < 10 || (counts[0] > 0 && counts[1] > 0 && counts[2] > 0));
+}
 
 /* A box in the air that turns onto a corner with its edge, while it is behind the ground on one side of that: the corner is
  * where a concave arc ends, so its entry is closed by an arc of the same centre that touches nothing. */

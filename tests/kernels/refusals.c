@@ -237,7 +237,10 @@ TEST(refuses_indices_and_regions) {
     const narc_index_query query = {.reserved = {NULL, NULL, &out}};
     narc_pairs pairs = {.count = 7};
     narc_index *index = NULL;
-    float slack = 9;
+    const narc_index_column none = {0};
+    static const uint32_t listed[] = {1, 2};
+    const narc_index_column changed = NARC_ARRAY(listed);
+    narc_index_statistics statistics = {.slack = 9};
     assert_int_equal(narc_create_index(NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_create_index(&half, &index), NARC_ERROR_ARGUMENT);
     assert_null(index);
@@ -247,16 +250,20 @@ TEST(refuses_indices_and_regions) {
     REFUSED(ARGUMENT, "boxes is NULL", narc_build_index(index, NULL, 2, NULL, &error));
     REFUSED(ARGUMENT, "boxes in one index", narc_build_index(index, boxes, (size_t)1 << 31 | 1, NULL, &error));
     REFUSED(ARGUMENT, "options.reserved[1]", narc_build_index(index, boxes, 2, &taken, &error));
-    REFUSED(ARGUMENT, "index is NULL", narc_refit_index(NULL, boxes, 2, NULL, &slack, &error));
-    REFUSED(ARGUMENT, "boxes is NULL", narc_refit_index(index, NULL, 2, NULL, &slack, &error));
-    REFUSED(ARGUMENT, "was built from 2", narc_refit_index(index, boxes, 1, NULL, &slack, &error));
-    REFUSED(ARGUMENT, "options.reserved[1]", narc_refit_index(index, boxes, 2, &taken, &slack, &error));
+    REFUSED(ARGUMENT, "index is NULL", narc_update_index(NULL, boxes, 2, NULL, 0, NULL, &error));
+    REFUSED(ARGUMENT, "boxes is NULL", narc_update_index(index, NULL, 2, NULL, 0, NULL, &error));
+    REFUSED(ARGUMENT, "changed is NULL", narc_update_index(index, boxes, 2, &none, 1, NULL, &error));
+    REFUSED(INDEX, "changed[1] is 2", narc_update_index(index, boxes, 2, &changed, 2, NULL, &error));
+    assert_int_equal(error.index, 1);
+    REFUSED(ARGUMENT, "options.reserved[1]", narc_update_index(index, boxes, 2, NULL, 0, &taken, &error));
+    REFUSED(ARGUMENT, "index is NULL", narc_describe_index(NULL, &statistics, &error));
+    REFUSED(ARGUMENT, "out_statistics is NULL", narc_describe_index(index, NULL, &error));
     REFUSED(ARGUMENT, "index is NULL", narc_query_index(NULL, boxes, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "boxes is NULL", narc_query_index(index, NULL, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "out_pairs is NULL", narc_query_index(index, boxes, 1, NULL, NULL, &error));
     REFUSED(ARGUMENT, "queries in one call", narc_query_index(index, boxes, UINT32_MAX, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "query.reserved[2]", narc_query_index(index, boxes, 1, &query, &pairs, &error));
-    assert_true(slack == 9 && pairs.count == 7);
+    assert_true(statistics.slack == 9 && pairs.count == 7);
     expect_ok(narc_query_index(index, NULL, 0, NULL, &pairs, &error), &error);
     assert_int_equal(pairs.count, 0);
     expect_ok(narc_query_index(index, boxes, 2, NULL, &pairs, &error), &error); /* it is as it was */
@@ -280,6 +287,10 @@ TEST(refuses_casts_of_pairs) {
             CAST(store, &pairs, NULL, (&(narc_cast_options){.targets = NARC_ARRAY(targets)}), out.impacts, 2));
     REFUSED(ARGUMENT, "tolerance is -2",
             CAST(store, &pairs, NULL, (&(narc_cast_options){.tolerance = -2}), out.impacts, 2));
+    REFUSED(ARGUMENT, "parting is -1",
+            CAST(store, &pairs, NULL, (&(narc_cast_options){.parting = -1}), out.impacts, 2));
+    REFUSED(NOT_FINITE, "parting is",
+            CAST(store, &pairs, NULL, (&(narc_cast_options){.parting = INFINITY}), out.impacts, 2));
     REFUSED(CAPACITY, "2 rows", CAST(store, &pairs, NULL, NULL, out.impacts, 1));
     REFUSED(ARGUMENT, "out_rows is NULL", CAST(store, &pairs, NULL, NULL, NULL, 2));
     expect_untouched();

@@ -67,7 +67,7 @@ static void ask(narc_index *index, const struct question *q, unsigned workers, n
     guard_release(guarded);
 }
 
-/* Builds, fast and well, asks, and asks again after a refit from other boxes. */
+/* Builds, fast and well, asks, and asks again after an update from other boxes. */
 static void check_question(narc_index *index, const struct question *q) {
     static const unsigned workers[] = {1, 2, 3, 7};
     struct pair_list expected = find_all(q);
@@ -81,7 +81,7 @@ static void check_question(narc_index *index, const struct question *q) {
         }
         assert_int_equal(narc_build_index(index, other ? other : q->boxes, q->box_count, &options, NULL), NARC_OK);
         if (other)
-            assert_int_equal(narc_refit_index(index, q->boxes, q->box_count, &options, NULL, NULL), NARC_OK);
+            assert_int_equal(narc_update_index(index, q->boxes, q->box_count, NULL, 0, &options, NULL), NARC_OK);
         free(other);
         for (unsigned w = 0; w < 4; w++) {
             narc_pairs pairs;

@@ -279,6 +279,7 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
     world.query.margin = margins[random_below(random, 4)];
     world.query.second_margin = (float)random_between(random, -0.1, 0.1);
     world.cast.target = random_below(random, 2) ? 0 : (float)random_between(random, -0.1, 0.1);
+    world.cast.parting = world.cast.target > 0 ? 0.01f : 0;
     world.inside = (narc_inside)random_below(random, 3);
     struct contacts contacts = scene_contacts(&scene, INFINITY);
     if (random_below(random, 2))

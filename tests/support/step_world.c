@@ -204,10 +204,15 @@ void move_step_world(struct step_world *w) {
     }
     if (random_below(random, 25) == 0)
         w->margin = (float)random_between(random, 0, 0.1);
+    if (random_below(random, 6) == 0) { /* the origin moves, a little or far */
+        const double far = random_log_between(random, 1, 1e6);
+        w->origin = (narc_point){random_between(random, -far, far), random_between(random, -far, far)};
+    }
 }
 
 narc_step make_step(const struct step_world *w, const narc_bodies *bodies, const narc_pair_filter *filter) {
-    narc_step step = {.bodies = bodies, .margin = w->margin, .skin = w->skin, .id = NARC_ARRAY(w->id)};
+    narc_step step = {
+        .bodies = bodies, .margin = w->margin, .skin = w->skin, .id = NARC_ARRAY(w->id), .origin = &w->origin};
     if (w->has_filter)
         step.filter = filter;
     if (w->has_motion) {

@@ -22,6 +22,7 @@ struct step_world {
     uint64_t last_id;
     bool has_filter, has_motion, has_ahead, shuffled;
     float margin, skin;
+    narc_point origin;
 };
 
 /* What a caller keeps in a slot, and what the test remembers of the last step. */

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""Shapes: builders of arcs, and the store that knows them by number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _narc
+from ._tables import ARC, CHAIN_ENTRY, CIRCLE, CONSTANTS, MASS
+
+Arcs = NDArray[np.void]
+_MOST = int(CONSTANTS["NARC_MAX_ARCS"])
+
+
+def _points(xy: ArrayLike) -> NDArray[np.float64]:
+    return np.ascontiguousarray(xy, dtype=np.float64)
+
+
+def _arcs(arcs: ArrayLike) -> Any:
+    """Rows of ARC, or of five numbers each."""
+    given = np.asarray(arcs)
+    return np.ascontiguousarray(given, dtype=ARC if given.dtype.names else np.float64)
+
+
+def _built(build: Any, *arguments: Any) -> Arcs:
+    out = np.zeros(_MOST, ARC)
+    return out[: build(*arguments, out)].copy()
+
+
+def _one(compute: Any, arcs: ArrayLike, kind: Any) -> Any:
+    out = np.zeros(1, kind)
+    compute(_arcs(arcs), out)
+    return out[0]
+
+
+class Shapes(_narc.Handle):
+    """A store of convex outlines made of circular arcs and straight edges, each known by its number.
+
+    Every method that adds a shape returns its number; equal shapes are stored once and have one. Lengths are in your unit,
+    angles in radians, all is counter-clockwise, x right and y up. What is no shape raises narc.Error, which names the arc or
+    point. Calls may share a store between threads; while it is changed none may use it."""
+
+    def __new__(cls) -> Shapes:
+        return super().__new__(cls, "Shapes")
+
+    def add(self, arcs: ArrayLike) -> int:
+        """Adds arcs: an array of narc.ARC, or rows of (center x, center y, radius, start, end)."""
+        out = np.zeros(1, np.uint32)
+        _narc.add_shape(self, _arcs(arcs), out)
+        return int(out[0])
+
+    def circle(self, radius: float) -> int:
+        """A circle around the origin."""
+        return self.add(_built(_narc.build_circle, radius))
+
+    def box(self, width: float, height: float, radius: float = 0.0) -> int:
+        """A box around the origin, its corners rounded inside it."""
+        return self.add(_built(_narc.build_box, width, height, radius))
+
+    def capsule(self, length: float, radius: float) -> int:
+        """All within `radius` of a segment of `length` along x around the origin."""
+        return self.add(_built(_narc.build_capsule, length, radius))
+
+    def segment(self, ends: ArrayLike, radius: float = 0.0) -> int:
+        """All within `radius` of the segment between two points, an array (2, 2)."""
+        return self.add(_built(_narc.build_segment, _points(ends), radius))
+
+    def polygon(self, xy: ArrayLike, radius: float = 0.0, *, skin: float = 0.0) -> int:
+        """A convex polygon, points (n, 2) counter-clockwise; corners rounded inside it with `radius`, or all within `skin` of
+        it."""
+        if skin:
+            return self.add(_built(_narc.build_skin_polygon, _points(xy), skin))
+        return self.add(_built(_narc.build_polygon, _points(xy), radius))
+
+    def regular(self, corners: int, circumradius: float, radius: float = 0.0) -> int:
+        """A regular polygon around the origin, corner 0 at (circumradius, 0)."""
+        return self.add(_built(_narc.build_regular_polygon, corners, circumradius, radius))
+
+    def ellipse(self, half_x: float, half_y: float, arcs: int = 8) -> int:
+        """The smooth shape of 4, 8, 12 ... arcs that is nearest to an ellipse."""
+        return self.add(_built(_narc.build_ellipse, half_x, half_y, arcs))
+
+    def ring(self, xy: ArrayLike) -> int:
+        """A smooth shape of arcs near any simple polygon, points (n, 2) in either orientation."""
+        return self.add(_built(_narc.build_ring, _points(xy)))
+
+    def chain(self, arcs: ArrayLike, **options: Any) -> NDArray[np.void]:
+        """Adds ground, a chain of arcs with the solid on its left, and returns its parts, rows of narc.CHAIN_ENTRY: each
+        becomes a body with its `shape` at its `xy`. `options` are those of narc_chain_options: closed, first_run, weld,
+        least_radius, thickness, both_sides."""
+        given = _arcs(arcs)
+        room = 4 * len(given) + 16
+        while True:
+            out = np.zeros(room, CHAIN_ENTRY)
+            count = _narc.add_chain(self, given, options or None, out)
+            if count <= room:
+                return out[:count]
+            room = count
+
+    def replace(self, shape: int, arcs: ArrayLike) -> None:
+        """Puts another shape in the place of one that is used once."""
+        _narc.replace_shape(self, shape, _arcs(arcs))
+
+    def remove(self, shape: int) -> None:
+        """Gives back one use of a shape; with the last one it goes."""
+        _narc.remove_shape(self, shape)
+
+    def arcs(self, shape: int) -> Arcs:
+        """The arcs of a shape as they are stored, in single precision; none of a shape that is not there."""
+        return _built(_narc.get_arcs, self, shape)
+
+    def uses(self, shape: int) -> int:
+        """How often a shape was added, and not removed."""
+        return int(_narc.count_uses(self, shape))
+
+    def mass(self, shape: int) -> np.void:
+        """Area, centroid and second moment about it: a row of narc.MASS, to be multiplied by a density."""
+        return _one(_narc.compute_mass, self.arcs(shape), MASS)
+
+    def bounding_circle(self, shape: int) -> np.void:
+        """The smallest circle around a shape, a row of narc.CIRCLE."""
+        return _one(_narc.compute_bounding_circle, self.arcs(shape), CIRCLE)
+
+    def as_polygon(self, shape: int, tolerance: float = 1e-2) -> NDArray[np.float64]:
+        """Points (n, 2) on the outline, counter-clockwise, whose chords are within `tolerance` of it: for plots."""
+        points = []
+        for arc in self.arcs(shape):
+            turn = (arc["end"] - arc["start"]) % (2 * np.pi) or 2 * np.pi
+            step = 2 * np.arccos(max(0.0, 1 - tolerance / arc["radius"])) if arc["radius"] > tolerance else np.pi
+            angles = arc["start"] + turn * np.linspace(0, 1, 2 + int(turn / max(step, 1e-3)))
+            ends = angles[:1] if arc["radius"] == 0 else angles
+            points.append(arc["center"] + arc["radius"] * np.stack([np.cos(ends), np.sin(ends)], axis=1))
+        return np.concatenate(points)
+
+    def __len__(self) -> int:
+        """How many numbers were given out, those of removed shapes included."""
+        return int(_narc.count_shapes(self))
+
+    def __repr__(self) -> str:
+        return f"<narc.Shapes: {len(self)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        out = np.zeros(_narc.count_saved_bytes(self), np.uint8)
+        _narc.save_shapes(self, out)
+        return _load, (type(self), out.tobytes())
+
+
+def _load(kind: type[Shapes], data: bytes) -> Shapes:
+    shapes = kind()
+    _narc.load_shapes(shapes, np.frombuffer(data, np.uint8))
+    return shapes
+
+
+def mass(arcs: ArrayLike) -> np.void:
+    """Area, centroid and second moment of a list of arcs, a row of narc.MASS."""
+    return _one(_narc.compute_mass, arcs, MASS)
+
+
+def union_mass(parts: list[ArrayLike]) -> np.void:
+    """The mass of all that any of the parts, lists of arcs in one frame, covers."""
+    arcs = [np.asarray(_arcs(part)).view(ARC).reshape(-1) for part in parts]
+    out = np.zeros(1, MASS)
+    _narc.compute_union_mass(np.concatenate(arcs), np.array([len(a) for a in arcs], np.uint64), out)
+    return out[0]
+
+
+def move(arcs: ArrayLike, xy: ArrayLike = (0, 0), angle: float = 0.0, scale: float = 1.0) -> Arcs:
+    """The same arcs elsewhere: scaled, turned, then moved."""
+    x, y = xy  # type: ignore[misc]
+    return _built(_narc.move_arcs, _arcs(arcs), x, y, angle, scale)

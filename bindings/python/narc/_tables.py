@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""Types of rows, from the library's own table of structures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import _narc
+
+_NUMBERS = {"float": "f4", "double": "f8", "uint8_t": "u1", "uint16_t": "u2", "uint32_t": "u4", "uint64_t": "u8", "size_t": "u8"}
+_LAYOUTS = _narc.layouts()
+CONSTANTS: dict[str, int | float] = _narc.constants()
+
+
+def row_type(name: str) -> np.dtype:
+    """The type of rows of a structure. What is x and y of one thing is a pair: `normal_x`, `normal_y` are `normal`, and a plain
+    `x`, `y` is `xy`."""
+    size, members = _LAYOUTS[name]
+    fields: dict[str, tuple[object, int]] = {}
+    for member, (kind, offset, nbytes, count) in members.items():
+        number = _NUMBERS.get(kind) or row_type(kind)
+        stem = "xy" if member == "x" else member.removesuffix("_x")
+        if member.removesuffix("_y") in fields and member.endswith("_y") or (member == "y" and "xy" in fields):
+            continue
+        pair = (member == "x" and "y" in members) or (member.endswith("_x") and stem + "_y" in members)
+        fields[stem if pair else member] = ((number, 2) if pair else (number, count) if count > 1 else number, offset)
+    return np.dtype({"names": list(fields), "formats": [f for f, _ in fields.values()],
+                     "offsets": [o for _, o in fields.values()], "itemsize": size})
+
+
+def _known(name: str) -> np.dtype:
+    kind = row_type(name)
+    _narc.know(name, kind)
+    return kind
+
+
+ARC = _known("narc_arc")
+BODY = _known("narc_body")
+BOX = _known("narc_box")
+CHAIN_ENTRY = _known("narc_chain_entry")
+CIRCLE = _known("narc_circle")
+CONTACT = _known("narc_contact")
+DISTANCE = _known("narc_distance")
+IMPACT = _known("narc_impact")
+MANIFOLD = _known("narc_manifold")
+MASS = _known("narc_mass")
+RAY_HIT = _known("narc_ray_hit")
+TOUCH_EVENT = _known("narc_touch_event")

@@ -1,0 +1,707 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * frame.c - columns from buffers, and structures from what Python has.
+ */
+#include "frame.h"
+
+#include <string.h>
+
+#include "threads.h"
+
+void frame_begin(frame *f) {
+    memset(f, 0, offsetof(frame, lengths));
+    for (int k = 0; k < MOST_GROUPS; k++)
+        f->lengths[k] = -1;
+    f->buffer_count = f->memory_count = 0;
+    f->arena_used = 0;
+}
+
+void frame_end(frame *f) {
+    for (int k = 0; k < f->buffer_count; k++)
+        PyBuffer_Release(&f->buffers[k]);
+    for (int k = 0; k < f->memory_count; k++)
+        PyMem_Free(f->memory[k]);
+}
+
+void *frame_allocate(frame *f, size_t size) {
+    const size_t rounded = (size + 15) / 16 * 16;
+    if (rounded > ARENA - f->arena_used) {
+        PyErr_Format(PyExc_ValueError, "%s: too many values", f->argument);
+        return NULL;
+    }
+    void *const room = f->arena + f->arena_used;
+    f->arena_used += rounded;
+    return memset(room, 0, rounded);
+}
+
+Py_buffer *frame_view(frame *f, PyObject *object, int flags) {
+    if (f->buffer_count == MOST_BUFFERS) {
+        PyErr_Format(PyExc_ValueError, "%s: too many columns", f->argument);
+        return NULL;
+    }
+    Py_buffer *const view = &f->buffers[f->buffer_count];
+    if (PyObject_GetBuffer(object, view, flags)) {
+        PyObject *kind, *value, *trace;
+        PyErr_Fetch(&kind, &value, &trace);
+        PyErr_Format(flags & PyBUF_WRITABLE ? PyExc_ValueError : PyExc_TypeError, "%s: %S", f->argument,
+                     value ? value : kind);
+        Py_XDECREF(kind);
+        Py_XDECREF(value);
+        Py_XDECREF(trace);
+        return NULL;
+    }
+    f->buffer_count++;
+    return view;
+}
+
+/* ------------------------------------------------------------------------------------------------ known rows */
+
+enum { MOST_KNOWN = 32 };
+
+static struct {
+    PyObject *dtype;
+    const narc_layout *layout;
+} known[MOST_KNOWN];
+static int known_count;
+static PyObject *dtype_name;
+
+bool frame_know(PyObject *dtype, const narc_layout *layout) {
+    if (!dtype_name)
+        dtype_name = PyUnicode_InternFromString("dtype");
+    if (!dtype_name || !layout || known_count == MOST_KNOWN)
+        return false;
+    Py_INCREF(dtype);
+    known[known_count].dtype = dtype;
+    known[known_count++].layout = layout;
+    return true;
+}
+
+/* What an array's rows are, if their type is one that is known. */
+static const narc_layout *find_known(PyObject *array) {
+    PyObject *const dtype = PyObject_GetAttr(array, dtype_name);
+    const narc_layout *layout = NULL;
+    if (!dtype)
+        PyErr_Clear();
+    for (int k = 0; dtype && k < known_count; k++)
+        if (known[k].dtype == dtype)
+            layout = known[k].layout;
+    Py_XDECREF(dtype);
+    return layout;
+}
+
+/* ------------------------------------------------------------------------------------------------ formats */
+
+/* An item of a format, as the buffer protocol writes it (PEP 3118): one number or several of a kind. */
+typedef struct item {
+    char code, order;
+    size_t offset, size, count; /* the size of one number */
+    const char *name;
+    size_t name_length;
+} item;
+
+static size_t size_of(char code, char order) {
+    const bool native = order == '@' || order == '^';
+    switch (code) {
+    case 'x':
+    case 'c':
+    case 'b':
+    case 'B':
+    case '?':
+    case 's':
+    case 'p':
+        return 1;
+    case 'h':
+    case 'H':
+    case 'e':
+        return 2;
+    case 'i':
+    case 'I':
+    case 'f':
+    case 'w':
+        return 4;
+    case 'l':
+    case 'L':
+        return native ? sizeof(long) : 4;
+    case 'q':
+    case 'Q':
+    case 'd':
+        return 8;
+    case 'n':
+    case 'N':
+    case 'O':
+    case 'P':
+        return sizeof(void *);
+    case 'g':
+        return sizeof(long double);
+    default:
+        return 0;
+    }
+}
+
+/* Reads the next item of a format and goes on behind it; false at the end or where it is not understood. */
+static bool next_item(const char **format, char *order, size_t *end, item *out) {
+    const char *p = *format;
+    size_t count = 1, factor = 1;
+    for (; *p && strchr("@=<>!^(0123456789,) \n", *p); p++) {
+        if (strchr("@=<>!^", *p))
+            *order = *p;
+        else if (*p >= '0' && *p <= '9') {
+            size_t number = 0;
+            for (; *p >= '0' && *p <= '9'; p++)
+                number = number * 10 + (size_t)(*p - '0');
+            count *= number;
+            p--;
+        }
+    }
+    if (*p == 'Z') { /* complex: two numbers */
+        factor = 2;
+        p++;
+    }
+    *out = (item){.code = *p, .order = *order, .count = count};
+    if (*p == 'T' && p[1] == '{') {
+        item part;
+        size_t inner = 0;
+        for (p += 2; *p && *p != '}';)
+            if (!next_item(&p, order, &inner, &part))
+                return false;
+        out->size = inner;
+    } else {
+        out->size = *p ? size_of(*p, *order) : 0;
+        if (*order == '@' && out->size)
+            *end = (*end + out->size - 1) / out->size * out->size;
+    }
+    if (!*p || *p == '}' || (out->size == 0 && out->code != 'T'))
+        return false;
+    out->size *= factor;
+    out->code = factor == 2 ? 'Z' : out->code;
+    p++;
+    if (*p == ':') {
+        out->name = ++p;
+        while (*p && *p != ':')
+            p++;
+        out->name_length = (size_t)(p - out->name);
+        p += *p == ':';
+    }
+    out->offset = *end;
+    *end += out->size * count;
+    *format = p;
+    return true;
+}
+
+/* The only item of a format, or the field of records that is called like this: member "motion_x" is also number 0 of a field
+ * "motion", and "y" number 1 of "xy". */
+static bool find_item(const char *format, const char *member, item *out) {
+    char order = '@';
+    size_t end = 0;
+    if (!format)
+        format = "B";
+    if (!member)
+        return next_item(&format, &order, &end, out) && !*format && out->code != 'T';
+    if (format[0] != 'T' || format[1] != '{')
+        return false;
+    const size_t length = strlen(member), stem = length > 2 && member[length - 2] == '_' ? length - 2 : 0;
+    const size_t which = member[length - 1] == 'x' ? 0 : member[length - 1] == 'y' ? 1 : 2;
+    for (format += 2; next_item(&format, &order, &end, out);) {
+        if (!out->name)
+            continue;
+        if (out->name_length == length && memcmp(out->name, member, length) == 0 && out->count == 1)
+            return true;
+        const bool pair = which < 2 && out->count == 2 &&
+                          (stem ? out->name_length == stem && memcmp(out->name, member, stem) == 0
+                                : length == 1 && out->name_length == 2 && memcmp(out->name, "xy", 2) == 0);
+        if (pair) {
+            out->offset += which * out->size;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_big_endian(void) {
+    const uint16_t one = 1;
+    return *(const uint8_t *)&one == 0;
+}
+
+static bool is_foreign(const item *from) {
+    return from->size > 1 && (from->order == '<' ? is_big_endian() : strchr(">!", from->order) && !is_big_endian());
+}
+
+/* ------------------------------------------------------------------------------------------------ columns */
+
+/* Numbers in memory: from a buffer, or a single one with a stride of 0. */
+typedef struct numbers {
+    const char *base;
+    Py_ssize_t stride, count; /* count -1: one for all */
+    item item;
+} numbers;
+
+static const char *describe(const item *from) {
+    switch (from->code) {
+    case 'f':
+        return "float32";
+    case 'd':
+        return "float64";
+    case 'e':
+        return "float16";
+    case '?':
+        return "bool";
+    case 'Z':
+        return "complex";
+    case 'O':
+        return "objects";
+    case 'T':
+        return "records";
+    case 'b':
+    case 'h':
+    case 'i':
+    case 'l':
+    case 'q':
+    case 'n':
+        return from->size == 8 ? "int64" : from->size == 4 ? "int32" : from->size == 2 ? "int16" : "int8";
+    case 'B':
+    case 'H':
+    case 'I':
+    case 'L':
+    case 'Q':
+    case 'N':
+        return from->size == 8 ? "uint64" : from->size == 4 ? "uint32" : from->size == 2 ? "uint16" : "uint8";
+    default:
+        return "something else";
+    }
+}
+
+static bool is_signed(char code) { return strchr("bhilqn", code) != NULL; }
+static bool is_integer(char code) { return strchr("bhilqnBHILQN", code) != NULL; }
+
+static bool is_member(const char *type, const char *of) { return strcmp(type, of) == 0; }
+
+/* Whole numbers of another size, converted to a column's own. */
+static const void *convert(frame *f, const numbers *from, size_t size, const char *path) {
+    const Py_ssize_t count = from->count < 0 ? 1 : from->count;
+    char *const made = f->memory_count < MOST_BUFFERS ? PyMem_Malloc((size_t)count * size + 1) : NULL;
+    if (!made)
+        return PyErr_NoMemory();
+    f->memory[f->memory_count++] = made;
+    const bool with_sign = is_signed(from->item.code);
+    for (Py_ssize_t k = 0; k < count; k++) {
+        const char *const at = from->base + k * from->stride;
+        uint64_t value = 0;
+        int64_t number = 0;
+        switch (from->item.size) {
+        case 1:
+            value = *(const uint8_t *)at, number = *(const int8_t *)at;
+            break;
+        case 2: {
+            uint16_t v;
+            memcpy(&v, at, 2);
+            value = v, number = (int16_t)v;
+            break;
+        }
+        case 4: {
+            uint32_t v;
+            memcpy(&v, at, 4);
+            value = v, number = (int32_t)v;
+            break;
+        }
+        default:
+            memcpy(&value, at, 8);
+            number = (int64_t)value;
+        }
+        if (with_sign ? number < 0 || (size == 4 && number > UINT32_MAX) : size == 4 && value > UINT32_MAX) {
+            if (with_sign)
+                PyErr_Format(PyExc_IndexError, "%s: item %zd is %lld", path, k, (long long)number);
+            else
+                PyErr_Format(PyExc_IndexError, "%s: item %zd is %llu", path, k, (unsigned long long)value);
+            return NULL;
+        }
+        const uint32_t small = (uint32_t)value;
+        memcpy(made + (size_t)k * size, size == 4 ? (const void *)&small : (const void *)&value, size);
+    }
+    return made;
+}
+
+/* Makes a column of numbers, which belong to a group of columns of one length. */
+static bool set_column(frame *f, const char *type, void *column, const numbers *from, unsigned char group,
+                       const char *path) {
+    const item *const i = &from->item;
+    const char *wanted = "float32";
+    bool fits = false, whole = false;
+    size_t size = 4;
+    if (is_member(type, "narc_float_column")) {
+        fits = i->code == 'f';
+    } else if (is_member(type, "narc_position_column")) {
+        wanted = "float32 or float64";
+        fits = i->code == 'f' || i->code == 'd';
+        size = i->size;
+    } else if (is_member(type, "narc_byte_column")) {
+        wanted = "uint8 or bool";
+        fits = i->code == 'B' || i->code == '?';
+        size = 1;
+    } else { /* whole numbers are converted */
+        size = is_member(type, "narc_word_column") ? 8 : 4;
+        wanted = size == 8 ? "uint64" : "uint32";
+        whole = is_integer(i->code);
+        fits = whole && i->size == size && !is_signed(i->code);
+    }
+    if (is_foreign(i) || !(fits || whole)) {
+        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %s%s", path, wanted, describe(i),
+                     is_foreign(i) ? " in another order of bytes" : "");
+        return false;
+    }
+    if (from->count >= 0 && group) {
+        if (f->lengths[group] < 0)
+            f->lengths[group] = from->count;
+        if (f->lengths[group] != from->count) {
+            PyErr_Format(PyExc_ValueError, "%s has %zd items, where there are %zd", path, from->count,
+                         f->lengths[group]);
+            return false;
+        }
+    }
+    if (from->count > 0 && (size_t)from->count > f->largest)
+        f->largest = (size_t)from->count;
+    const char *base = from->base;
+    Py_ssize_t stride = from->stride;
+    if (!fits || ((uintptr_t)base | (size_t)stride) % size != 0) {
+        if (!whole) {
+            PyErr_Format(PyExc_ValueError, "%s: items of %s are not aligned", path, describe(i));
+            return false;
+        }
+        base = convert(f, from, size, path);
+        stride = from->count < 0 ? 0 : (Py_ssize_t)size;
+        if (!base)
+            return false;
+    }
+    const narc_byte_column plain = {(const uint8_t *)base, stride};
+    if (is_member(type, "narc_position_column"))
+        *(narc_position_column *)column =
+            (narc_position_column){base, stride, i->code == 'd' ? NARC_FLOAT64 : NARC_FLOAT32};
+    else /* all columns begin alike */
+        memcpy(column, &plain, sizeof plain);
+    return true;
+}
+
+/* One number for all: as the column's own type. */
+static bool set_constant(frame *f, const char *type, void *column, PyObject *given, const char *path) {
+    numbers one = {.count = -1, .item = {.order = '@', .size = 8, .code = 'd'}};
+    char *const room = frame_allocate(f, 8);
+    if (!room)
+        return false;
+    if (is_member(type, "narc_float_column") || is_member(type, "narc_position_column")) {
+        const double value = PyFloat_AsDouble(given);
+        const float narrow = (float)value;
+        if (is_member(type, "narc_float_column")) {
+            one.item.code = 'f', one.item.size = 4;
+            memcpy(room, &narrow, sizeof narrow);
+        } else
+            memcpy(room, &value, sizeof value);
+    } else {
+        const unsigned long long value = PyLong_AsUnsignedLongLong(given);
+        one.item.code = 'Q';
+        memcpy(room, &value, sizeof value);
+        if (is_member(type, "narc_byte_column")) {
+            const uint8_t byte = (uint8_t)value;
+            one.item.code = 'B', one.item.size = 1;
+            memcpy(room, &byte, 1);
+        }
+    }
+    if (PyErr_Occurred()) {
+        PyErr_Clear();
+        PyErr_Format(PyExc_TypeError, "%s: a number or an array is wanted, not %R", path, given);
+        return false;
+    }
+    one.base = room;
+    return set_column(f, type, column, &one, 0, path);
+}
+
+/* Column `which` of an array of two, or of a plain one with 0. */
+static bool take_column(frame *f, const char *type, void *column, const Py_buffer *view, int width, int which,
+                        unsigned char group, const char *path) {
+    numbers from = {.base = (const char *)view->buf, .count = -1};
+    if (!find_item(view->format, NULL, &from.item) || from.item.count != 1) {
+        PyErr_Format(PyExc_TypeError, "%s: an array of numbers is wanted, not of the format %s", path, view->format);
+        return false;
+    }
+    if (view->ndim == 0 && width == 1)
+        return set_column(f, type, column, &from, group, path);
+    if (view->ndim != (width == 1 ? 1 : 2) || (width == 2 && view->shape[1] != 2)) {
+        PyErr_Format(PyExc_ValueError, "%s: the shape is to be %s, not one of %d dimensions", path,
+                     width == 1 ? "(n,)" : "(n, 2)", view->ndim);
+        return false;
+    }
+    from.count = view->shape[0];
+    from.stride = view->strides ? view->strides[0] : view->itemsize;
+    if (width == 2)
+        from.base += which * view->strides[1];
+    return set_column(f, type, column, &from, group, path);
+}
+
+static bool read_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group,
+                        const char *path) {
+    if (given == Py_None)
+        return true;
+    if (!PyObject_CheckBuffer(given))
+        return set_constant(f, type, column, given, path);
+    const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
+    return view && take_column(f, type, column, view, 1, 0, group, path);
+}
+
+bool frame_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group) {
+    return read_column(f, type, column, given, group, f->argument);
+}
+
+/* ------------------------------------------------------------------------------------------------ structures */
+
+static const narc_member *find_member(const narc_layout *layout, const char *name) {
+    for (size_t k = 0; k < layout->member_count; k++)
+        if (strcmp(layout->members[k].name, name) == 0)
+            return &layout->members[k];
+    return NULL;
+}
+
+static bool is_column(const narc_member *member) {
+    const size_t length = strlen(member->type);
+    return length > 7 && strcmp(member->type + length - 7, "_column") == 0;
+}
+
+/* Numbers of the pairs or bodies to look at, and what things bodies are parts of, have lengths of their own. */
+static unsigned char group_of(const narc_layout *layout, const narc_member *member, unsigned char group) {
+    char count[64];
+    PyOS_snprintf(count, sizeof count, "%s_count", member->name);
+    if (find_member(layout, count))
+        return 0;
+    return is_member(layout->name, "narc_owners") && is_member(member->name, "owner") ? 'B' : group;
+}
+
+static bool set_number(void *place, const char *type, size_t size, PyObject *given, const char *path) {
+    if (is_member(type, "float")) {
+        *(float *)place = (float)PyFloat_AsDouble(given);
+    } else if (is_member(type, "double")) {
+        *(double *)place = PyFloat_AsDouble(given);
+    } else {
+        const unsigned long long value = PyLong_AsUnsignedLongLong(given);
+        if (size == 4 && value <= UINT32_MAX)
+            *(uint32_t *)place = (uint32_t)value;
+        else if (size == 8)
+            *(uint64_t *)place = value;
+        else if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_OverflowError, "");
+    }
+    if (!PyErr_Occurred())
+        return true;
+    PyErr_Clear();
+    PyErr_Format(PyExc_TypeError, "%s: a number is wanted, not %R", path, given);
+    return false;
+}
+
+static bool set_member(frame *f, const narc_layout *layout, const narc_member *m, char *structure, PyObject *given,
+                       unsigned char group, const char *path) {
+    void *const place = structure + m->offset;
+    if (given == Py_None)
+        return true;
+    if (is_column(m)) {
+        const unsigned char own = group_of(layout, m, group);
+        if (!read_column(f, m->type, place, given, own, path))
+            return false;
+        if (!own && PyObject_CheckBuffer(given)) { /* its length is a member, too */
+            char count[64];
+            PyOS_snprintf(count, sizeof count, "%s_count", m->name);
+            const Py_buffer *const view = &f->buffers[f->buffer_count - 1];
+            const narc_member *const of = find_member(layout, count);
+            *(size_t *)(structure + of->offset) = view->ndim ? (size_t)view->shape[0] : 1;
+        }
+        return true;
+    }
+    if (is_member(m->type, "const narc_workers *"))
+        return frame_workers(f, given, place);
+    const bool pointer = strncmp(m->type, "const narc_", 11) == 0;
+    char name[64];
+    PyOS_snprintf(name, sizeof name, "%s", pointer ? m->type + 6 : m->type);
+    name[strcspn(name, " ")] = 0;
+    const narc_layout *const inner = narc_find_layout(name);
+    if (inner && inner->member_count) {
+        void *const room = pointer ? frame_allocate(f, inner->size) : place;
+        if (!room)
+            return false;
+        if (pointer)
+            *(void **)place = room;
+        /* pairs, and another set of bodies, have lengths of their own */
+        return frame_fill(f, inner, room, given,
+                          is_member(m->name, "other_bodies") ? 'O'
+                          : is_member(m->name, "pairs")      ? 'P'
+                                                             : group);
+    }
+    if (strchr(m->type, '*') || m->count > 1) {
+        PyErr_Format(PyExc_TypeError, "%s can't be given", path);
+        return false;
+    }
+    return set_number(place, m->type, m->size, given, path);
+}
+
+/* Members x and y, or what is called `stem`_x and `stem`_y; or a and b. */
+static bool find_two(const narc_layout *layout, const char *stem, const narc_member *two[2]) {
+    char name[64];
+    for (int k = 0; k < 2; k++) {
+        if (strlen(stem) == 2 && strchr("xa", stem[0]))
+            PyOS_snprintf(name, sizeof name, "%c", stem[k]);
+        else
+            PyOS_snprintf(name, sizeof name, "%s_%c", stem, k ? 'y' : 'x');
+        two[k] = find_member(layout, name);
+        if (!two[k] || !is_column(two[k]))
+            return false;
+    }
+    return true;
+}
+
+static bool fill_two(frame *f, const narc_member *const two[2], char *structure, PyObject *given, unsigned char group,
+                     const char *path) {
+    const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
+    for (int k = 0; view && k < 2; k++)
+        if (!take_column(f, two[k]->type, structure + two[k]->offset, view, 2, k, group, path))
+            return false;
+    return view != NULL;
+}
+
+static bool find_field(const char *format, const narc_layout *rows, const char *name, item *out) {
+    if (!rows)
+        return find_item(format, name, out);
+    const narc_member *const m = find_member(rows, name);
+    if (m)
+        *out = (item){.code = m->type[0] == 'u' ? 'I' : m->type[0],
+                      .order = '@',
+                      .offset = m->offset,
+                      .size = m->size,
+                      .count = 1};
+    return m != NULL;
+}
+
+/* Records: a field for each column. `rows`: what they are, if that is known, NULL: as their format says. */
+static bool fill_records(frame *f, const narc_layout *layout, char *structure, const Py_buffer *view,
+                         const narc_layout *rows, unsigned char group) {
+    size_t found = 0;
+    for (size_t k = 0; k < layout->member_count; k++) {
+        const narc_member *const m = &layout->members[k];
+        numbers from = {.base = view->buf, .stride = view->strides[0], .count = view->shape[0]};
+        char path[128];
+        PyOS_snprintf(path, sizeof path, "%s.%s", f->argument, m->name);
+        if (!is_column(m) || !find_field(view->format, rows, m->name, &from.item))
+            continue;
+        from.base += from.item.offset;
+        if (!set_column(f, m->type, structure + m->offset, &from, group, path))
+            return false;
+        found++;
+    }
+    if (!found)
+        PyErr_Format(PyExc_TypeError, "%s: records have no field of %s, their format is %s", f->argument, layout->name,
+                     view->format);
+    return found > 0;
+}
+
+static bool fill_mapping(frame *f, const narc_layout *layout, char *structure, PyObject *given, unsigned char group) {
+    Py_ssize_t at = 0;
+    PyObject *key, *value;
+    while (PyDict_Next(given, &at, &key, &value)) {
+        const char *const name = PyUnicode_AsUTF8AndSize(key, NULL);
+        const narc_member *two[2], *const m = name ? find_member(layout, name) : NULL;
+        char path[128];
+        if (!name)
+            return false;
+        PyOS_snprintf(path, sizeof path, "%s.%s", f->argument, name);
+        if (m ? !set_member(f, layout, m, structure, value, group, path)
+              : find_two(layout, name, two) && value != Py_None && !fill_two(f, two, structure, value, group, path))
+            return false;
+        if (!m && !find_two(layout, name, two)) {
+            PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *given, unsigned char group) {
+    const narc_member *const skipped = find_member(layout, "out_skipped"), *two[2];
+    if (skipped)
+        *(size_t **)((char *)structure + skipped->offset) = &f->skipped;
+    if (given == Py_None)
+        return true;
+    if (PyDict_Check(given)) {
+        if (!fill_mapping(f, layout, structure, given, group))
+            return false;
+    } else {
+        const narc_layout *const rows = find_known(given);
+        const Py_buffer *const view = frame_view(f, given, rows ? PyBUF_STRIDED_RO : PyBUF_RECORDS_RO);
+        if (!view)
+            return false;
+        if (view->ndim == 1 && (rows || (view->format && view->format[0] == 'T'))) {
+            if (!fill_records(f, layout, structure, view, rows, group))
+                return false;
+        } else if (find_two(layout, "xy", two) || find_two(layout, "ab", two)) {
+            for (int k = 0; k < 2; k++)
+                if (!take_column(f, two[k]->type, (char *)structure + two[k]->offset, view, 2, k, group, f->argument))
+                    return false;
+        } else {
+            PyErr_Format(PyExc_TypeError, "%s: records or a mapping of columns are wanted", f->argument);
+            return false;
+        }
+    }
+    if (is_member(layout->members[0].name, "count"))
+        *(size_t *)structure = f->lengths[group] < 0 ? 1 : (size_t)f->lengths[group];
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------ workers and rows */
+
+bool frame_workers(frame *f, PyObject *given, const narc_workers **out_workers) {
+    const unsigned long count = given == Py_None ? 1 : PyLong_AsUnsignedLong(given);
+    *out_workers = NULL;
+    if (PyErr_Occurred() || count == 0 || count > MOST_THREADS) {
+        PyErr_Clear();
+        PyErr_Format(PyExc_ValueError, "threads is %R, it must be 1 to %d", given, (int)MOST_THREADS);
+        return false;
+    }
+    if (count == 1)
+        return true;
+    narc_workers *const workers = frame_allocate(f, sizeof *workers);
+    if (workers)
+        *workers = (narc_workers){.count = (unsigned)count, .run = run_in_threads};
+    *out_workers = workers;
+    return workers != NULL;
+}
+
+/* Are the buffer's items rows of this layout? */
+static bool are_rows(const Py_buffer *view, const narc_layout *layout) {
+    item found;
+    if (view->ndim == 2) /* numbers of one type */
+        return (size_t)(view->shape[1] * view->itemsize) == layout->size && find_item(view->format, NULL, &found) &&
+               !is_foreign(&found) && strcmp(layout->members[0].type, found.code == 'd' ? "double" : "float") == 0 &&
+               strchr("df", found.code);
+    bool are = view->ndim == 1 && (size_t)view->itemsize == layout->size;
+    for (size_t k = 0; are && k < layout->member_count; k++)
+        are = find_item(view->format, layout->members[k].name, &found) && !is_foreign(&found) &&
+              found.offset == layout->members[k].offset && found.size == layout->members[k].size;
+    return are;
+}
+
+bool frame_rows(frame *f, const narc_layout *layout, size_t size, bool writable, PyObject *given, void **out_rows,
+                size_t *out_count) {
+    *out_rows = NULL;
+    *out_count = 0;
+    if (given == Py_None)
+        return true;
+    const bool is_known = layout && find_known(given) == layout;
+    const Py_buffer *const view =
+        frame_view(f, given, PyBUF_C_CONTIGUOUS | (is_known ? 0 : PyBUF_FORMAT) | (writable ? PyBUF_WRITABLE : 0));
+    if (!view)
+        return false;
+    const Py_ssize_t row = layout ? (Py_ssize_t)layout->size : (Py_ssize_t)size;
+    const Py_ssize_t rows = view->ndim ? view->shape[0] : 1;
+    if (layout && !writable && !is_known ? !are_rows(view, layout) : rows > 0 && view->len != rows * row) {
+        PyErr_Format(PyExc_TypeError, "%s: rows of %s are wanted, %zd bytes each", f->argument,
+                     layout ? layout->name : "numbers", row);
+        return false;
+    }
+    *out_rows = view->buf;
+    *out_count = (size_t)rows;
+    if (*out_count > f->largest)
+        f->largest = *out_count;
+    return true;
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * frame.h - one call from Python to the library: what its arguments are made into, and what is given back when it ends.
+ *
+ * Nothing here knows a structure by heart: the library's table of layouts (narc_layouts.h) says what a structure has, so that
+ * a new member can be given from Python at once.
+ */
+#ifndef NARC_FRAME_H
+#define NARC_FRAME_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#include <narc.h>
+#include <narc_contacts.h>
+#include <narc_layouts.h>
+
+enum { MOST_ARGUMENTS = 10, MOST_BUFFERS = 48, MOST_GROUPS = 128, ARENA = 4096 };
+
+/* A call that is under way. Each argument has a slot: a pointer, how many items are there, or a number. */
+typedef struct frame {
+    void *p[MOST_ARGUMENTS];
+    void *handles[MOST_ARGUMENTS]; /* Python objects that are in use */
+    size_t n[MOST_ARGUMENTS];
+    double d[MOST_ARGUMENTS];
+    size_t count, skipped; /* what the library tells */
+    narc_pairs pairs;
+    const narc_step_result *step;
+    narc_error error;
+    size_t largest;                  /* the longest column: is it worth to let other threads of Python run? */
+    const char *argument;            /* which one is read, for messages */
+    Py_ssize_t lengths[MOST_GROUPS]; /* of columns that belong together, by a letter; -1: not known yet */
+    Py_buffer buffers[MOST_BUFFERS];
+    int buffer_count;
+    void *memory[MOST_BUFFERS]; /* of converted columns */
+    int memory_count;
+    size_t arena_used;
+    _Alignas(16) char arena[ARENA]; /* structures that others point to, and single values */
+} frame;
+
+void frame_begin(frame *f);
+void frame_end(frame *f);
+
+/* Room in the frame, all 0; NULL, with an error set: there is none. */
+void *frame_allocate(frame *f, size_t size);
+
+/* The buffer of an object, until the frame ends; NULL, with an error that names the argument. `flags`: PyBUF_... */
+Py_buffer *frame_view(frame *f, PyObject *object, int flags);
+
+/* Tells that arrays with this dtype hold rows of the layout: NumPy takes microseconds to write down the format of records. */
+bool frame_know(PyObject *dtype, const narc_layout *layout);
+
+/* Fills a structure: from None (nothing), a mapping of members, records with fields of the members' names, or an array with two
+ * columns, x and y or a and b. Columns belong to `group`. False, with an error that names the member. */
+bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *given, unsigned char group);
+
+/* Threads for a call, NULL for one; false, with an error. */
+bool frame_workers(frame *f, PyObject *given, const narc_workers **out_workers);
+
+/* An array of rows without gaps: records of the layout's members, or an array with a column for each of them; or, without a
+ * layout, items of `size` bytes. `writable`: rows that the call fills, which need to be as large alone. */
+bool frame_rows(frame *f, const narc_layout *layout, size_t size, bool writable, PyObject *given, void **out_rows,
+                size_t *out_count);
+
+/* A column by itself: its `type` is that of a member. */
+bool frame_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group);
+
+#endif

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""Batches beside plain NumPy and shapely; arrays in all layouts; what is refused."""
+
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+import narc
+
+
+def polygon_gap(one, other):
+    """The largest gap of two convex polygons along the normals of their sides: their separation where it is below 0."""
+    gap = -np.inf
+    for p, q in ((one, other), (other, one)):
+        edge = np.roll(p, -1, 0) - p
+        normal = np.stack([edge[:, 1], -edge[:, 0]], 1) / np.linalg.norm(edge, axis=1)[:, None]
+        gap = max(gap, ((q @ normal.T).min(0) - (p * normal).sum(1)).max())
+    return gap
+
+
+def test_circles_are_as_a_formula_says(random):
+    shapes = narc.Shapes()
+    ball = shapes.circle(0.5)
+    bodies = narc.bodies(random.random((2000, 2)) * 20, shape=ball, scale=1 + random.random(2000))
+    pairs = random.integers(0, 2000, (5000, 2))
+    gap = np.linalg.norm(bodies["xy"][pairs[:, 0]] - bodies["xy"][pairs[:, 1]], axis=1)
+    gap -= 0.5 * (bodies["scale"][pairs[:, 0]] + bodies["scale"][pairs[:, 1]])
+    apart = pairs[:, 0] != pairs[:, 1]
+    assert np.allclose(narc.separations(shapes, bodies, pairs)[apart], gap[apart], atol=1e-5)
+    sure = apart & (np.abs(gap) > 1e-4)
+    assert (narc.overlaps(shapes, bodies, pairs)[sure] == (gap < 0)[sure]).all()
+    rows = narc.contacts(shapes, bodies, pairs)
+    way = bodies["xy"][pairs[rows["pair"], 1]] - bodies["xy"][pairs[rows["pair"], 0]]
+    length = np.linalg.norm(way, axis=1)
+    assert np.allclose(rows["normal"][length > 0.1], (way / np.maximum(length, 1e-9)[:, None])[length > 0.1], atol=1e-4)
+
+
+def test_polygons_are_as_their_sides_say(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies)
+    rows = narc.contacts(scene.shapes, scene.bodies, pairs)
+    found = dict(zip(rows["pair"], rows["separation"]))
+    tested = 0
+    for k, (a, b) in enumerate(pairs):
+        if scene.ball in (scene.bodies["shape"][a], scene.bodies["shape"][b]):
+            continue
+        gap = polygon_gap(scene.outline(a), scene.outline(b))
+        assert abs(gap) < 1e-5 or (gap < 0) == (k in found)
+        assert gap > -1e-5 or abs(found[k] - gap) < 1e-4
+        tested += 1
+    assert tested > 50
+
+
+def test_separations_are_distances_of_shapely(scene):
+    pytest.importorskip("shapely")
+    geometries = [scene.geometry(k) for k in range(80)]
+    pairs = np.array([(a, b) for a in range(80) for b in range(a)], np.uint32)
+    separations = narc.separations(scene.shapes, scene.bodies, pairs)
+    for (a, b), separation in zip(pairs, separations):
+        distance = geometries[a].distance(geometries[b])
+        assert abs(max(separation, 0) - distance) < 2e-3  # shapely's circles are polygons
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.tuples(*[st.floats(-10, 10)] * 2, st.floats(-7, 7)), min_size=2, max_size=12))
+def test_overlaps_and_contacts_agree(places):
+    shapes = narc.Shapes()
+    box = shapes.box(3, 2, 0.25)
+    xy = np.array([place[:2] for place in places])
+    bodies = narc.bodies(xy, [place[2] for place in places], box)
+    pairs = np.array([(a, b) for a in range(len(xy)) for b in range(a)], np.uint32)
+    rows = narc.contacts(shapes, bodies, pairs)
+    assert (np.flatnonzero(narc.overlaps(shapes, bodies, pairs)) == rows["pair"]).all()
+    points = narc.manifolds(shapes, bodies, pairs)
+    assert (points["pair"] == rows["pair"]).all() and (points["count"] >= 1).all()
+    assert (points["normal"] == rows["normal"]).all()
+
+
+def layouts(bodies):
+    """The same bodies as callers have them."""
+    count = len(bodies)
+    yield "backwards twice", bodies[::-1].copy()[::-1]
+    wide = np.zeros((count, 3), bodies.dtype)
+    wide[:, 1] = bodies
+    yield "every third row", wide[:, 1]
+    own = np.zeros(count, [("name", "S5"), ("shape", "<u4"), ("y", "<f8"), ("vertices", "<f4", (3, 2)), ("x", "<f8"), ("scale", "<f4"),
+                           ("sine", "<f4"), ("flag", "?"), ("pad", "V3"), ("cosine", "<f4"), ("z", "<c8")])
+    own = np.zeros(count, np.dtype(own.dtype.descr, align=True))
+    for field in ("cosine", "sine", "scale", "shape"):
+        own[field] = bodies[field]
+    own["x"], own["y"] = bodies["xy"].T
+    yield "records with others", own
+    columns = {field: bodies[field].copy() for field in ("xy", "cosine", "sine", "scale", "shape")}
+    yield "columns", columns
+    yield "columns with gaps", {name: np.repeat(column, 2, axis=0)[::2] for name, column in columns.items()}
+    yield "shapes of 64 bits", {**columns, "shape": columns["shape"].astype(np.int64)}
+    yield "x and y", {**{name: columns[name] for name in ("cosine", "sine", "scale", "shape")}, "x": columns["xy"][:, 0],
+                      "y": columns["xy"][:, 1]}
+    yield "a memoryview", memoryview(own)
+
+
+def test_layouts_give_the_same_bytes(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies)
+    expected = narc.contacts(scene.shapes, scene.bodies, pairs).tobytes()
+    for name, bodies in layouts(scene.bodies):
+        assert narc.contacts(scene.shapes, bodies, pairs).tobytes() == expected, name
+    for name, same in (("int64", pairs.astype(np.int64)), ("columns", {"a": pairs[:, 0], "b": pairs[:, 1]}),
+                       ("Fortran", np.asfortranarray(pairs)), ("uint8", None), ("backwards", pairs[::-1].copy()[::-1])):
+        if same is not None:
+            assert narc.contacts(scene.shapes, scene.bodies, same).tobytes() == expected, name
+    out = np.zeros(len(pairs), narc.CONTACT)
+    rows = narc.contacts(scene.shapes, scene.bodies, pairs, out=out, threads=4)
+    assert rows.tobytes() == expected and rows.base is out
+
+
+def test_one_value_is_that_of_all(random):
+    shapes = narc.Shapes()
+    box = shapes.box(1, 1)
+    xy = random.random((100, 2)) * 5
+    plain = narc.contacts(shapes, narc.bodies(xy, 0.0, box))
+    same = narc.contacts(shapes, {"xy": xy, "cosine": 1.0, "sine": 0.0, "shape": box})
+    assert plain[0].tobytes() == same[0].tobytes() and (plain[1] == same[1]).all()
+
+
+def test_pairs_of_two_sets(scene):
+    one, other = scene.bodies[:100].copy(), scene.bodies[100:].copy()
+    rows, pairs = narc.contacts(scene.shapes, one, others=other, margin=0.2)
+    every = np.stack(np.meshgrid(np.arange(100), np.arange(200), indexing="ij"), -1).reshape(-1, 2)
+    all_rows = narc.contacts(scene.shapes, scene.bodies, every + [0, 100], margin=0.2)
+    assert (pairs[rows["pair"]] == every[all_rows["pair"]]).all()
+    assert (rows["separation"] == all_rows["separation"]).all() and len(rows) > 20
+
+
+def test_pairs_are_all_whose_boxes_touch(scene):
+    boxes = narc.boxes(scene.shapes, scene.bodies, margin=0.5)
+    low, high = boxes["min"], boxes["max"]
+    meet = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(-1)
+    assert (narc.pairs(scene.shapes, scene.bodies, margin=1.0) == np.argwhere(np.triu(meet, 1))).all()
+    static = np.full(len(boxes), narc.CONSTANTS["NARC_STATIC"], np.uint8)
+    assert len(narc.box_pairs(boxes, kind=static)) == 0
+
+
+def test_options_have_their_columns(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies, margin=1.0)
+    margins = np.linspace(0, 1, len(pairs), dtype=np.float32)
+    separations = narc.separations(scene.shapes, scene.bodies, pairs)
+    rows = narc.contacts(scene.shapes, scene.bodies, pairs, margins=margins)
+    assert (rows["pair"] == np.flatnonzero(separations < margins)).all()
+    chosen = np.arange(len(pairs))[::-3].astype(np.uint32)
+    rows = narc.contacts(scene.shapes, scene.bodies, pairs, margin=np.inf, selection=chosen)
+    assert (rows["pair"] == chosen).all()
+    dense = narc.contacts(scene.shapes, scene.bodies, pairs, dense=True)
+    assert len(dense) == len(pairs) and ((dense["count"] == 1) == (separations < 0)).all()
+
+
+REFUSED = [
+    (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 2))), TypeError, "pairs: uint32 is wanted, not float64"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 3), np.uint32)), ValueError, r"pairs: the shape is to be \(n, 2\)"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros(6, np.uint32)), ValueError, r"pairs: the shape is to be \(n, 2\)"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 2), ">u4")), TypeError, "pairs: .*another order of bytes"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 300]]), narc.OutOfRange, "pair 0: body b is 300"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, -1]]), IndexError, "pairs: item 0 is -1"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 2**32]]), IndexError, "pairs: item 0 is 4294967296"),
+    (lambda s: narc.contacts(s.shapes, {"xy": np.zeros((3, 2)), "cosine": np.ones(3)}, [[0, 1]]), TypeError,
+     "bodies.cosine: float32 is wanted, not float64"),
+    (lambda s: narc.contacts(s.shapes, {"xy": np.zeros((3, 2)), "cosine": np.ones(4, "f4")}, [[0, 1]]), ValueError,
+     "bodies.cosine has 4 items, where there are 3"),
+    (lambda s: narc.contacts(s.shapes, {"xy": np.zeros((3, 2), "f4").T}, [[0, 1]]), ValueError, "bodies.xy"),
+    (lambda s: narc.contacts(s.shapes, {"mass": np.zeros(3)}, [[0, 1]]), TypeError, "bodies: there is no mass"),
+    (lambda s: narc.contacts(s.shapes, np.zeros(3, [("p", "f8")]), [[0, 1]]), TypeError, "bodies: records have no field"),
+    (lambda s: narc.contacts(s.shapes, "bodies", [[0, 1]]), TypeError, "bodies"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], margins=np.zeros(2, "f4")), ValueError, "query.margins has 2 items"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], margin="wide"), TypeError, "query.margin: a number"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], colour=1), TypeError, "query: there is no colour"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], threads=0), ValueError, "threads is 0"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], threads=10000), ValueError, "threads is 10000"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], margin=np.nan), narc.Error, "margin"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, margin=np.inf), ValueError, "margin"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], out=np.zeros(1)), TypeError, "out"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[k, k] for k in range(9)], out=np.zeros(3, narc.CONTACT)), ValueError,
+     "out has 3 rows, 9 are needed"),
+    (lambda s: narc.contacts(None, s.bodies, [[0, 1]]), TypeError, "shapes: a narc.Shapes is wanted"),
+    (lambda s: narc.bodies([1, 2, 3]), ValueError, "xy: the shape"),
+    (lambda s: narc.place_parts(s.bodies, s.bodies[:5], np.zeros(4, np.uint32)), ValueError, "owner has 4 items"),
+]
+
+
+@pytest.mark.parametrize("call,kind,words", REFUSED, ids=range(len(REFUSED)))
+def test_wrong_calls_name_the_argument(scene, call, kind, words):
+    with pytest.raises(kind, match=words):
+        call(scene)
+
+
+def test_read_only_outputs_are_refused(scene):
+    out = np.zeros(5, narc.CONTACT)
+    out.flags.writeable = False
+    with pytest.raises(ValueError, match="out"):
+        narc.contacts(scene.shapes, scene.bodies, [[0, 1]], out=out)
+    scene.bodies.flags.writeable = False
+    narc.contacts(scene.shapes, scene.bodies, [[0, 1]])
+
+
+def test_errors_have_numbers(scene):
+    with pytest.raises(narc.Error) as caught:
+        narc.contacts(scene.shapes, scene.bodies, [[0, 1], [2, 900]])
+    assert (caught.value.status, caught.value.index, caught.value.value) == ("NARC_ERROR_INDEX", 1, 900)
+    scene.bodies["cosine"][9] = 3
+    with pytest.raises(narc.Error, match="body 9"):
+        narc.validate(scene.shapes, scene.bodies)
+
+
+def test_broken_bodies_are_told_of(scene):
+    scene.bodies["xy"][4] = np.nan
+    with pytest.warns(narc.NoAnswer, match="2 of"):
+        narc.contacts(scene.shapes, scene.bodies, [[4, 5], [6, 7], [8, 4]])
+
+
+def test_nothing_is_an_answer_too(scene):
+    none = np.zeros((0, 2), np.uint32)
+    assert len(narc.contacts(scene.shapes, scene.bodies, none)) == len(narc.overlaps(scene.shapes, scene.bodies, none)) == 0
+    assert len(narc.contacts(scene.shapes, scene.bodies[:0])[0]) == 0
+    assert len(narc.contacts(scene.shapes, scene.bodies, [])) == 0
+
+
+def test_threads_give_the_same_bytes(random):
+    shapes = narc.Shapes()
+    box = shapes.box(2, 1)
+    bodies = narc.bodies(random.random((20000, 2)) * 150, random.random(20000) * 7, box)
+    one = narc.manifolds(shapes, bodies)
+    for threads in (2, 5):
+        many = narc.manifolds(shapes, bodies, threads=threads)
+        assert one[0].tobytes() == many[0].tobytes() and (one[1] == many[1]).all()
+
+
+def test_python_runs_meanwhile_and_shapes_are_guarded(random):
+    shapes = narc.Shapes()
+    box = shapes.regular(30, 1.0, 0.01)
+    bodies = narc.bodies(random.random((3000, 2)) * 5, random.random(3000) * 7, box)
+    pairs = random.integers(0, 3000, (400000, 2)).astype(np.uint32)
+    seen, errors = [], []
+
+    def ask():
+        seen.append(narc.separations(shapes, bodies, pairs).tobytes())
+
+    threads = [threading.Thread(target=ask) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    while any(thread.is_alive() for thread in threads):
+        try:
+            shapes.circle(1 + len(errors))
+        except RuntimeError as error:
+            errors.append(str(error))
+    assert seen[0] == seen[1]
+    assert errors and set(errors) == {"shapes is in use by another call"}

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: MIT
+"""Shapes, scenes and steps."""
+
+import gc
+import os
+import pickle
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import narc
+
+
+def test_tables_are_those_of_the_library():
+    assert narc.CONTACT.itemsize == 36 and narc.MANIFOLD.itemsize == 64 and narc.BODY.itemsize == 32
+    assert narc.CONTACT.fields["normal"][1] == 12 and narc.MANIFOLD["point"].base["separation"] == np.float32
+    assert narc.BODY.names == ("xy", "cosine", "sine", "scale", "shape")
+    assert narc.CONSTANTS["NARC_MAX_ARCS"] == 64 and narc.CONSTANTS["NARC_ERROR_BOUND"] == 32 / 2**24
+
+
+def test_shapes_have_the_areas_of_formulas():
+    shapes = narc.Shapes()
+    square = np.array([[0, 0], [2, 0], [2, 2], [0, 2]], float)
+    for shape, area in ((shapes.circle(2), 4 * np.pi), (shapes.box(3, 2), 6), (shapes.capsule(4, 1), 8 + np.pi),
+                        (shapes.polygon(square), 4), (shapes.polygon(square, skin=1), 4 + 8 + np.pi),
+                        (shapes.box(3, 2, 0.5), 6 - 1 + np.pi / 4), (shapes.ellipse(3, 2, 32), 6 * np.pi),
+                        (shapes.segment([[0, 0], [3, 4]], 1), 10 + np.pi), (shapes.regular(4, 1), 2)):
+        assert shapes.mass(shape)["area"] == pytest.approx(area, rel=1e-5)
+    assert shapes.box(3, 2) == 1 and shapes.uses(1) == 2 and len(shapes) == 9
+    shapes.remove(1)
+    assert shapes.uses(1) == 1 and repr(shapes) == "<narc.Shapes: 9>"
+    ring = shapes.ring([[0, 0], [4, 0], [4, 3], [2, 1.5], [0, 3]])
+    assert shapes.mass(ring)["area"] > 6 and shapes.bounding_circle(ring)["radius"] > 2
+    assert len(shapes.arcs(99)) == 0
+
+
+def test_outlines_are_within_the_tolerance():
+    shapes = narc.Shapes()
+    for shape in (shapes.circle(5), shapes.box(3, 2, 0.5), shapes.ellipse(3, 1, 8), shapes.capsule(2, 1)):
+        for tolerance in (1e-1, 1e-3):
+            x, y = shapes.as_polygon(shape, tolerance).T
+            area = 0.5 * (x * np.roll(y, -1) - y * np.roll(x, -1)).sum()
+            exact = shapes.mass(shape)["area"]
+            assert 0 <= exact - area <= 35 * tolerance
+
+
+def test_what_is_no_shape_is_refused():
+    shapes = narc.Shapes()
+    for call, words in ((lambda: shapes.box(-1, 2), "width is -1"), (lambda: shapes.polygon([[0, 0], [1, 0]]), "points"),
+                        (lambda: shapes.circle(np.nan), "radius"), (lambda: shapes.remove(3), "3"),
+                        (lambda: shapes.add([[0, 0, 1, 0, 1]]), "turn")):
+        with pytest.raises(narc.Error, match=words) as caught:
+            call()
+        assert caught.value.status.startswith("NARC_ERROR_")
+    with pytest.raises(TypeError, match="arcs: rows of narc_arc"):
+        shapes.add(np.zeros((3, 4)))
+    with pytest.raises(TypeError):
+        shapes.circle("wide")
+    assert len(shapes) == 0
+
+
+def test_arcs_move_and_parts_have_a_mass():
+    shapes = narc.Shapes()
+    arcs = shapes.arcs(shapes.box(2, 2))
+    there = narc.move(arcs, (1, 0), 0.5, 2.0)
+    assert narc.mass(there)["area"] == pytest.approx(16) and np.allclose(narc.mass(there)["centroid"], [1, 0])
+    assert narc.union_mass([arcs, narc.move(arcs, (1, 0))])["area"] == pytest.approx(6)
+    owners = narc.bodies([[5, 5]], np.pi / 2)
+    parts = narc.bodies([[1, 0], [0, 2]])
+    assert np.allclose(narc.place_parts(owners, parts, np.zeros(2, np.uint32))["xy"], [[5, 6], [3, 5]], atol=1e-6)
+
+
+def test_shapes_are_pickled():
+    shapes = narc.Shapes()
+    shapes.circle(1), shapes.ellipse(3, 1)
+    again = pickle.loads(pickle.dumps(shapes))
+    assert (again.arcs(1) == shapes.arcs(1)).all() and len(again) == 2
+    kind, data = shapes.__reduce__()
+    with pytest.raises(narc.Error, match="") as caught:
+        kind(data[0], data[1][:-1])
+    assert caught.value.status == "NARC_ERROR_FORMAT"
+
+
+def test_ground_holds_balls(random):
+    shapes = narc.Shapes()
+    up = np.pi / 2
+    entries = shapes.chain([[9, 0, 0, up, up], [0, 0, 0, up, up]])
+    ground = narc.bodies(entries["xy"], shape=entries["shape"])
+    ball = shapes.circle(0.5)
+    balls = narc.bodies([[2, 0.4], [5, 0.7], [7, 0.45]], shape=ball)
+    rows, pairs = narc.contacts(shapes, balls, others=ground)
+    assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
+
+
+def circle_scene(random, count=400):
+    shapes = narc.Shapes()
+    bodies = narc.bodies(random.random((count, 2)) * 60, shape=shapes.circle(1.0))
+    return shapes, bodies
+
+
+def test_rays_meet_circles_where_a_formula_says(random):
+    shapes, bodies = circle_scene(random)
+    index = narc.Index(shapes, bodies)
+    turn = random.random(500) * 7
+    motion = (np.stack([np.cos(turn), np.sin(turn)], 1) * 80).astype(np.float32)
+    start = random.random((500, 2)) * 60
+    hits = index.rays(start, motion, inside=2)
+    to = bodies["xy"][None] - start[:, None]
+    length = np.linalg.norm(motion, axis=1)[:, None]
+    along = (to * (motion / length)[:, None]).sum(-1)
+    beside = (to**2).sum(-1) - along**2
+    at = along - np.sqrt(np.maximum(1 - beside, 0))
+    fraction = np.where((beside < 1) & (at > 0) & ((to**2).sum(-1) > 1), at / length, np.inf)
+    first = fraction.min(1)
+    clear = np.abs(beside - 1).min(1) > 1e-3
+    hit = clear & (first < 1)
+    assert hit.sum() > 200 and (hits["count"][clear] == (first[clear] < 1)).all()
+    assert np.allclose(hits["fraction"][hit], first[hit], atol=1e-5)
+    assert (hits["body"][hit] == fraction.argmin(1)[hit]).all()
+    fan = index.rays((30, 30), motion, most=3, threads=3)
+    assert fan.shape == (500, 3) and (fan["fraction"][:, 1] >= fan["fraction"][:, 0])[fan["count"][:, 1] == 1].all()
+    assert index.rays(np.float32([[30, 30]]), motion[:1]).shape == (1,)
+
+
+def test_nearest_and_regions_are_as_numpy_says(random):
+    shapes, bodies = circle_scene(random)
+    index = narc.Index(shapes, bodies)
+    points = random.random((300, 2)) * 60
+    distance = np.linalg.norm(bodies["xy"][None] - points[:, None], axis=-1) - 1
+    near = index.nearest(points)
+    assert np.allclose(near["separation"], distance.min(1), atol=1e-5) and (near["count"] == 1).all()
+    three = index.nearest(points, most=3)
+    assert np.allclose(three["separation"], np.sort(distance, 1)[:, :3], atol=1e-5)
+    same = narc.distances(shapes, bodies, points, near["body"])
+    assert (same["separation"] == near["separation"]).all()
+    masks = np.where(np.arange(len(bodies)) % 2, 1, 2).astype(np.uint64)
+    odd = narc.Index(shapes, bodies, category=masks).nearest(points, mask=1)
+    assert (odd["body"] % 2 == 1).all()
+    boxes = np.float32([[0, 0, 10, 10], [50, 50, 70, 70]])
+    found = index.regions(boxes)
+    inside = [((bodies["xy"] >= box[:2] - 1) & (bodies["xy"] <= box[2:] + 1)).all(1) for box in boxes]
+    assert (found == np.argwhere(inside)).all()
+    bodies["xy"] += 100
+    index.update()
+    assert len(index.regions(boxes)) == 0 and repr(index) == "<narc.Index of 400 bodies>"
+
+
+def test_casts_hit_when_circles_meet():
+    shapes = narc.Shapes()
+    ball = shapes.circle(1.0)
+    bodies = narc.bodies([[0, 0], [10, 0]], shape=ball)
+    hit = narc.casts(shapes, bodies, np.float32([[16, 0], [0, 0]]), np.array([[0, 1]]))
+    assert hit["count"][0] == 1 and hit["fraction"][0] == pytest.approx(0.5, abs=1e-6)
+    index = narc.Index(shapes, bodies)
+    movers = narc.bodies([[5, 9], [5, -9]], shape=ball)
+    hits = index.casts(movers, np.float32([[0, -20], [100, 0]]))
+    assert (hits["count"] == 0).all()
+    assert index.casts(movers, np.float32([[-10, -18], [0, 0]]))["count"][0] == 1
+
+
+def test_steps_have_the_rows_of_batches(scene):
+    contacts = narc.Contacts()
+    for step in range(5):
+        scene.bodies["xy"] += 0.05
+        scene.bodies["xy"][::3] += 0.1
+        r = contacts.update(scene.shapes, scene.bodies, margin=0.02, skin=0.05)
+        rows, pairs = narc.manifolds(scene.shapes, scene.bodies, margin=0.02)
+        assert (r.pairs == pairs[rows["pair"]]).all() and (r.rows["normal"] == rows["normal"]).all()
+        assert len(set(r.slots)) == len(r.slots) and (r.rows["pair"] == r.slots).all()
+        if step == 0:
+            assert len(r.began) == len(r.slots) and len(r.ended) == 0
+    data = contacts.save()
+    again = narc.Contacts()
+    assert again.load(scene.shapes, data).rows.tobytes() == r.rows.tobytes()
+    scene.bodies["xy"][::2] += 0.2
+    one, other = (c.update(scene.shapes, scene.bodies, margin=0.02, skin=0.05) for c in (contacts, again))
+    assert all(np.array_equal(a, b) for a, b in zip(one, other))
+    still = np.full(len(scene.bodies), narc.CONSTANTS["NARC_STATIC"], np.uint8)
+    contacts.forget()
+    assert len(contacts.update(scene.shapes, scene.bodies, margin=0.02, kind=still).slots) == 0
+    with pytest.raises(ValueError, match="rows is"):
+        narc.Contacts("points")
+
+
+def test_a_child_of_fork_answers(scene):
+    expected = narc.manifolds(scene.shapes, scene.bodies, threads=3)[0].tobytes()
+    child = os.fork()
+    if child == 0:
+        os._exit(narc.manifolds(scene.shapes, scene.bodies, threads=3)[0].tobytes() != expected)
+    assert os.waitpid(child, 0)[1] == 0
+
+
+def test_memory_comes_back(scene):
+    pairs = narc.pairs(scene.shapes, scene.bodies).astype(np.int64)
+
+    def ask(times):
+        for k in range(times):
+            shapes = narc.Shapes()
+            shapes.circle(1)
+            narc.contacts(scene.shapes, scene.bodies, pairs)
+            narc.Contacts().update(scene.shapes, scene.bodies[:20])
+            with pytest.raises(narc.OutOfRange):
+                narc.overlaps(scene.shapes, scene.bodies, [[0, 999]])
+        gc.collect()
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    before = ask(300)
+    assert ask(1500) - before < 1500  # kilobytes: less than one for each
+
+
+def test_the_module_tells_of_itself():
+    text = subprocess.run([sys.executable, "-m", "narc"], check=True, capture_output=True, text=True).stdout
+    assert narc.__version__ in text and "narc_contact" in text
+    before = narc.get_isa()
+    with pytest.raises(narc.Error):
+        narc.set_isa("abacus")
+    narc.set_isa("scalar")
+    assert narc.get_isa() == "scalar"
+    narc.set_isa(before)
+
+
+def test_subinterpreters_are_refused():
+    interpreters = pytest.importorskip("_xxsubinterpreters")
+    other = interpreters.create()
+    try:
+        with pytest.raises(interpreters.RunFailedError, match="subinterpreters"):
+            interpreters.run_string(other, "from importlib.util import module_from_spec, spec_from_file_location as find\n"
+                                    f"spec = find('narc._narc', {narc._narc.__file__!r})\nspec.loader.exec_module(module_from_spec(spec))")
+    finally:
+        interpreters.destroy(other)
