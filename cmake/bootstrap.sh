@@ -28,7 +28,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
-  python     the Python package: a wheel in out/python/, installed into the environment build/python and tested
+  python     the Python package: a wheel and pictures of its examples in out/python/, installed into the environment
+             build/python and tested
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -62,7 +63,7 @@ lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin pyth
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
 windows_packages="$run_packages gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev wine64"
 python_packages="$library_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
-    python3-hypothesis python3-shapely mypy"
+    python3-hypothesis python3-shapely python3-matplotlib mypy"
 dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
 
 missing_of() {
@@ -452,7 +453,7 @@ check_style() {
     # The compilation database of the build with everything in it, the kernels once for each instruction set, and that of
     # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
     # here.
-    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
+    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' 'bindings/*.c' \
         ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
     git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
@@ -531,7 +532,7 @@ coverage() {
 # In an environment that has Debian's packages and nothing from a network; installed, the wheel needs NumPy alone.
 make_wheel() {
     require_packages $python_packages
-    rm -rf out/python bindings/python/build
+    rm -rf out/python build/wheel
     mkdir -p out/python
     say "build/python"
     /usr/bin/python3 -m venv --system-site-packages build/python || fail "making build/python failed"
@@ -539,8 +540,13 @@ make_wheel() {
     $pip wheel --no-index --no-build-isolation --no-deps -w out/python bindings/python || fail "building the wheel failed"
     $pip install --no-index --no-deps --force-reinstall out/python/narc-*-cp311-abi3-*.whl || fail "installing the wheel failed"
     say "its tests"
+    env -i build/python/bin/python -m narc || fail "the package does not run by itself"
     build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
     (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
+    say "examples"
+    for example in lidar packing worlds; do
+        build/python/bin/python bindings/python/examples/$example.py out/python/$example.png || fail "$example.py failed"
+    done
     say "written"
     ls -l out/python
 }

@@ -47,6 +47,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_chains.h"
 #include "narc_contacts.h"
 #include "narc_scene.h"
 
@@ -225,6 +226,26 @@ template <class Row, class Rows, class Call> result<span<Row>> fill_rows(Rows &r
     return call(items.data(), items.size(), &error) ? result<span<Row>>(error) : result<span<Row>>(items.first(needed));
 }
 
+// call(items, capacity, out_count, error) with a guess of how many items there are, and again with room for them.
+template <class Item, class Call> result<std::vector<Item>> fill_vector(size_t guess, Call call) {
+    std::vector<Item> items(guess);
+    narc_error error = {};
+    size_t count = 0;
+    narc_status status = call(items.data(), items.size(), &count, &error);
+    if (status == NARC_ERROR_CAPACITY) {
+        items.resize(count);
+        status = call(items.data(), items.size(), &count, &error);
+    }
+    items.resize(status == NARC_OK ? count : 0);
+    return status == NARC_OK ? result<std::vector<Item>>(std::move(items)) : result<std::vector<Item>>(error);
+}
+
+// What call(out) says, where it says true.
+template <class T, class Call> std::optional<T> get_if(Call call) {
+    T value{};
+    return call(&value) ? std::optional<T>(value) : std::nullopt;
+}
+
 inline size_t at_least_one(size_t most) { return most > 0 ? most : 1; }
 
 } // namespace detail
@@ -276,6 +297,12 @@ template <class Items, class A, class B> narc_pairs pairs_of(const Items &items,
 // Pairs that bring their own poses.
 inline narc_pairs pairs_of(size_t count) { return {count, {}, {}, nullptr, {}, {}, {}}; }
 
+// OpenMP's threads; 0: as many as it would use.
+inline narc_workers openmp_workers(unsigned count = 0) noexcept {
+    narc_workers workers = {};
+    narc_openmp_workers(count, &workers);
+    return workers;
+}
 // Workers that are the caller's loop: run(8, task) calls task(index) for each index below 8 and returns when all have
 // ended. `run` must outlive the workers and let no exception out.
 template <class Run> narc_workers workers_of(unsigned count, Run &run) {
@@ -328,6 +355,108 @@ inline auto through_points(points junctions, double radius = 0) {
     return build(narc_build_points, junctions.data(), junctions.size(), radius);
 }
 inline auto ring(points around) { return build(narc_build_ring, around.data(), around.size()); }
+inline auto hull(points around, double tolerance = 0, double radius = 0) {
+    return build(narc_build_hull, around.data(), around.size(), tolerance, radius);
+}
+
+// Corners for builders, and what these take.
+inline result<std::vector<narc_point>> weld_polygon(points corners, double tolerance) {
+    return detail::fill_vector<narc_point>(
+        corners.size(),
+        [&](narc_point *out, size_t, size_t *count, narc_error *error) {
+            return narc_weld_polygon(corners.data(), corners.size(), tolerance, out, count, error);
+        });
+}
+inline result<std::vector<narc_point>> adjust_polygon(points corners) {
+    return detail::fill_vector<narc_point>(
+        corners.size(),
+        [&](narc_point *out, size_t, size_t *count, narc_error *error) {
+            *count = corners.size();
+            return narc_adjust_polygon(corners.data(), corners.size(), out, error);
+        });
+}
+struct radius_range {
+    double min, max, chosen;
+};
+inline result<radius_range> find_radius_range(points junctions) {
+    return detail::ask<radius_range>([&](radius_range *out, narc_error *error) {
+        return narc_find_radius_range(junctions.data(), junctions.size(), &out->min, &out->max, &out->chosen, error);
+    });
+}
+
+// The same shape elsewhere; with its centroid at the origin; mirrored.
+inline result<outline> move(arcs shape, double x, double y, double angle = 0, double scale = 1) {
+    return build([=](narc_arc *out, size_t *count, narc_error *error) {
+        *count = shape.size();
+        return narc_move_arcs(shape.data(), shape.size(), x, y, angle, scale, out, error);
+    });
+}
+inline result<outline> center(arcs shape, narc_point *centroid = nullptr) {
+    return build([=](narc_arc *out, size_t *count, narc_error *error) {
+        *count = shape.size();
+        return narc_center_arcs(shape.data(), shape.size(), out, centroid, error);
+    });
+}
+inline result<outline> mirror(arcs shape) {
+    return build([=](narc_arc *out, size_t *count, narc_error *error) {
+        *count = shape.size();
+        return narc_mirror_arcs(shape.data(), shape.size(), out, error);
+    });
+}
+
+// What is known of an outline; nothing of one without arcs.
+inline auto mass(arcs shape) {
+    return detail::get_if<narc_mass>(
+        [=](narc_mass *out) { return narc_compute_mass(shape.data(), shape.size(), out); });
+}
+inline auto bounding_circle(arcs shape) {
+    return detail::get_if<narc_circle>(
+        [=](narc_circle *out) { return narc_compute_bounding_circle(shape.data(), shape.size(), out); });
+}
+inline auto inscribed_circle(arcs shape) {
+    return detail::get_if<narc_circle>(
+        [=](narc_circle *out) { return narc_compute_inscribed_circle(shape.data(), shape.size(), out); });
+}
+// Turned by an angle.
+inline auto aabb(arcs shape, double angle = 0) {
+    return detail::get_if<narc_aabb>(
+        [=](narc_aabb *out) { return narc_compute_aabb(shape.data(), shape.size(), angle, out); });
+}
+inline auto perimeter(arcs shape) {
+    return detail::get_if<double>([=](double *out) { return narc_compute_perimeter(shape.data(), shape.size(), out); });
+}
+inline auto distance(arcs shape, narc_point to) {
+    return detail::get_if<double>(
+        [=](double *out) { return narc_compute_distance(shape.data(), shape.size(), &to, out); });
+}
+struct support {
+    narc_point point;
+    size_t arc;
+};
+inline auto find_support(arcs shape, double direction_x, double direction_y) {
+    return detail::get_if<support>([=](support *out) {
+        return narc_find_support(shape.data(), shape.size(), direction_x, direction_y, &out->point, &out->arc);
+    });
+}
+inline bool contains(arcs shape, narc_point point) noexcept {
+    return narc_contains_point(shape.data(), shape.size(), &point);
+}
+
+// Of all that any of some parts covers: the arcs of all, and how many each has.
+inline result<narc_mass> union_mass(arcs all, span<const size_t> counts, const narc_allocator *allocator = nullptr) {
+    return detail::ask<narc_mass>(narc_compute_union_mass, all.data(), counts.data(), counts.size(), allocator);
+}
+
+// As a polyline, of a shape or a chain; of a body, or in the arcs' own axes.
+inline result<std::vector<narc_point>> flatten(arcs outline, bool closed, double tolerance,
+                                               const narc_body *body = nullptr) {
+    return detail::fill_vector<narc_point>(
+        4 * outline.size(),
+        [&](narc_point *out, size_t capacity, size_t *count, narc_error *error) {
+            return narc_flatten_arcs(outline.data(), outline.size(), closed, body, tolerance, out, capacity, count,
+                                     error);
+        });
+}
 
 // A store.
 class shapes : public detail::owner<narc_shapes, narc_create_shapes, narc_destroy_shapes> {
@@ -352,6 +481,31 @@ class shapes : public detail::owner<narc_shapes, narc_create_shapes, narc_destro
         return detail::ask<void>(narc_replace_shape, get(), index, shape.data(), shape.size());
     }
     result<void> remove(uint32_t index) { return detail::ask<void>(narc_remove_shape, get(), index); }
+    result<void> reserve(size_t shape_count, size_t arc_count) {
+        return detail::ask<void>([&](narc_error *error) {
+            *error = {};
+            return error->status = narc_reserve_shapes(get(), shape_count, arc_count);
+        });
+    }
+    // Ground: its entries, which are to be bodies.
+    result<std::vector<narc_chain_entry>> add_chain(arcs chain, const narc_chain_options &options = {}) {
+        return detail::fill_vector<narc_chain_entry>(
+            2 * chain.size() + 8,
+            [&](narc_chain_entry *out, size_t capacity, size_t *count, narc_error *error) {
+                return narc_add_chain(get(), chain.data(), chain.size(), &options, out, capacity, count, error);
+            });
+    }
+    uint32_t uses(uint32_t index) const noexcept { return narc_count_uses(get(), index); }
+    unsigned flags(uint32_t index) const noexcept { return narc_shape_flags(get(), index); }
+    std::optional<narc_aabb> aabb(uint32_t index, float cosine = 1, float sine = 0, float scale = 1) const noexcept {
+        return detail::get_if<narc_aabb>(
+            [&](narc_aabb *out) { return narc_get_aabb(get(), index, cosine, sine, scale, out); });
+    }
+    result<std::vector<char>> save() const {
+        std::vector<char> bytes(narc_count_saved_bytes(get()));
+        const auto saved = detail::ask<void>(narc_save_shapes, get(), bytes.data(), bytes.size());
+        return saved ? result<std::vector<char>>(std::move(bytes)) : result<std::vector<char>>(saved.error());
+    }
     size_t size() const noexcept { return narc_count_shapes(get()); }
     outline operator[](uint32_t index) const noexcept {
         outline shape;
@@ -688,6 +842,28 @@ auto find_distances(const narc_shapes *shapes, const narc_bodies &bodies, const 
         });
 }
 
+// Whether each ray hits one body, and where; each point one body's inside, a bit. `body` as above.
+template <class Rows>
+auto cast_ray_pairs(const narc_shapes *shapes, const narc_bodies &bodies, const narc_rays &rays, narc_index_column body,
+                    const narc_ray_options &options, Rows &&rows) {
+    return detail::fill_rows<narc_ray_hit>(
+        rows, rays.count,
+        [&](narc_ray_hit *out, size_t capacity, narc_error *error) {
+            return narc_cast_ray_pairs(shapes, &bodies, &rays, body.base ? &body : nullptr, &options, out, capacity,
+                                       error);
+        });
+}
+template <class Bits>
+result<void> find_inside(const narc_shapes *shapes, const narc_bodies &bodies, const narc_points &at,
+                         narc_index_column body, Bits &&bits, const narc_workers *workers = nullptr) {
+    const size_t words = NARC_BIT_WORDS(at.count);
+    detail::make_room(bits, words);
+    const span<uint64_t> room(bits);
+    if (room.size() < words)
+        return result<void>(detail::too_short(words));
+    return detail::ask<void>(narc_find_inside, shapes, &bodies, &at, body.base ? &body : nullptr, workers, room.data());
+}
+
 template <class Rows>
 auto find_nearest(const narc_index *index, const narc_shapes *shapes, const narc_bodies &bodies, const narc_points &at,
                   const narc_nearest_options &options, Rows &&rows) {
@@ -717,7 +893,25 @@ auto place_parts(const narc_bodies &owners, const narc_bodies &parts, narc_index
         });
 }
 
+// The bodies of pairs that the library owns, of all, or of a selection: as many of each as the result says.
+inline result<size_t> copy_pairs(const narc_pairs &pairs, span<uint32_t> a, span<uint32_t> b,
+                                 span<const uint32_t> selection = {}) {
+    const size_t count = selection.data() ? selection.size() : pairs.count;
+    if (a.size() < count || b.size() < count)
+        return result<size_t>(detail::too_short(count));
+    const auto copied = detail::ask<void>(narc_copy_pairs, &pairs, selection.data(), count, a.data(), b.data(), 0);
+    return copied ? result<size_t>(count) : result<size_t>(copied.error());
+}
+
+// What there is: versions, instruction sets, kernels, features; NULL behind the last one.
+inline const char *version() noexcept { return narc_version(); }
+inline const char *status_name(narc_status status) noexcept { return narc_status_name(status); }
 inline result<void> set_isa(const char *name) { return detail::ask<void>(narc_set_isa, name); }
+inline const char *get_isa() noexcept { return narc_get_isa(); }
+inline const char *isa_name(size_t index) noexcept { return narc_isa_name(index); }
+inline bool isa_supported(const char *name) noexcept { return narc_isa_supported(name); }
+inline const char *kernel_name(size_t index) noexcept { return narc_kernel_name(index); }
+inline const char *cpu_feature(size_t index) noexcept { return narc_cpu_feature(index); }
 
 } // namespace narc
 

@@ -57,6 +57,22 @@ NARC_API void narc_view_bodies(const narc_body *rows, size_t count, narc_bodies 
  * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
+/* The outline of a shape, or of a chain (narc_chains.h), as a polyline: for drawing, and for programs that know no arcs. Points are
+ * in the order of the arcs, edges join them, and neither is further from the other than `tolerance`, but for the rounding of
+ * doubles.
+ *   arcs         of a shape, as narc_get_arcs() has them, or a chain's, with the signs of their radii; angles as there
+ *   closed       a shape, or a closed chain: the last point is not the first one again; the caller joins them
+ *   body         where points are wanted, its shape means nothing; NULL: in the arcs' own axes
+ *   tolerance    above 0, in the points' unit
+ *   out_points   room for `capacity`. Points that are one up to 1/1024 of the tolerance are there once
+ *   out_count    how many; on NARC_ERROR_CAPACITY so many as surely are enough, and no points are written
+ * So an arc with the radius r and the sweep s has some s * sqrt(r / (8 * tolerance)) chords. Other errors, with nothing written:
+ * NARC_ERROR_ARGUMENT (NULL, a tolerance of 0 or less, a broken body), NARC_ERROR_NOT_FINITE, NARC_ERROR_SWEEP. Thread-safe; the
+ * same bits on every machine. Not in narc_small.wasm. */
+NARC_API narc_status narc_flatten_arcs(const narc_arc *arcs, size_t count, bool closed, const narc_body *body,
+                                       double tolerance, narc_point *out_points, size_t capacity, size_t *out_count,
+                                       narc_error *error);
+
 /* Pairs of bodies, by index. Both may name the same body (it collides with itself).
  *   a, b              bodies. Both left out (base NULL): a pair brings its own poses, pair k is bodies 2k and 2k + 1.
  *                     Of two sets one may be left out, too: pair k has body k of it

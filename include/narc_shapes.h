@@ -189,6 +189,17 @@ NARC_API narc_status narc_build_skin_polygon(const narc_point *points, size_t co
 NARC_API narc_status narc_weld_polygon(const narc_point *points, size_t count, double tolerance, narc_point *out_points,
                                        size_t *out_count, narc_error *error);
 
+/* The convex hull of `points[0 .. count-1]`, in any order, with a skin of `radius` >= 0, as narc_build_skin_polygon() makes it;
+ * the arcs' centres are its corners, all among the points.
+ *   tolerance   so far points may stay outside, and corners are left out; below 2^-17 of the extent, the furthest distance from
+ *               one of the points, it is that: what turns by less is no corner of a shape
+ * Takes time in proportion to the points and the corners. NARC_ERROR_COUNT: fewer than 3 points, or a hull of more than
+ * NARC_MAX_ARCS corners: error->value is a tolerance with which it has as many at most. NARC_ERROR_NOT_CONVEX: all points lie within
+ * the tolerance of a segment.
+ * Source: quickhull's step (Eddy 1977), always at the side with the furthest point outside. */
+NARC_API narc_status narc_build_hull(const narc_point *points, size_t count, double tolerance, double radius,
+                                     narc_arc *out_arcs, size_t *out_count, narc_error *error);
+
 /* A regular polygon around the origin with 3 .. NARC_MAX_ARCS corners, corner 0 at (circumradius, 0), each rounded
  * inside the polygon with `radius` >= 0. Errors as narc_build_polygon(). */
 NARC_API narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,

@@ -252,6 +252,91 @@ narc_status narc_weld_polygon(const narc_point *points, size_t count, double tol
     return NARC_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------ hulls */
+
+/* A side of a hull under way, from its corner to the next one's, and the point that is furthest outside of it. */
+typedef struct hull_side {
+    narc_point corner, furthest;
+    double distance;
+} hull_side;
+
+/* Of points that are as far, to some roundings, any: one between two corners is welded in the end. */
+static void look_outside(const narc_point *points, size_t count, hull_side *of, narc_point to) {
+    const narc_point from = of->corner;
+    const double x = to.x - from.x, y = to.y - from.y, length = narc_hypot(x, y);
+    of->distance = 0;
+    for (size_t k = 0; k < count; k++) {
+        const double distance = ((points[k].x - from.x) * y - (points[k].y - from.y) * x) / length;
+        if (distance > of->distance) {
+            of->distance = distance;
+            of->furthest = points[k];
+        }
+    }
+}
+
+/* A corner that is further than half of this from the line between its neighbours turns by four times as much for each extent:
+ * by more than narc_check_turns() asks for. */
+#define LEAST_TOLERANCE 0x1p-17
+
+/* From two corners on, the point that is furthest outside becomes the next one: it is a corner of the hull, up to rounding,
+ * which is far below what may stay outside. */
+narc_status narc_build_hull(const narc_point *points, size_t count, double tolerance, double radius, narc_arc *out_arcs,
+                            size_t *out_count, narc_error *error) {
+    const quantity lengths[] = {{"tolerance", tolerance, LENGTH}, {"radius", radius, RADIUS}};
+    hull_side sides[NARC_MAX_ARCS];
+    narc_point corners[NARC_MAX_ARCS];
+    size_t left = 2, second = 0;
+    double extent = 0;
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK && !points)
+        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "points is NULL");
+    if (status == NARC_OK && count < 3)
+        status =
+            narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "there are %zu points, a hull has 3 at least", count);
+    if (status == NARC_OK)
+        status = check_lengths(lengths, 2, error);
+    if (status == NARC_OK)
+        status = narc_check_points(points, count, error);
+    if (status != NARC_OK)
+        return status;
+    sides[0].corner = points[0];
+    for (size_t k = 1; k < count; k++)
+        if (points[k].x < sides[0].corner.x || (points[k].x == sides[0].corner.x && points[k].y < sides[0].corner.y))
+            sides[0].corner = points[k];
+    for (size_t k = 0; k < count; k++) {
+        const double far = narc_hypot(points[k].x - sides[0].corner.x, points[k].y - sides[0].corner.y);
+        second = far > extent ? k : second;
+        extent = fmax(extent, far);
+    }
+    sides[1].corner = points[second];
+    const double most = fmax(tolerance, extent * LEAST_TOLERANCE) / 2; /* outside, and welded */
+    for (size_t k = 0; k < 2 && extent > 0; k++)
+        look_outside(points, count, &sides[k], sides[1 - k].corner);
+    for (;;) {
+        size_t at = 0;
+        for (size_t k = 1; k < left; k++)
+            at = sides[k].distance > sides[at].distance ? k : at;
+        const hull_side widest = sides[at];
+        if (!(extent > 0) || widest.distance <= most)
+            break;
+        if (left == NARC_MAX_ARCS)
+            return narc_fail(error, NARC_ERROR_COUNT, 0, 2 * widest.distance,
+                             "more than %d corners: with so many a tolerance of %.9g is possible", NARC_MAX_ARCS,
+                             2 * widest.distance);
+        memmove(&sides[at + 2], &sides[at + 1], (left - at - 1) * sizeof *sides);
+        left++;
+        sides[at + 1].corner = widest.furthest;
+        look_outside(points, count, &sides[at], widest.furthest);
+        look_outside(points, count, &sides[at + 1], sides[(at + 2) % left].corner);
+    }
+    for (size_t k = 0; k < left; k++)
+        corners[k] = sides[k].corner;
+    if (left < 3 || narc_weld_polygon(corners, left, most, corners, &left, NULL) != NARC_OK)
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, extent,
+                         "all points lie within %.9g of a segment: narc_build_segment() makes one", 2 * most);
+    return narc_build_skin_polygon(corners, left, radius, out_arcs, out_count, error);
+}
+
 narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,
                                        size_t *out_count, narc_error *error) {
     narc_point points[NARC_MAX_ARCS];

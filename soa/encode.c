@@ -283,6 +283,17 @@ static bool is_corner(const narc_stored_arc *arc, float x, float y, float radius
            has_same_bits(arc->end_x, end[0]) && has_same_bits(arc->end_y, end[1]);
 }
 
+/* Is a shape a polygon of a few corners, which have one radius? Pieces of chains are none. */
+static bool has_equal_corners(const narc_encoded_shape *shape) {
+    const narc_shape_header *header = &shape->header;
+    const narc_record *arcs = &shape->records[narc_angle_records(header->count)];
+    bool equal = header->count >= 3 && header->count <= NARC_FORM_CORNERS && !(header->flags & NARC_SHAPE_SMOOTH) &&
+                 !narc_is_piece(header);
+    for (size_t k = 1; equal && k < header->count; k++)
+        equal = has_same_bits(arcs[k].arc.radius, arcs[0].arc.radius);
+    return equal;
+}
+
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     static const float normals[5][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
     static const float sides[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
@@ -290,8 +301,9 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     const narc_record *arcs = &shape->records[narc_angle_records(header->count)];
     const bool circle = header->flags & NARC_SHAPE_CIRCLE, capsule = header->count == 2 && !circle;
     const bool smooth = header->flags & NARC_SHAPE_SMOOTH;
+    const uint32_t other = has_equal_corners(shape) ? NARC_IS_POLYGON : 0;
     if ((header->count != 4 && header->count != 2) || header->extent_ratio == UINT8_MAX || smooth != circle)
-        return (narc_box_form){.info = 0};
+        return (narc_box_form){.info = other};
     const float x = fabsf(arcs[0].arc.center_x), radius = arcs[0].arc.radius;
     const float y = capsule ? arcs[0].arc.start_x : arcs[0].arc.center_y; /* of a capsule a zero with its sign */
     const float least_edge = ldexpf(1, 5 * (header->flags >> NARC_SIZE_CLASS_SHIFT) - 47);
@@ -311,7 +323,7 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
                 found && is_corner(&arcs[k].arc, sides[k][0] * x, sides[k][1] * y, radius, normals[k], normals[k + 1]);
     }
     const uint32_t info = circle ? NARC_IS_CIRCLE : (capsule ? NARC_IS_CAPSULE : NARC_IS_BOX) | header->first_arc;
-    return (narc_box_form){x, y, radius, found ? info : 0};
+    return found ? (narc_box_form){x, y, radius, info} : (narc_box_form){.info = other};
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */

@@ -260,7 +260,7 @@ static void note_change(narc_shapes *shapes, uint32_t shape, uint32_t hash) {
 
 /* Keeps the form of a shape's box, or that it is none. */
 static void put_box(narc_shapes *shapes, uint32_t shape, narc_box_form box) {
-    shapes->box_count += (box.info != 0) - (size_t)(shapes->boxes[shape].info != 0);
+    shapes->box_count += narc_has_form(&box) - (size_t)narc_has_form(&shapes->boxes[shape]);
     shapes->boxes[shape] = box;
 }
 

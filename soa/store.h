@@ -136,7 +136,8 @@ typedef union narc_record {
  *   half_y of a capsule   A zero: x of the normal of its edge at +y, with its sign, which makes a bit of an answer. The
  *                         normal at -y is the opposite one.
  *   info   0: the shape is none of these; else NARC_IS_..., and in its lowest bits, but for a circle, the first_arc of
- *          its header.
+ *          its header. NARC_IS_POLYGON alone, which makes it less than 0: none of these either, but a polygon of 3 to
+ *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by.
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -147,6 +148,10 @@ typedef struct narc_box_form {
 #define NARC_IS_BOX     4u
 #define NARC_IS_CAPSULE 8u
 #define NARC_IS_CIRCLE  16u
+#define NARC_IS_POLYGON 0x80000000u
+enum { NARC_FORM_CORNERS = 8 };
+
+static inline bool narc_has_form(const narc_box_form *box) { return (box->info & ~NARC_IS_POLYGON) != 0; }
 
 /* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with
  * fewer, and a concave arc has two. */

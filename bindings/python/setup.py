@@ -24,7 +24,7 @@ class BuildByCMake(build_ext):
         build.mkdir(parents=True, exist_ok=True)
         subprocess.run(["cmake", "-S", str(HERE), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release", f"-DNARC_SOURCE={CORE}",
                         f"-DNARC_PYTHON_INCLUDE={sysconfig.get_path('include')}",
-                        f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={out}"], check=True)
+                        f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={out}", *os.environ.get("CMAKE_ARGS", "").split()], check=True)
         subprocess.run(["cmake", "--build", str(build), "--target", "_narc", "--parallel", str(os.cpu_count() or 1)],
                        check=True)
 
@@ -43,6 +43,13 @@ class WithCore(sdist):
                 shutil.copy(HERE / name, base_dir)
 
 
+# What is built goes to the tree's build folder, not among the sources.
+options = {}
+if CORE != HERE / "core":
+    base = CORE / "build" / "wheel"
+    base.mkdir(parents=True, exist_ok=True)
+    options = {"build": {"build_base": str(base)}, "egg_info": {"egg_base": str(base)}}
+
 version = re.findall(r"#define NARC_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", (CORE / "include" / "narc.h").read_text())
-setup(version=".".join(version), ext_modules=[Extension("narc._narc", [], py_limited_api=True)],
+setup(version=".".join(version), options=options, ext_modules=[Extension("narc._narc", [], py_limited_api=True)],
       cmdclass={"build_ext": BuildByCMake, "sdist": WithCore})

@@ -118,7 +118,8 @@ struct narc_contacts {
     size_t order_capacity, filtered_capacity, ground_capacity, event_capacity; /* of pairs: */
     uint32_t *order, *next_order;
     narc_pair_work *work;           /* what is to be done with pairs of ground, in the order of pairs */
-    uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide */
+    uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide; before,
+                                       `known`: of ground_asked, `left`: what has moved of that */
     uint32_t *candidates;           /* slots whose rows may follow, and then those whose rows are to be kept */
     uint32_t *sensors_asked, *ground_asked, *touching, *sensors;
     float *ground_margins;

@@ -133,8 +133,7 @@ static void list_ground(const narc_contact_step *s, const pair_view *v, size_t f
         if (is_stale(v, k, slot) || moved & NARC_RESHAPED)
             what = OF_OLD | OF_CHANGED;
         else
-            what = (moved ? OF_CHANGED : 0u) |
-                   (v->flags[slot] & NARC_SLOT_KEPT ? OF_KEPT : 0u);
+            what = (moved ? OF_CHANGED : 0u) | (v->flags[slot] & NARC_SLOT_KEPT ? OF_KEPT : 0u);
         what |= slot == UINT32_MAX || !(v->state[slot] & NARC_TOUCHING) ? OF_BARE : 0u;
         what |= v->changed[b] ? OF_MOVING : 0u;
         any |= what;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * rays.c - narc_cast_rays() and narc_cast_ray_pairs(): argument checks, rays into an order if asked, then part by part
- * to the kernels.
+ * rays.c - narc_cast_rays() and narc_cast_ray_pairs(): argument checks, rays into an order if asked, then part by part to the
+ * kernels.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -62,8 +62,8 @@ static void find_cells(void *argument, size_t part, size_t first, size_t end) {
 static void order_rays(const narc_index *index, const narc_rays *rays, const narc_workers *workers, void *room,
                        uint32_t *out) {
     const narc_box scene = narc_find_index_box(index);
-    struct ordering o = {rays, index->origin.x + (double)scene.min_x, index->origin.y + (double)scene.min_y, 0, 0, 1,
-                         room};
+    const narc_point origin = index->origin;
+    struct ordering o = {rays, (double)scene.min_x + origin.x, (double)scene.min_y + origin.y, 0, 0, 1, room};
     uint32_t *const place = o.cell + rays->count;
     while (4 * o.cells * o.cells * RAYS_IN_CELL <= rays->count && o.cells < MOST_CELLS)
         o.cells *= 2;

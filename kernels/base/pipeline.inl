@@ -181,13 +181,13 @@ INLINE void begin_block_of_pieces(const struct call *call, const struct sources 
     met->of_a = met->of_b = false;
 }
 
-/* To look which pairs can be dropped is worth it if one in four can. */
+/* To look which pairs can be dropped is worth it if one in eight can. */
 INLINE vm drop_some(const struct call *call, dropping *drop, const struct pair_indices *indices, int k, vm open,
                     const vf item[FIELDS], struct pieces_met *met) {
     met->of_a = met->of_a || vm_any(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS));
     met->of_b = met->of_b || vm_any(has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS));
     if (!drop || !call->concave || !(met->of_a || met->of_b) ||
-        (met->tried >= 2 * BLOCK && 4 * met->dropped < met->tried))
+        (met->tried >= 2 * BLOCK && 8 * met->dropped < met->tried))
         return open;
     const vm kept = drop(call, indices, k, open, item);
     met->tried += COUNT_BITS(vm_bits(open));

@@ -62,14 +62,6 @@ INLINE struct polygon_touch find_polygon_touch(const narc_record *records, struc
     return t;
 }
 
-INLINE struct polygon_touch select_polygon_touch(vm m, const struct polygon_touch *a, const struct polygon_touch *b) {
-    return (struct polygon_touch){
-        vi_select(m, a->record, b->record),     vi_select(m, a->next, b->next),
-        select_arcs(m, &a->corner, &b->corner), v2_select(m, a->other, b->other),
-        v2_select(m, a->normal, b->normal),     vm_or(vm_and(m, a->at_end), vm_and_not(b->at_end, m)),
-        v_select(m, a->sine, b->sine)};
-}
-
 /* Is the edge long enough, and the corner blunt enough? */
 INLINE vm is_usual(const struct polygon_touch *t, vi info, vf scale, vf slack) {
     const vf length = v_abs(v2_cross(t->normal, v2_sub(t->other, t->corner.center)));
@@ -84,61 +76,54 @@ struct polygon_contact {
     vm certain;
 };
 
-/* A corner against a corner: of both shapes the ones in these records, in the lanes `which`. */
-INLINE void take_corners(const narc_record *records, const struct queue *queue, int k, vi record_a, vi record_b,
-                         vm which, struct polygon_contact *c) {
-    const struct pose pose = get_pose(queue, k);
-    const struct arc_pair corners = load_arc_pair(records, record_a, record_b, &pose);
-    const vec2 u = find_center_difference(&corners);
-    const vf length = v2_length(u), radii = v_add(corners.a.radius, corners.b.radius);
-    const vf starts = v_min(v2_cross(corners.a.start, u), v2_cross(corners.b.start, u));
-    const vf ends = v_min(v2_cross(u, corners.a.end), v2_cross(u, corners.b.end));
-    const vf slack = get(queue, SLACK, k);
-    const vm inside = vm_and(v_lt(slack, v_min(starts, ends)), v_lt(v_add(slack, slack), length));
-    const vec2 n = v2_divide(u, length);
-    const struct polygon_touch a =
-        find_polygon_touch(records, get_ring_a(queue, k), record_a, &corners.a, n, &pose, false);
-    const struct polygon_touch b =
-        find_polygon_touch(records, get_ring_b(queue, k), record_b, &corners.b, n, &pose, true);
-    c->certain = vm_and_not(c->certain, vm_and_not(which, inside));
-    c->separation = v_select(which, v_sub(length, radii), c->separation);
-    c->normal = v2_select(which, n, c->normal);
-    c->a = select_polygon_touch(which, &a, &c->a);
-    c->b = select_polygon_touch(which, &b, &c->b);
-}
-
 /* How the polygons of the pairs k ... of a queue touch. */
 INLINE struct polygon_contact find_polygon_contact(const narc_record *records, const struct queue *queue, int k) {
     const struct pose pose = get_pose(queue, k);
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
-    const vi code = get_bits(queue, EDGE_CODE, k), zero = vi_set(0);
+    const vi code = get_bits(queue, EDGE_CODE, k), back = vi_set(-1);
     const vi edge = vi_and(code, vi_set(MAX_CORNERS - 1)), closest = vi_shift_right(code, 4);
     const vm of_a = vi_lt(vi_and(code, vi_set(MAX_CORNERS)), vi_set(1));
-    const vi record_a = vi_add(ring_a.base, vi_select(of_a, edge, closest)),
-             record_b = vi_add(ring_b.base, vi_select(of_a, closest, edge));
-    const vf slack = get(queue, SLACK, k);
-    const struct arc_pair corners = load_arc_pair(records, record_a, record_b, &pose);
-    const struct arcs *const a = &corners.a, *const b = &corners.b;
-    const vec2 f = v2_select(of_a, a->start, b->start), start = v2_select(of_a, b->start, a->start),
-               end = v2_select(of_a, b->end, a->end);
-    struct polygon_contact c = {.normal = f};
-    c.a = find_polygon_touch(records, ring_a, record_a, a, f, &pose, false);
-    c.b = find_polygon_touch(records, ring_b, record_b, b, f, &pose, true);
+    vi record_a = vi_add(ring_a.base, vi_select(of_a, edge, closest)),
+       record_b = vi_add(ring_b.base, vi_select(of_a, closest, edge));
+    const vf slack = get(queue, SLACK, k), none = v_set(0);
+    struct arc_pair corners = load_arc_pair(records, record_a, record_b, &pose);
+    const vec2 f = v2_select(of_a, corners.a.start, corners.b.start),
+               start = v2_select(of_a, corners.b.start, corners.a.start),
+               end = v2_select(of_a, corners.b.end, corners.a.end);
+    /* The corner before the edge. */
+    const vi previous = vi_select(of_a, step_record(ring_a, record_a, back), step_record(ring_b, record_b, back));
+    int32_t index[V_WIDTH];
+    vf field[4];
+    vi_store(index, previous);
+    v_rows(records, sizeof *records, index, field);
+    const vec2 own = {field[0], field[1]},
+               other = v2_select(of_a, place_corner(own, &pose, false), place_corner(own, &pose, true));
     /* Slopes of g before F and behind it, towards F where above 0. */
-    const vec2 u = find_center_difference(&corners);
-    const vec2 last = v2_sub(v2_select(of_a, b->center, c.b.other), v2_select(of_a, c.a.other, a->center));
-    const vf before = v2_cross(f, last), behind = v2_cross(u, f), none = v_set(0);
-    const vm rises = v_lt(none, before), falls = v_lt(none, behind);
-    c.separation = v_sub(v2_dot(u, f), v_add(a->radius, b->radius));
+    vec2 u = find_center_difference(&corners);
+    const vec2 last = v2_sub(v2_select(of_a, corners.b.center, other), v2_select(of_a, other, corners.a.center));
+    const vf before = v2_cross(f, last), behind = v2_cross(u, f);
+    const vm rises = v_lt(none, before), falls = v_lt(none, behind), at_corners = vm_not(vm_and(rises, falls));
+    const vf radii = v_add(corners.a.radius, corners.b.radius);
+    struct polygon_contact c = {.separation = v_sub(v2_dot(u, f), radii), .normal = f};
     c.certain = v_lt(v_set(IN_ORDER), v_min(v2_cross(start, f), v2_cross(f, end)));
     c.certain = vm_and(c.certain, v_lt(slack, v_min(v_abs(before), v_abs(behind))));
     c.certain = vm_and(c.certain, vm_or(rises, falls));
-    const vm at_corners = vm_not(vm_and(rises, falls));
-    if (vm_any(at_corners)) {
-        const vi step = vi_select(rises, zero, vi_set(-1));
-        take_corners(records, queue, k, step_record(ring_a, record_a, vi_select(of_a, step, zero)),
-                     step_record(ring_b, record_b, vi_select(of_a, zero, step)), at_corners, &c);
+    if (vm_any(at_corners)) { /* a corner against a corner: which g rises to */
+        const vm moves = vm_and_not(at_corners, rises);
+        record_a = vi_select(vm_and(moves, of_a), previous, record_a);
+        record_b = vi_select(vm_and_not(moves, of_a), previous, record_b);
+        corners = load_arc_pair(records, record_a, record_b, &pose);
+        u = find_center_difference(&corners);
+        const vf length = v2_length(u);
+        const vf starts = v_min(v2_cross(corners.a.start, u), v2_cross(corners.b.start, u));
+        const vf ends = v_min(v2_cross(u, corners.a.end), v2_cross(u, corners.b.end));
+        const vm inside = vm_and(v_lt(slack, v_min(starts, ends)), v_lt(v_add(slack, slack), length));
+        c.certain = vm_and_not(c.certain, vm_and_not(at_corners, inside));
+        c.separation = v_select(at_corners, v_sub(length, v_add(corners.a.radius, corners.b.radius)), c.separation);
+        c.normal = v2_select(at_corners, v2_divide(u, length), f);
     }
+    c.a = find_polygon_touch(records, ring_a, record_a, &corners.a, c.normal, &pose, false);
+    c.b = find_polygon_touch(records, ring_b, record_b, &corners.b, c.normal, &pose, true);
     c.certain = vm_and(c.certain, is_usual(&c.a, get_bits(queue, INFO_A, k), pose.scale_a, slack));
     c.certain = vm_and(c.certain, is_usual(&c.b, get_bits(queue, INFO_B, k), pose.scale_b, slack));
     return c;

@@ -17,6 +17,7 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "sat/arc_lookup.inl"
 #include "simd/simd.h"
 #include "store.h"
 
@@ -42,6 +43,19 @@ INLINE vm select_polygons(const struct queue *queue, int k, vm which) {
     return are_polygons(which, get(queue, INFO_A, k), get(queue, INFO_B, k));
 }
 
+/* The largest gap at a junction and the second largest; where the largest is: edge i of A, or MAX_CORNERS + i of B. */
+struct best_edge {
+    vf gap, second;
+    vi edge;
+    vec2 normal;
+};
+
+/* The edge with the largest gap, and the other shape's corner that is closest to it. */
+struct polygon_edge {
+    struct best_edge best;
+    vi corner;
+};
+
 /* A polygon in each lane, in A's frame: its corners, and the normals of the edges before them, B's negated. Lanes that
  * have less corners than others repeat their first one. `full`: all have 8. */
 struct polygon {
@@ -57,10 +71,7 @@ INLINE vec2 place_corner(vec2 center, const struct pose *pose, bool is_b) {
 
 /* The record of corner j in each lane, for v_rows(). */
 INLINE void store_corner_record(const struct polygon *p, struct ring ring, int j, int32_t index[V_WIDTH]) {
-    if (BLOCK == 1) {
-        vi_store(index, ring.base);
-        index[0] += j < p->most ? j : 0;
-    } else if (!p->full)
+    if (!p->full)
         vi_store(index, vi_select(vi_lt(vi_set(j), ring.count), vi_add(ring.base, vi_set(j)), ring.base));
 }
 
@@ -97,41 +108,14 @@ INLINE void load_polygon(const narc_record *records, struct ring ring, const str
     }
 }
 
-/* The largest gap at a junction and the second largest; where the largest is: edge i of A, or MAX_CORNERS + i of B. */
-struct best_edge {
-    vf gap, second;
-    vi edge;
-    vec2 normal;
-};
-
 /* The nearer of two corners of B, seen from A; of A it is the other one. */
 INLINE vf find_nearer(vf a, vf b, bool of_a) { return of_a ? v_max(a, b) : v_min(a, b); }
 
-/* With one lane: the edge of a polygon that faces the other one, by the axis of the inscribed circles. */
-INLINE int find_facing_edge(const struct polygon *p, vec2 axis) {
-    vf most = v_set(-INFINITY);
-    int facing = 0;
-    for (int i = 0; i < p->most; i++) {
-        const vf along = v2_dot(axis, p->normal[i]);
-        facing = vm_any(v_lt(most, along)) ? i : facing;
-        most = v_max(most, along);
-    }
-    return facing;
-}
-
-/* Takes the junctions of `own`. With one lane those that the inscribed circles rule out are left out, as nearly all are
- * once the edge that faces the other body is known. */
-INLINE void try_edges(const struct polygon *own, const struct polygon *other, const struct queue *queue, int k,
-                      struct best_edge *best) {
+/* Takes the junctions of `own`. */
+INLINE void try_edges(const struct polygon *own, const struct polygon *other, struct best_edge *best) {
     const bool of_a = own->is_b; /* whose corners are searched */
-    const vf room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k)), core = get(queue, CORE, k);
-    const vec2 axis = get_vec2(queue, AXIS, k);
-    const int first = V_WIDTH == 1 ? find_facing_edge(own, axis) : 0;
-    for (int tried = 0; tried < (own->full ? MAX_CORNERS : own->most); tried++) {
-        const int i = first + tried < own->most ? first + tried : first + tried - own->most;
+    for (int i = 0; i < (own->full ? MAX_CORNERS : own->most); i++) {
         const vec2 n = own->normal[i];
-        if (V_WIDTH == 1 && !vm_any(v_le(v_sub(best->gap, room), v_sub(v2_dot(axis, n), core))))
-            continue;
         vf even = v2_dot(n, other->corner[0]), odd = v2_dot(n, other->corner[1]);
         UNROLL
         for (int j = 2; j < MAX_CORNERS; j += 2) {
@@ -166,12 +150,6 @@ INLINE vi find_closest_corner(const struct polygon *a, const struct polygon *b, 
     return closest;
 }
 
-/* The edge with the largest gap, and the other shape's corner that is closest to it. */
-struct polygon_edge {
-    struct best_edge best;
-    vi corner;
-};
-
 INLINE struct polygon_edge find_best_of(const narc_record *records, const struct queue *queue, int k, bool full) {
     const struct pose pose = get_pose(queue, k);
     const vf none = v_set(-INFINITY);
@@ -182,17 +160,170 @@ INLINE struct polygon_edge find_best_of(const narc_record *records, const struct
     b.is_b = true;
     load_polygon(records, get_ring_a(queue, k), &pose, &a);
     load_polygon(records, get_ring_b(queue, k), &pose, &b);
-    try_edges(&a, &b, queue, k, &found.best);
-    try_edges(&b, &a, queue, k, &found.best);
+    try_edges(&a, &b, &found.best);
+    try_edges(&b, &a, &found.best);
     found.corner = find_closest_corner(&a, &b, vi_lt(found.best.edge, vi_set(MAX_CORNERS)), found.best.normal);
+    return found;
+}
+
+/* ------------------------------------------------------------------------------------------------ one lane
+ *
+ * With one lane a junction is asked in the frame of the shape whose it is, so that nothing is placed. The edge that faces
+ * the other body is looked up by the axis of the inscribed circles; from there on, on both sides, junctions are asked until
+ * these circles rule them out, and so all beyond. The other shape's corner is looked up, too, by 16 bits: a gap is too
+ * large if that is the wrong one, and if the largest is, F does not lie within that corner's sector (polygon_contact.inl).
+ * Otherwise values differ from the formula's by as little as those of lanes. Corners may have radii, equal ones. */
+
+/* Two polygons, seen from the one whose junctions are asked. */
+struct seen_polygons {
+    const narc_record *records;
+    struct ring own, other;
+    vi first, info;   /* of the other one's header */
+    struct pose pose; /* of the other one; scale_a: of the own one */
+    vec2 axis;        /* from the centre of the own inscribed circle to that of the other one */
+    vf radii, core, room;
+};
+
+INLINE const narc_stored_arc *get_stored_arc(const narc_record *records, vi record) {
+    int32_t index;
+    vi_store(&index, record);
+    return &records[(uint32_t)index].arc;
+}
+
+/* Junctions of the own shape: the larger gap of those that were asked and the other one; of the larger, the number of the
+ * arc behind it, and the corner closest to it; and the most that the gap may be at those beside them. */
+struct asked_junctions {
+    vf gap, second, beside;
+    vi edge, corner;
+    vec2 normal;
+};
+
+/* The gap along n, at a junction of the arc `own`, and the corner of the other shape that is closest. */
+INLINE vf ask_gap(const struct seen_polygons *p, const narc_stored_arc *own, vec2 n, vi *out_corner) {
+    const vec2 m = v2_unrotate(p->pose.rotation, n);
+    const vi record = find_arc(p->records, p->first, p->info, (vec2){v_neg(m.x), v_neg(m.y)});
+    const narc_stored_arc *const other = get_stored_arc(p->records, record);
+    const vf there = v2_dot(m, (vec2){v_load(&other->center_x), v_load(&other->center_y)}),
+             here = v2_dot(n, (vec2){v_load(&own->center_x), v_load(&own->center_y)});
+    *out_corner = vi_sub(record, p->other.base);
+    return v_sub(v_add(v2_dot(n, p->pose.position), v_mul(p->pose.scale_b, there)),
+                 v_add(v_mul(p->pose.scale_a, here), p->radii));
+}
+
+/* Asks those at the ends of the arc `facing`: the one that faces the other body, and the other one if it counts. */
+INLINE struct asked_junctions ask_facing(const struct seen_polygons *p, vi facing) {
+    const vi one = vi_set(1), back = vi_set(-1);
+    const narc_stored_arc *const arc = get_stored_arc(p->records, facing);
+    const vec2 start = {v_load(&arc->start_x), v_load(&arc->start_y)}, end = {v_load(&arc->end_x), v_load(&arc->end_y)};
+    const vf at_start = v2_dot(p->axis, start), at_end = v2_dot(p->axis, end);
+    const vm ahead = v_lt(at_start, at_end);
+    const vi next = step_record(p->own, facing, one), before = step_record(p->own, facing, back);
+    const narc_stored_arc *const above = get_stored_arc(p->records, next), *const below =
+                                                                               get_stored_arc(p->records, before);
+    const vf at_above = v2_dot(p->axis, (vec2){v_load(&above->end_x), v_load(&above->end_y)}),
+             at_below = v2_dot(p->axis, (vec2){v_load(&below->start_x), v_load(&below->start_y)});
+    struct asked_junctions asked = {.normal = v2_select(ahead, end, start), .second = v_set(-INFINITY)};
+    asked.edge = vi_sub(vi_select(ahead, next, facing), p->own.base);
+    asked.beside = v_sub(v_max(at_above, at_below), p->core);
+    asked.gap = ask_gap(p, arc, asked.normal, &asked.corner);
+    if (vm_any(v_le(v_sub(asked.gap, p->room), v_sub(v_min(at_start, at_end), p->core)))) {
+        const vec2 n = v2_select(ahead, start, end);
+        vi corner;
+        const vf gap = ask_gap(p, arc, n, &corner);
+        const vm better = v_lt(asked.gap, gap);
+        asked.second = v_min(asked.gap, gap);
+        asked.gap = v_max(asked.gap, gap);
+        asked.edge = vi_select(better, vi_sub(vi_select(ahead, facing, next), p->own.base), asked.edge);
+        asked.corner = vi_select(better, corner, asked.corner);
+        asked.normal = v2_select(better, n, asked.normal);
+    }
+    return asked;
+}
+
+/* Asks the junctions of the own shape that count, beside the arc `facing`; the number of its first one is `first`. */
+SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, struct best_edge *best, vi *corner) {
+    int32_t count, start;
+    vi_store(&count, p->own.count);
+    vi_store(&start, vi_sub(facing, p->own.base));
+    const narc_stored_arc *const arc = get_stored_arc(p->records, facing);
+    const vf before = v2_dot(p->axis, (vec2){v_load(&arc->start_x), v_load(&arc->start_y)}),
+             behind = v2_dot(p->axis, (vec2){v_load(&arc->end_x), v_load(&arc->end_y)});
+    const int end = start + 1 < count ? start + 1 : 0;
+    bool up = vm_any(v_lt(before, behind)), turned = false;
+    int at = up ? end : start;
+    for (int asked = 0; asked < count;) {
+        const narc_stored_arc *const own = get_stored_arc(p->records, vi_add(p->own.base, vi_set(at)));
+        const vec2 n = {v_load(&own->start_x), v_load(&own->start_y)};
+        if (!vm_any(v_le(v_sub(best->gap, p->room), v_sub(v2_dot(p->axis, n), p->core)))) {
+            if (asked == 0 || turned)
+                return;
+            turned = true;
+            up = !up;
+            at = up ? end : start;
+            continue;
+        }
+        vi closest;
+        const vf gap = ask_gap(p, own, n, &closest);
+        if (vm_any(v_lt(best->gap, gap))) {
+            *best = (struct best_edge){gap, best->gap, vi_set(first + at), n};
+            *corner = closest;
+        } else {
+            best->second = v_max(best->second, gap);
+        }
+        at = up ? (at + 1 < count ? at + 1 : 0) : (at > 0 ? at : count) - 1;
+        asked++;
+    }
+}
+
+INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
+    const struct pose pose = get_pose(queue, k);
+    const vec2 axis = get_vec2(queue, AXIS, k), t = pose.position, q = pose.rotation;
+    const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
+    const vf radius_a = v_mul(v_load(&get_stored_arc(records, ring_a.base)->radius), pose.scale_a),
+             radius_b = v_mul(v_load(&get_stored_arc(records, ring_b.base)->radius), pose.scale_b);
+    vi facing_a, facing_b;
+    find_arcs(records, queue, k, axis, &facing_a, &facing_b);
+    const struct seen_polygons from_a = {.records = records,
+                                         .own = ring_a,
+                                         .other = ring_b,
+                                         .first = get_bits(queue, FIRST_RECORD_B, k),
+                                         .info = get_bits(queue, INFO_B, k),
+                                         .pose = pose,
+                                         .axis = axis,
+                                         .radii = v_add(radius_a, radius_b),
+                                         .core = get(queue, CORE, k),
+                                         .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
+    struct seen_polygons from_b = from_a;
+    from_b.own = ring_b;
+    from_b.other = ring_a;
+    from_b.first = get_bits(queue, FIRST_RECORD_A, k);
+    from_b.info = get_bits(queue, INFO_A, k);
+    from_b.pose = (struct pose){v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
+    from_b.axis = v2_unrotate_opposite(q, axis);
+    const struct asked_junctions a = ask_facing(&from_a, facing_a), b = ask_facing(&from_b, facing_b);
+    const vm of_b = v_lt(a.gap, b.gap);
+    const vi edge_b = vi_add(b.edge, vi_set(MAX_CORNERS));
+    struct polygon_edge found = {{v_max(a.gap, b.gap), v_max(v_min(a.gap, b.gap), v_max(a.second, b.second)),
+                                  vi_select(of_b, edge_b, a.edge),
+                                  v2_select(of_b, v2_rotate_opposite(q, b.normal), a.normal)},
+                                 vi_select(of_b, b.corner, a.corner)};
+    if (vm_any(v_le(v_sub(found.best.gap, from_a.room), v_max(a.beside, b.beside)))) { /* others count, too */
+        found.best.gap = found.best.second = v_set(-INFINITY);
+        ask_junctions(&from_a, facing_a, 0, &found.best, &found.corner);
+        ask_junctions(&from_b, facing_b, MAX_CORNERS, &found.best, &found.corner);
+        if (vm_any(vi_lt(vi_set(MAX_CORNERS - 1), found.best.edge)))
+            found.best.normal = v2_rotate_opposite(q, found.best.normal);
+    }
     return found;
 }
 
 /* Those of the pairs k ... of a queue. */
 INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k) {
+    if (V_WIDTH == 1)
+        return find_seen_edge(records, queue, k);
     const vi most = vi_set(MAX_CORNERS);
     const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
-    const bool full = BLOCK > 1 && !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
+    const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
     return full ? find_best_of(records, queue, k, true) : find_best_of(records, queue, k, false);
 }
 

@@ -78,6 +78,13 @@ INLINE struct filter set_up_one(const struct call *call, const narc_one_pair *as
     return set_up_pairs(call, &in, 0, &placement, vm_front(1), 0, item);
 }
 
+INLINE void fill_one(struct queue *queue, const vf item[FIELDS]) {
+    UNROLL
+    for (int f = 0; f < ROW_FIELDS; f++)
+        v_store(queue->item[f], item[f]);
+    queue->count = 1;
+}
+
 /* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
 INLINE bool decide_one(const struct call *call, struct queue *queues) {
     const struct queue *const queue = &queues[DECIDE];
@@ -92,7 +99,17 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
     return true;
 }
 
-/* Pairs of polygons and all that is searched for, in the order of rows.c's stages. */
+/* The last stages. */
+NOINLINE int finish_one(const struct call *call, struct queue *queues) {
+    if (queues[DECIDE].count > 0 && !decide_one(call, queues))
+        return UNANSWERED;
+    const bool edges = queues[ANSWER_EDGES].count > 0;
+    if (edges || queues[ANSWER].count > 0)
+        answer_settled(call, queues, 0, edges);
+    return end_one(call->rows);
+}
+
+/* All that is searched for, in the order of rows.c's stages. */
 NOINLINE int search_one(const narc_one_pair *asked) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
@@ -100,34 +117,42 @@ NOINLINE int search_one(const narc_one_pair *asked) {
     struct rows found;
     vf item[FIELDS];
     const struct call *const call = &own;
-    const bool manifold = asked->manifold;
     start_one(asked, &own, &found);
     const struct filter circles = set_up_one(call, asked, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
-    const bool polygons = vm_any(are_polygons(vm_front(1), item[INFO_A], item[INFO_B])),
-               smooth = !polygons && vm_any(both_have(item, NARC_SHAPE_SMOOTH));
+    const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
     for (int s = PROBE; s <= CLIMB; s++)
         start_queue(&queues[s], &arcs);
-    push(&queues[polygons ? POLYGONS : smooth ? PROBE : CLIMB], vm_front(1), item, ROW_FIELDS);
-    if (polygons)
-        compare_edges(call, queues, 0);
-    if (queues[POLYGONS].count > 0)
-        answer_compared(call, queues, 0, manifold);
+    fill_one(&queues[smooth ? PROBE : CLIMB], item);
     if (smooth)
         probe_axis(&rows, call, queues, 0);
     if (queues[PROBE_AGAIN].count > 0)
         probe_again(&rows, call, queues, 0);
     if (queues[CLIMB].count > 0)
         climb_from(&rows, call, queues, 0);
-    if (queues[DECIDE].count > 0 && !decide_one(call, queues))
-        return UNANSWERED;
-    const bool edges = queues[ANSWER_EDGES].count > 0;
-    if (edges || queues[ANSWER].count > 0)
-        answer_settled(call, queues, 0, edges);
-    return end_one(&found);
+    return finish_one(call, queues);
+}
+
+/* Two polygons, sharp or each with corners of one radius. Equal radii only take their sum from every gap. */
+NOINLINE int find_of_polygons(const narc_one_pair *asked) {
+    struct queue queues[STAGES];
+    struct call own;
+    struct rows found;
+    vf item[FIELDS];
+    const struct call *const call = &own;
+    start_one(asked, &own, &found);
+    const struct filter circles = set_up_one(call, asked, item);
+    if (vm_any(vm_or(circles.invalid, circles.apart)))
+        return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
+    queues[POLYGONS].count = queues[DECIDE].count = queues[ANSWER].count = queues[ANSWER_EDGES].count = 0;
+    fill_one(&queues[POLYGONS], item);
+    compare_edges(call, queues, 0);
+    if (queues[POLYGONS].count > 0)
+        answer_compared(call, queues, 0, asked->manifold);
+    return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
 }
 
 /* Two boxes or two capsules. */
@@ -143,7 +168,7 @@ INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
     const vm taken = capsules ? take_capsules(&call, &a, &b, &placement, placement.in_range, 0, &queue)
                               : take_boxes(&call, &a, &b, &placement, placement.in_range, 0, &queue);
     if (!vm_any(taken))
-        return search_one(asked);
+        return capsules ? search_one(asked) : find_of_polygons(asked);
     if (queue.count > 0 && !answer_boxes(&call, &queue, 0, 1, capsules, asked->manifold))
         return UNANSWERED;
     return end_one(&found);
@@ -187,13 +212,16 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
     const uint32_t form_a = shapes->boxes[a].info, form_b = shapes->boxes[b].info;
     if (form_a & form_b & NARC_IS_CIRCLE)
         return find_of_circles(asked);
-    if (form_a && form_b && (form_a | form_b) & NARC_IS_CIRCLE)
-        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & form_b & NARC_IS_BOX)
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
         return find_of_capsules(asked);
-    if (narc_is_piece(&shapes->headers[a]) || narc_is_piece(&shapes->headers[b]))
+    if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
+        return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
+    if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))
+        return find_of_polygons(asked);
+    const narc_shape_header *const header_a = &shapes->headers[a], *const header_b = &shapes->headers[b];
+    if (narc_is_piece(header_a) || narc_is_piece(header_b))
         return UNANSWERED;
     return search_one(asked);
 }

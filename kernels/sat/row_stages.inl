@@ -72,7 +72,9 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
         if (CAPACITY == 1) { /* it stays in its place */
             store_vec2(queue, DIRECTION, k, best->normal);
             v_store(queue->item[EDGE_CODE] + k, code);
-            pass_on(queue, k, live, FIELDS, vm_any(clear) ? queue : &queues[DECIDE]);
+            queue->count = vm_any(clear) != 0;
+            if (!vm_any(clear))
+                pass_on(queue, k, live, FIELDS, &queues[DECIDE]);
             continue;
         }
         get_item(queue, k, item, ROW_FIELDS);

@@ -548,6 +548,59 @@ void test_contacts_that_stay() {
     CHECK(!in_user.update(scene.shapes, scene.bodies).value()->manifolds);
 }
 
+// ---------------------------------------------------------------------------- outlines and ground
+
+bool about(double a, double b) { return std::fabs(a - b) < 1e-9; }
+
+void test_outlines() {
+    const narc_point corners[] = {{0, 0}, {2, 0}, {2, 1}, {1, 0.5}, {0, 1}, {1, 1}};
+    const narc::outline box = narc::hull(corners).value();
+    CHECK(box.count == 4 && status_of(narc::hull({corners, 2})) == NARC_ERROR_COUNT);
+    CHECK(about(narc::mass(box)->area, 2) && about(*narc::perimeter(box), 6) && !narc::mass({}));
+    CHECK(about(narc::aabb(box)->max_x, 2) && about(narc::inscribed_circle(box)->radius, 0.5));
+    CHECK(about(narc::bounding_circle(box)->radius, std::sqrt(1.25)));
+    CHECK(about(*narc::distance(box, {1, 2}), 1) && narc::contains(box, {1, 0.5}) && !narc::contains(box, {3, 3}));
+    CHECK(narc::find_support(box, 1, 1)->point.x == 2 && narc::find_support(box, 1, 1)->arc < 4);
+    narc_point centroid;
+    const narc::outline centred = narc::center(box, &centroid).value();
+    CHECK(about(centroid.x, 1) && about(centroid.y, 0.5) && about(narc::mass(centred)->centroid_x, 0));
+    CHECK(about(narc::aabb(narc::mirror(box).value())->min_x, -2));
+    const narc::outline moved = narc::move(box, 2, 0, 0, 3).value();
+    CHECK(about(narc::aabb(moved)->max_x, 8) && status_of(narc::move(box, 0, 0, 0, -1)) == NARC_ERROR_SIZE);
+    std::vector<narc_arc> both(box.arcs, box.arcs + box.count);
+    both.insert(both.end(), box.arcs, box.arcs + box.count);
+    const size_t counts[] = {4, 4};
+    CHECK(about(narc::union_mass(both, counts).value().area, 2));
+    const narc_body body = narc::body(10, 0, 0);
+    CHECK(narc::flatten(box, true, 0.1).value().size() == 4);
+    CHECK(narc::flatten(narc::circle(1).value(), true, 1e-6).value().size() > 1000);
+    CHECK(narc::flatten(box, true, 0.1, &body).value()[0].x >= 10);
+    CHECK(status_of(narc::flatten(box, true, 0)) == NARC_ERROR_ARGUMENT);
+    const narc_point square[] = {{0, 0}, {1, 0}, {1, 1e-9}, {1, 1}, {0, 1}};
+    CHECK(narc::weld_polygon(square, 1e-6).value().size() == 4);
+    CHECK(narc::adjust_polygon(square).value().size() == 5);
+    const narc_point ring[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    CHECK(narc::find_radius_range(ring).value().min < narc::find_radius_range(ring).value().chosen);
+    CHECK(std::string(narc::status_name(NARC_OK)) == narc_status_name(NARC_OK) && narc::version() == narc_version());
+    CHECK(narc::isa_name(0) && narc::isa_supported(narc::get_isa()) && narc::kernel_name(0) && !narc::cpu_feature(999));
+}
+
+void test_ground() {
+    narc::shapes shapes;
+    CHECK(shapes.reserve(20, 100));
+    const narc_arc level[] = {{9, 0, 0, 1.5707963267948966, 1.5707963267948966},
+                              {0, 0, 0, 1.5707963267948966, 1.5707963267948966}};
+    narc_chain_options options = {};
+    options.weld = 0.5; /* more entries than arcs: room is made */
+    const auto entries = shapes.add_chain(level, options).value();
+    CHECK(entries.size() > 12 && shapes.flags(entries[0].shape) & NARC_SHAPE_RUN);
+    CHECK(shapes.uses(entries[1].shape) >= 1 && shapes.aabb(entries[0].shape) && !shapes.aabb(999));
+    CHECK(status_of(shapes.add_chain({level, 0})) == NARC_ERROR_COUNT);
+    const auto bytes = shapes.save().value();
+    CHECK(narc::shapes::load(bytes.data(), bytes.size()).value().size() == shapes.size());
+    CHECK(narc::openmp_workers(1).count <= 1);
+}
+
 // ---------------------------------------------------------------------------- questions to a scene
 
 void test_index() {
@@ -573,6 +626,11 @@ void test_index() {
     CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
     CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
+    uint32_t a[3], b[3];
+    const std::vector<uint32_t> second = {1};
+    CHECK(narc::copy_pairs(index.query({&boxes[3], 1}).value(), a, b).value() == 3 && a[2] == 0);
+    CHECK(narc::copy_pairs(index.query({&boxes[3], 1}).value(), a, b, second).value() == 1);
+    CHECK(status_of(narc::copy_pairs(index.query({&boxes[3], 1}).value(), {a, 2}, b)) == NARC_ERROR_CAPACITY);
     const auto query = narc::index_query().mask(narc::column(mask)).ignored(narc::column(ignored)).workers(workers);
     CHECK(index.query({&boxes[3], 1}, query).value().count == 0);
     const narc::index moved = std::move(index);
@@ -636,6 +694,14 @@ void test_rays_and_points() {
     CHECK(status_of(narc::find_distances(scene.shapes, scene.bodies, points, {}, narc::span(row, 1))) ==
           NARC_ERROR_CAPACITY);
     CHECK(status_of(narc::find_distances(nullptr, scene.bodies, points, {}, row)) == NARC_ERROR_ARGUMENT);
+    narc_ray_hit hit[2];
+    CHECK(narc::cast_ray_pairs(scene.shapes, scene.bodies, rays, narc::column(bodies), {}, hit).value().size() == 2);
+    CHECK(hit[0].body == 1 && hit[0].count == 1 && hit[1].fraction == 0);
+    std::vector<uint64_t> bits;
+    CHECK(narc::find_inside(scene.shapes, scene.bodies, points, narc::column(bodies), bits));
+    CHECK((bits[0] & 1) == (row[0].separation < 0) && (bits[0] >> 1 & 1) == (row[1].separation < 0));
+    CHECK(status_of(narc::find_inside(scene.shapes, scene.bodies, points, {}, narc::span(bits.data(), 0))) ==
+          NARC_ERROR_CAPACITY);
 }
 
 void test_casts() {
@@ -715,6 +781,8 @@ int main() {
     test_bodies();
     test_builders();
     test_shapes();
+    test_outlines();
+    test_ground();
     test_query();
     test_contacts();
     test_overlaps();

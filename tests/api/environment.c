@@ -138,6 +138,8 @@ static void all_calls_unknown(void) {
     REQUIRE(narc_query_index(index, &box, 1, NULL, &pairs, NULL) == unknown);
     REQUIRE(narc_cast_pairs(shapes, bodies, &motions, &batch.pairs, NULL, NULL, &impact, 1, NULL) == unknown);
     REQUIRE(narc_find_distances(shapes, bodies, &points, NULL, NULL, &distance, NULL) == unknown);
+    REQUIRE(narc_find_inside(shapes, bodies, &points, NULL, NULL, &bits, NULL) == unknown);
+    REQUIRE(narc_cast_ray_pairs(shapes, bodies, &rays, NULL, NULL, &hit, 1, NULL) == unknown);
     const narc_bodies none = {.count = 0}; /* as many as the index has */
     REQUIRE(narc_cast_rays(index, shapes, &none, &rays, NULL, &hit, 1, NULL) == unknown);
     REQUIRE(narc_cast_shapes(index, shapes, &none, bodies, &motions, NULL, NULL, &impact, 1, NULL) == unknown);

@@ -456,6 +456,95 @@ TEST(hard_places) {
     }
 }
 
+/* Shapes that one pair has ways of its own for: circles, boxes, capsules about their origins, and polygons of corners of
+ * one radius. */
+static size_t add_known_kinds(narc_shapes *store, struct test_random *random) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    narc_error error;
+    size_t count;
+    expect_ok(narc_build_circle(1, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(store, arcs, count, NULL, &error), &error);
+    expect_ok(narc_build_circle(0.25, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(store, arcs, count, NULL, &error), &error);
+    expect_ok(narc_build_box(2, 1, 0, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(store, arcs, count, NULL, &error), &error);
+    expect_ok(narc_build_box(1, 1, 0.2, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(store, arcs, count, NULL, &error), &error);
+    expect_ok(narc_build_capsule(2, 0.5, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(store, arcs, count, NULL, &error), &error);
+    for (size_t sides = 3; sides <= 9; sides++)
+        for (int kind = 0; kind < 3; kind++) {
+            narc_arc moved[NARC_MAX_ARCS];
+            const double x = kind == 2 ? random_between(random, -1, 1) : 0;
+            expect_ok(narc_build_regular_polygon(sides, 1, kind == 0 ? 0 : 0.2, arcs, &count, &error), &error);
+            expect_ok(narc_move_arcs(arcs, count, x, -x, 5 * x, 1, moved, &error), &error);
+            expect_ok(narc_add_shape(store, moved, count, NULL, &error), &error);
+        }
+    return narc_count_shapes(store);
+}
+
+/* Bodies whose sides are parallel or nearly so, along an axis of the other one or not, within its reach. */
+static void place_beside(struct test_random *random, size_t shapes, narc_body two[2]) {
+    const double quarter = 1.5707963267948966, turn = quarter * (double)random_below(random, 9) / 2;
+    const double tilt =
+        random_below(random, 2) ? random_between(random, -1, 1) * ldexp(1, -(int)random_below(random, 26)) : 0;
+    const double way =
+        random_below(random, 2) ? quarter * (double)random_below(random, 4) : random_between(random, 0, 6.3);
+    for (int side = 0; side < 2; side++) {
+        const double angle = side ? turn + tilt : random_below(random, 2) ? 0 : turn;
+        two[side] = (narc_body){0, 0, (float)cos(angle), (float)sin(angle), 1, (uint32_t)random_below(random, shapes)};
+        if (angle == 0 && random_below(random, 2))
+            two[side].sine = -0.0f;
+        if (random_below(random, 3) == 0)
+            two[side].scale = (float)random_log_between(random, 0.25, 4);
+    }
+    const double distance = (two[0].scale + two[1].scale) * random_unit(random) * 1.2;
+    two[1].x = distance * cos(way);
+    two[1].y = random_below(random, 4) ? distance * sin(way) : random_below(random, 2) ? 0.0 : -0.0;
+    if (random_below(random, 50) == 0)
+        *(random_below(random, 2) ? &two[0].cosine : &two[1].scale) = random_below(random, 2) ? NAN : 0;
+}
+
+/* Circles and polygons with round corners by themselves have the bits that they have among many, signs of zeros too. */
+TEST(kinds_with_ways_of_their_own) {
+    enum { MANY = 4000 };
+    struct test_random random = test_random_named("kinds with ways of their own");
+    narc_shapes *store = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    const size_t shapes = add_known_kinds(store, &random);
+    narc_body *const rows = malloc(2 * MANY * sizeof *rows);
+    assert_non_null(rows);
+    narc_bodies bodies;
+    narc_view_bodies(rows, 2 * MANY, &bodies);
+    for (size_t trial = 0; trial < test_trials(3); trial++) {
+        const narc_query query = {.margin = trial % 3 == 0 ? INFINITY : trial % 3 == 1 ? 0 : 0.1f, .dense = 1};
+        for (size_t k = 0; k < MANY; k++)
+            place_beside(&random, shapes, &rows[2 * k]);
+        struct contacts all = find_contacts(store, &bodies, &(narc_pairs){.count = MANY}, &query);
+        struct manifolds points = find_manifolds(store, &bodies, &(narc_pairs){.count = MANY}, &query);
+        for (size_t isa = 0; narc_isa_name(isa); isa++) {
+            if (!narc_isa_supported(narc_isa_name(isa)))
+                continue;
+            test_use_isa(narc_isa_name(isa));
+            for (size_t k = 0; k < MANY; k++) {
+                narc_contact contact;
+                narc_manifold manifold;
+                narc_error error;
+                expect_ok(narc_find_contact(store, &rows[2 * k], &rows[2 * k + 1], &query, &contact, &error), &error);
+                expect_ok(narc_find_manifold(store, &rows[2 * k], &rows[2 * k + 1], &query, &manifold, &error), &error);
+                contact.pair = manifold.pair = (uint32_t)k;
+                assert_memory_equal(&contact, &all.rows[k], sizeof contact);
+                assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
+            }
+        }
+        test_use_isa(test_isa());
+        free(all.rows);
+        free(points.rows);
+    }
+    free(rows);
+    narc_destroy_shapes(store);
+}
+
 /* One pair or two of a batch have the rows that they have among all, listed, dense and in larger structures, with margins
  * and shifts of their own. */
 TEST(few_of_a_batch) {

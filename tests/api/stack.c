@@ -158,7 +158,9 @@ static narc_status ask_index(narc_error *error) {
         narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&
         narc_find_distances(store, &bodies, &at, &NARC_ARRAY(selection), query.workers, distances, error) ==
             NARC_ERROR_INDEX &&
-        narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK;
+        narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK &&
+        narc_find_inside(store, &bodies, &at, NULL, query.workers, bits, error) == NARC_OK &&
+        narc_cast_ray_pairs(store, &bodies, &rays, NULL, &leave, hits, BODIES, error) == NARC_OK;
     narc_destroy_index(index);
     return TRUE(fine);
 }

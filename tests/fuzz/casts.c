@@ -5,6 +5,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 #include "fuzz.h"
@@ -36,6 +37,8 @@ struct answer {
     narc_distance distances[RAYS], nearest[2 * RAYS];
     narc_ray_hit hits_of_things[2 * RAYS];
     narc_distance nearest_things[2 * RAYS];
+    narc_ray_hit alone[RAYS]; /* ray k at body k */
+    uint64_t inside[NARC_BIT_WORDS(RAYS)];
 };
 
 static void ask(const void *question, const narc_workers *workers, void *out_answer) {
@@ -60,6 +63,8 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
         narc_cast_shapes(q->index, store, &bodies, &bodies, &motions, &search, &cast, answer->first, BODIES, NULL),
         NARC_OK);
     assert_int_equal(narc_find_distances(store, &bodies, &points, NULL, workers, answer->distances, NULL), NARC_OK);
+    assert_int_equal(narc_find_inside(store, &bodies, &points, NULL, workers, answer->inside, NULL), NARC_OK);
+    assert_int_equal(narc_cast_ray_pairs(store, &bodies, &rays, NULL, &through, answer->alone, RAYS, NULL), NARC_OK);
     assert_int_equal(narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest, 2 * RAYS, NULL),
                      NARC_OK);
     const narc_owners owners = {.owner = NARC_ARRAY(q->owner)};
@@ -159,6 +164,15 @@ static void check_impact(const struct question *q, const narc_impact *impact) {
 static void check(const struct question *q, const struct answer *answer) {
     const narc_bodies bodies = scene_bodies(&q->scene);
     for (size_t k = 0; k < RAYS; k++) {
+        const narc_ray_hit *const alone = &answer->alone[k], *const first = &answer->hits[k];
+        assert_int_equal(bit_is_set(answer->inside, k), answer->distances[k].separation < 0);
+        if (!(q->boxes[k].min_x <= q->boxes[k].max_x)) /* it is in no index */
+            assert_true(!first->count || first->body != k);
+        else if (alone->count) /* among others it is no later */
+            assert_true(first->count && first->fraction <= alone->fraction &&
+                        (first->body != k || memcmp(first, alone, sizeof *first) == 0));
+        else
+            assert_true(!first->count || first->body != k);
         check_nearest(q, k, answer->nearest + 2 * k);
         check_things(q, k, answer);
     }

@@ -314,7 +314,8 @@ static uint8_t kind_of(const struct world *w, uint32_t k) { return w->use_filter
 
 static bool may_pair(const struct world *w, uint32_t a, uint32_t b) {
     const uint32_t owner = w->use_filter ? w->owner[a] : UINT32_MAX;
-    return !(kind_of(w, a) & kind_of(w, b) & (NARC_STATIC | NARC_SENSOR)) && (owner == UINT32_MAX || owner != w->owner[b]);
+    return !(kind_of(w, a) & kind_of(w, b) & (NARC_STATIC | NARC_SENSOR)) &&
+           (owner == UINT32_MAX || owner != w->owner[b]);
 }
 
 static bool is_at_rest(const struct world *w, uint32_t k) { return kind_of(w, k) & (NARC_STATIC | NARC_ASLEEP); }

@@ -128,6 +128,23 @@ static narc_shapes *save_and_load(struct bytes *from, narc_shapes *store) {
     return loaded;
 }
 
+/* A hull, if there is one, is a shape, and any shape a polyline. */
+static void build_hull(struct bytes *from) {
+    enum { POINTS = 80, ROOM = 4096 };
+    static narc_point points[POINTS], line[ROOM];
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t corners, count = take_below(from, POINTS + 1), found;
+    for (size_t k = 0; k < count; k++)
+        points[k] = (narc_point){take_number(from, 4), take_number(from, 4)};
+    const double tolerance = take_number(from, 1), size = take_number(from, 2);
+    const narc_status status = narc_build_hull(points, count, tolerance, fabs(size), arcs, &corners, NULL);
+    if (status != NARC_OK)
+        return;
+    assert_int_equal(narc_validate_arcs(arcs, corners, NULL), NARC_OK);
+    const narc_status flat = narc_flatten_arcs(arcs, corners, true, NULL, tolerance, line, ROOM, &found, NULL);
+    assert_true(flat == NARC_OK ? found >= 3 || fabs(size) > 0 || tolerance > 0 : flat != NARC_ERROR_SWEEP);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct bytes from = {data, size};
     struct model model = {.uses = {0}};
@@ -148,5 +165,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         compare(&model, store);
     }
     narc_destroy_shapes(store);
+    build_hull(&from);
     return 0;
 }

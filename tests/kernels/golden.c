@@ -88,7 +88,58 @@ static uint64_t hash_manifolds(const struct scene *scene, int reaches) {
     return hash;
 }
 
-#ifndef NARC_SMALL /* which has no separations by themselves, and no chains */
+#ifndef NARC_SMALL /* which has no separations by themselves, no chains, and nothing that asks of one body each */
+/* Rays from each body's position at another body, and which points of a lattice around each are within it. */
+static uint64_t hash_alone(const struct scene *scene, int inside) {
+    enum { GRID = 9, POINTS = BODIES * GRID * GRID };
+    static double x[POINTS], y[POINTS];
+    static uint32_t at[POINTS];
+    static uint64_t bits[NARC_BIT_WORDS(POINTS)];
+    const narc_bodies bodies = scene_bodies(scene);
+    float motion[BODIES + 2];
+    uint32_t other[BODIES];
+    struct {
+        narc_ray_hit rows[BODIES];
+        size_t count;
+    } list = {.count = BODIES};
+    size_t hits = 0, within = 0;
+    for (uint32_t k = 0; k < BODIES + 2; k++)
+        motion[k] = ((float)(k % 17) - 8) / 4;
+    for (uint32_t k = 0; k < BODIES; k++)
+        other[k] = k % 3 ? (7 * k + 3) % BODIES : k;
+    for (uint32_t k = 0; k < POINTS; k++) {
+        at[k] = k / (GRID * GRID);
+        x[k] = scene->bodies[at[k]].x + ((double)(k % GRID) - GRID / 2) / 4;
+        y[k] = scene->bodies[at[k]].y + ((double)(k / GRID % GRID) - GRID / 2) / 4;
+    }
+    const narc_rays rays = {.count = BODIES,
+                            .x = bodies.x,
+                            .y = bodies.y,
+                            .motion_x = NARC_ARRAY(motion),
+                            .motion_y = {motion + BODIES + 1, -(ptrdiff_t)sizeof *motion}};
+    const narc_points points = {.count = POINTS, .x = NARC_POSITION_ARRAY(x), .y = NARC_POSITION_ARRAY(y)};
+    const narc_index_column body = NARC_ARRAY(other), of_points = NARC_ARRAY(at);
+    const narc_ray_options options = {.inside = (narc_inside)inside};
+    uint64_t hash = TEST_HASH_START;
+    assert_int_equal(narc_cast_ray_pairs(scene->store, &bodies, &rays, &body, &options, list.rows, BODIES, NULL),
+                     NARC_OK);
+    assert_int_equal(narc_find_inside(scene->store, &bodies, &points, &of_points, NULL, bits, NULL), NARC_OK);
+    HASH_FIELD(hash, list, body);
+    HASH_FIELD(hash, list, feature);
+    HASH_FIELD(hash, list, count);
+    HASH_FIELD(hash, list, fraction);
+    HASH_FIELD(hash, list, normal_x);
+    HASH_FIELD(hash, list, point_y);
+    HASH_FIELD(hash, list, radius);
+    for (size_t k = 0; k < BODIES; k++)
+        hits += list.rows[k].count;
+    for (size_t k = 0; k < POINTS; k++)
+        within += bit_is_set(bits, k);
+    printf("  %zu hits of %d, %zu of %d points within\n", hits, (int)BODIES, within, (int)POINTS);
+    assert_true(hits > BODIES / 8 && within > POINTS / 8 && within < POINTS / 8 * 7);
+    return test_hash_items(hash, bits, NARC_BIT_WORDS(POINTS), sizeof *bits);
+}
+
 static uint64_t hash_separations(const struct scene *scene, int way) {
     (void)way;
     static float separations[PAIRS];
@@ -295,6 +346,9 @@ TEST(test_scenes) {
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},
+#ifndef NARC_SMALL
+        {"alone", hash_alone, NARC_INSIDE_LEAVES, {0x9008dfea5b72d305u, 0x9008dfea5b72d305u}},
+#endif
     };
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_golden_scene((narc_precision)precision);

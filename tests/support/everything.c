@@ -12,7 +12,7 @@
 #include "guard.h"
 #include "ledger.h"
 
-enum { MOST_HITS = 2, MOST_NEAREST = 2, COUNTS = 10 };
+enum { MOST_HITS = 2, MOST_NEAREST = 2, COUNTS = 11 };
 
 /* `floats`: a bit for each of a row's words that is a float. Rows that are `numbered` begin with the number of their pair,
  * ray or point. */
@@ -30,6 +30,8 @@ static const struct {
     [ANSWER_MANIFOLDS] = {"manifolds", sizeof(narc_manifold), 0x773c, true},
     [ANSWER_CASTS] = {"casts of pairs", sizeof(narc_impact), 0x7f8, true},
     [ANSWER_DISTANCES] = {"distances", sizeof(narc_distance), 0x1f8, true},
+    [ANSWER_INSIDE] = {"words of points within", sizeof(uint64_t), 0, false},
+    [ANSWER_RAY_PAIRS] = {"rays at bodies", sizeof(narc_ray_hit), 0x1f8, true},
     [ANSWER_RAYS] = {"rays", sizeof(narc_ray_hit), 0x1f8, true},
     [ANSWER_NEAREST] = {"nearest bodies", sizeof(narc_distance), 0x1f8, true},
     [ANSWER_MOVERS] = {"casts of shapes", sizeof(narc_impact), 0x7f8, true},
@@ -74,6 +76,15 @@ static void ask_pairs(const struct everything *e, const narc_workers *workers, s
               &error);
     expect_ok(narc_find_distances(e->shapes, &e->bodies, &e->points, &e->pairs.a, workers,
                                   add_rows(answers, ANSWER_DISTANCES, count), &error),
+              &error);
+    expect_ok(narc_find_inside(e->shapes, &e->bodies, &e->points, &e->pairs.a, workers,
+                               add_rows(answers, ANSWER_INSIDE, NARC_BIT_WORDS(count)), &error),
+              &error);
+    static const uint32_t first = 0;
+    const narc_index_column body = {&first, 0};
+    const narc_ray_options at_first = {.search.workers = workers, .inside = e->inside, .out_skipped = &counts[10]};
+    expect_ok(narc_cast_ray_pairs(e->shapes, &e->bodies, &e->rays, &body, &at_first,
+                                  add_rows(answers, ANSWER_RAY_PAIRS, e->rays.count), e->rays.count, &error),
               &error);
 }
 
@@ -194,6 +205,7 @@ void expect_same_row(const struct answers *all, size_t k, const struct answers *
     const float *const separations = all->rows[ANSWER_SEPARATIONS];
     assert_memory_equal(one->rows[ANSWER_SEPARATIONS], &separations[k], sizeof *separations);
     assert_int_equal(bit_is_set(one->rows[ANSWER_OVERLAPS], 0), bit_is_set(all->rows[ANSWER_OVERLAPS], k));
+    assert_int_equal(bit_is_set(one->rows[ANSWER_INSIDE], 0), bit_is_set(all->rows[ANSWER_INSIDE], k));
     for (int kind = 0; kind < ANSWERS; kind++) {
         if (!kinds[kind].numbered || kind == ANSWER_MOVERS)
             continue;
@@ -231,6 +243,8 @@ void expect_sane_answers(const struct everything *e, const struct answers *answe
         const narc_contact *const contact = (const narc_contact *)answers->rows[ANSWER_CONTACTS] + k;
         const narc_impact *const impact = (const narc_impact *)answers->rows[ANSWER_CASTS] + k;
         assert_int_equal(bit_is_set(answers->rows[ANSWER_OVERLAPS], k), separations[k] < 0);
+        assert_int_equal(bit_is_set(answers->rows[ANSWER_INSIDE], k),
+                         ((const narc_distance *)answers->rows[ANSWER_DISTANCES])[k].separation < 0);
         assert_true(separations[k] == (contact->count ? contact->separation : INFINITY));
         assert_true(impact->fraction >= 0 && impact->fraction <= 1 && impact->count <= NARC_CAST_UNFINISHED);
         if (contact->count) {

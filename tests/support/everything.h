@@ -35,6 +35,8 @@ enum answer_kind {
     ANSWER_MANIFOLDS,
     ANSWER_CASTS,
     ANSWER_DISTANCES,
+    ANSWER_INSIDE,    /* words, of the points of the distances */
+    ANSWER_RAY_PAIRS, /* each ray at the first body */
     ANSWER_RAYS,
     ANSWER_NEAREST,
     ANSWER_MOVERS,

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, MANIFOLD
+from ._tables import BODY, BOX, CONTACT, MANIFOLD, REFINED_CONTACT, split
 
 Rows = NDArray[np.void]
 Bodies = Any  # rows of BODY, other records with fields of these names, or a mapping of columns
@@ -30,6 +30,11 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
     out["cosine"], out["sine"] = np.cos(angle), np.sin(angle)
     out["scale"], out["shape"] = scale, shape
     return out
+
+
+def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
+    little = words.astype("<u8", copy=False)
+    return np.unpackbits(little.view(np.uint8), count=count, bitorder="little").view(np.bool_)
 
 
 def count_of(of: Bodies) -> int:
@@ -52,7 +57,7 @@ def boxes(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, threads: int =
 
 def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[np.uint32]:
     """All pairs a < b of boxes that overlap, (m, 2), in order. `boxes`: rows of narc.BOX, or of four float32. `filters` are
-    the columns of narc_pair_filter: kind, category, mask, group."""
+    the columns of narc_pair_filter: kind, category, mask, owner."""
     broad = _narc.Handle("BroadPhase")
     room = 4 * len(boxes) + 16  # type: ignore[arg-type]
     while True:
@@ -64,13 +69,18 @@ def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[
 
 
 def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies = None, threads: int = 1,
-          **filters: Any) -> NDArray[np.uint32]:
-    """Pairs of bodies whose boxes are closer than `margin`, (m, 2), in order: of `bodies` with each other, or with `others`."""
-    around = boxes(shapes, bodies, margin=margin / 2, threads=threads)
+          **options: Any) -> NDArray[np.uint32]:
+    """Pairs of bodies whose boxes are closer than `margin`, (m, 2), in order: of `bodies` with each other, or with `others`.
+    `options`: the columns of narc_pair_filter, as in box_pairs(), for pairs with each other; `origin`, a place (x, y) near
+    bodies that are far from (0, 0)."""
+    filters, options = split(options, "narc_pair_filter")
+    if filters and others is not None:
+        raise TypeError(f"{', '.join(filters)}: filters are for pairs of one set of bodies")
+    around = boxes(shapes, bodies, margin=margin / 2, threads=threads, **options)
     if others is None:
-        return box_pairs(around, threads=threads, **filters)
+        return box_pairs(around, threads=threads, **(filters or {}))
     index = _narc.Handle("Index")
-    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads), {"workers": threads})
+    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads, **options), {"workers": threads, **options})
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
@@ -92,25 +102,19 @@ def _prepare(shapes: Shapes, bodies: Bodies, pairs_: Any, others: Bodies, margin
 
 def _rows(call: Any, kind: Any, shapes: Shapes, bodies: Bodies, pairs_: Any, margin: float, others: Bodies, out: Any,
           threads: int, options: dict[str, Any]) -> Any:
-    found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
-    room = count_of(found) if out is None else len(out)
+    found = told = pairs_
+    if others is not None or not isinstance(pairs_, np.ndarray):
+        found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
+    if out is not None and out.dtype is not kind and out.dtype != kind:
+        raise TypeError(f"out: rows of {kind} are wanted")
     query = {"margin": margin, "workers": threads, **options}
-    while True:
-        rows = np.zeros(room, kind) if out is None else out
-        if rows.dtype != kind:
-            raise TypeError(f"out: rows of {kind} are wanted")
-        count = _narc_call(call, shapes, bodies, told, query, rows, out is not None)
-        if count <= room:
-            rows = rows[:room if options.get("dense") else count]
-            return (rows, found) if pairs_ is None else rows
-        room = count
-
-
-def _narc_call(call: Any, shapes: Shapes, bodies: Bodies, told: Any, query: Any, rows: Any, fixed: bool) -> int:
-    count = int(call(shapes, bodies, told, query, rows))
-    if fixed and count > len(rows):
-        raise ValueError(f"out has {len(rows)} rows, {count} are needed")
-    return count
+    rows = np.zeros(count_of(found), kind) if out is None else out
+    while (count := call(shapes, bodies, told, query, rows)) > len(rows):
+        if out is not None:
+            raise ValueError(f"out has {len(rows)} rows, {count} are needed")
+        rows = np.zeros(count, kind)
+    rows = rows[: count_of(found) if options.get("dense") else count]
+    return (rows, found) if pairs_ is None else rows
 
 
 def contacts(shapes: Shapes, bodies: Bodies, pairs: Any = None, *, margin: float = 0.0, others: Bodies = None,
@@ -139,9 +143,7 @@ def overlaps(shapes: Shapes, bodies: Bodies, pairs: Any, *, others: Bodies = Non
     count = count_of(pairs)
     words = np.zeros((count + 63) // 64, np.uint64)
     _narc.find_overlaps(shapes, bodies, told, {"workers": threads}, words)
-    if words.dtype.newbyteorder("<") != words.dtype:
-        words = words.byteswap()
-    return np.unpackbits(words.view(np.uint8), count=count, bitorder="little").view(np.bool_)
+    return from_bits(words, count)
 
 
 def separations(shapes: Shapes, bodies: Bodies, pairs: Any, *, margin: float = np.inf, others: Bodies = None,
@@ -151,6 +153,38 @@ def separations(shapes: Shapes, bodies: Bodies, pairs: Any, *, margin: float = n
     out = np.full(count_of(pairs), np.inf, np.float32)
     _narc.find_separations(shapes, bodies, told, {"margin": margin, "workers": threads, **options}, out)
     return out
+
+
+def _two(call: Any, kind: Any, shapes: Shapes, a: Any, b: Any, margin: float, options: dict[str, Any]) -> Any:
+    out = np.zeros(1, kind)
+    call(shapes, a, b, {"margin": margin, **options} if margin or options else None, out)
+    return out[0]
+
+
+def contact(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+    """The contact of two bodies, rows of narc.BODY: a row of narc.CONTACT, `count` 0 where there is none."""
+    return _two(_narc.find_contact, CONTACT, shapes, a, b, margin, options)
+
+
+def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+    """The manifold of two bodies, rows of narc.BODY: a row of narc.MANIFOLD, `count` 0 where there is none."""
+    return _two(_narc.find_manifold, MANIFOLD, shapes, a, b, margin, options)
+
+
+def refine(shapes: Shapes, bodies: Bodies, pairs: Any, rows: Rows, *, others: Bodies = None) -> Rows:
+    """Contacts of these pairs again in double precision: separation, normal, point."""
+    _, told = _prepare(shapes, bodies, pairs, others, 0.0, 1)
+    out = np.zeros(len(rows), REFINED_CONTACT)
+    _narc.refine_contacts(shapes, bodies, told, rows, out)
+    return out
+
+
+def poses(angle: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Cosines and sines of angles, (n,) each, the same to the last bit on every machine."""
+    angles = np.ascontiguousarray(angle, np.float32)
+    cosine, sine = np.empty_like(angles), np.empty_like(angles)
+    _narc.compute_poses(angles, cosine, sine)
+    return cosine, sine
 
 
 def place_parts(owners: Bodies, parts: Bodies, owner: ArrayLike, *, threads: int = 1) -> Rows:

@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
-from ._batch import Bodies, Rows, boxes, count_of
+from ._batch import Bodies, Rows, boxes, count_of, from_bits
 from ._shapes import Shapes
-from ._tables import CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, RAY_HIT, TOUCH_EVENT
+from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, split)
 
 
-def _search(mask: Any, ignored: Any, owners: Any, threads: int) -> dict[str, Any]:
-    return {"mask": mask, "ignored": ignored, "owners": owners, "workers": threads}
+def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What of the options says which bodies count, and the others."""
+    chosen, others = split(options, "narc_index_query")
+    return {**(chosen or {}), "workers": threads}, others
 
 
 def _floats(given: ArrayLike) -> Any:
@@ -23,25 +25,45 @@ def _floats(given: ArrayLike) -> Any:
     return given if isinstance(given, np.ndarray) else np.asarray(given, np.float64)
 
 
+def _rays(xy: ArrayLike, motion: Any, fraction: Any) -> dict[str, Any]:
+    start = _floats(xy)
+    place = {"xy": start} if np.ndim(start) == 2 else {"x": float(start[0]), "y": float(start[1])}
+    return {**place, "motion": motion, "fraction": fraction}
+
+
 class Index(_narc.Handle):
     """A tree over the boxes of bodies, for questions to a scene. It keeps the bodies, not a copy: update() after they have
-    moved. `category`: 64 bits for each body, which `mask` of a question selects."""
+    moved. `options` are those of narc_index_options: category, 64 bits for each body, which `mask` of a question selects; fast;
+    origin, a place (x, y) near bodies that are far from (0, 0).
+
+    Questions go through all bodies, or those that options of narc_index_query select, for each question: mask, 64 bits;
+    ignored, a body; owners, {"owner": of each body, "ignored": of each question}, which says what bodies are one thing."""
 
     _shapes: Shapes
     _bodies: Bodies
     _options: dict[str, Any]
 
-    def __new__(cls, shapes: Shapes, bodies: Bodies, *, category: Any = None, fast: bool = False, threads: int = 1) -> Index:
+    def __new__(cls, shapes: Shapes, bodies: Bodies, *, threads: int = 1, **options: Any) -> Index:
         self = super().__new__(cls, "Index")
-        self._shapes, self._options = shapes, {"category": category, "fast": fast, "workers": threads}
-        self.update(bodies)
+        self._shapes, self._bodies = shapes, bodies
+        self._options = {**options, "workers": threads}
+        _narc.build_index(self, self._boxes(), self._options)
         return self
 
-    def update(self, bodies: Bodies = None) -> None:
-        """Takes bodies as they are now, or others."""
+    def _boxes(self) -> Rows:
+        return boxes(self._shapes, self._bodies, origin=self._options.get("origin"), threads=self._options["workers"])
+
+    def update(self, bodies: Bodies = None, changed: Any = None) -> None:
+        """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were."""
         self._bodies = self._bodies if bodies is None else bodies
-        around = boxes(self._shapes, self._bodies, threads=self._options["workers"])
-        _narc.build_index(self, around, self._options)
+        _narc.update_index(self, self._boxes(), changed, self._options)
+
+    def statistics(self) -> np.void:
+        """How the tree is: boxes, bodies, nodes, leaves, depth, bytes, mean_perimeter, slack."""
+        out = np.zeros(1, INDEX_STATISTICS)
+        _narc.describe_index(self, out)
+        row: np.void = out[0]
+        return row
 
     def __len__(self) -> int:
         return count_of(self._bodies)
@@ -49,42 +71,39 @@ class Index(_narc.Handle):
     def __repr__(self) -> str:
         return f"<narc.Index of {len(self)} bodies>"
 
-    def regions(self, boxes: ArrayLike, *, mask: Any = None, ignored: Any = None, threads: int = 1) -> NDArray[np.uint32]:
+    def regions(self, boxes: ArrayLike, *, threads: int = 1, **options: Any) -> NDArray[np.uint32]:
         """Pairs (box, body) of boxes that overlap, (m, 2). `boxes`: rows of narc.BOX, or of (min x, min y, max x, max y) as
         float32."""
-        found = _narc.query_index(self, boxes, {"mask": mask, "ignored": ignored, "workers": threads})
+        found = _narc.query_index(self, boxes, {**options, "workers": threads})
         return np.frombuffer(found, np.uint32).reshape(-1, 2)
 
-    def rays(self, xy: ArrayLike, motion: Any, *, most: int = 1, mask: Any = None, ignored: Any = None, owners: Any = None,
-             fraction: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def rays(self, xy: ArrayLike, motion: Any, *, most: int = 1, fraction: Any = None, threads: int = 1,
+             **options: Any) -> Rows:
         """What each ray hits first: rows of narc.RAY_HIT, `count` 0 where there is nothing. A ray goes from `xy` (n, 2), or
         from one place (2,), to xy + motion, (n, 2) of float32; `most` rows for each ray, nearest first. `options` are those of
         narc_ray_options: inside, any."""
-        start = _floats(xy)
-        rays = {"xy": start} if np.ndim(start) == 2 else {"x": float(start[0]), "y": float(start[1])}
         out = np.zeros(len(motion) * max(most, 1), RAY_HIT)
-        _narc.cast_rays(self, self._shapes, self._bodies, {**rays, "motion": motion, "fraction": fraction},
-                        {"search": _search(mask, ignored, owners, threads), "most": most, **options}, out)
+        search, options = _search(options, threads)
+        _narc.cast_rays(self, self._shapes, self._bodies, _rays(xy, motion, fraction),
+                        {"search": search, "most": most, **options}, out)
         return out.reshape(-1, most) if most > 1 else out
 
-    def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, mask: Any = None, ignored: Any = None,
-                owners: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
         """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none. `distance`:
         only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is within."""
         points = _floats(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
+        search, options = _search(options, threads)
         _narc.find_nearest(self, self._shapes, self._bodies, points,
-                           {"search": _search(mask, ignored, owners, threads), "distance": distance, "most": most, **options},
-                           out)
+                           {"search": search, "distance": distance, "most": most, **options}, out)
         return out.reshape(-1, most) if most > 1 else out
 
-    def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, mask: Any = None, ignored: Any = None,
-              owners: Any = None, threads: int = 1, **options: Any) -> Rows:
+    def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, threads: int = 1, **options: Any) -> Rows:
         """What each mover hits first on its way, `motion` (n, 2) of float32 while it turns by `angle`: rows of narc.IMPACT.
         `options` are those of narc_cast_options: target, tolerance, targets, front_only."""
         out = np.zeros(count_of(movers), IMPACT)
-        _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle},
-                          _search(mask, ignored, owners, threads), options or None, out)
+        search, options = _search(options, threads)
+        _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle}, search, options or None, out)
         return out
 
 
@@ -93,6 +112,23 @@ def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *
     points = _floats(xy)
     out = np.zeros(len(points), DISTANCE)
     _narc.find_distances(shapes, bodies, points, body, threads, out)
+    return out
+
+
+def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *, threads: int = 1) -> NDArray[np.bool_]:
+    """Which points of `xy` (n, 2) are within body number `body`[k], one number for all, or body k: (n,) of bool."""
+    points = _floats(xy)
+    words = np.zeros((len(points) + 63) // 64, np.uint64)
+    _narc.find_inside(shapes, bodies, points, body, threads, words)
+    return from_bits(words, len(points))
+
+
+def rays(shapes: Shapes, bodies: Bodies, xy: ArrayLike, motion: Any, body: Any = None, *, fraction: Any = None, threads: int = 1,
+         **options: Any) -> Rows:
+    """Where each ray, from `xy` on by `motion` as in Index.rays(), hits body number `body`[k], one for all, or body k: rows of
+    narc.RAY_HIT."""
+    out = np.zeros(len(motion), RAY_HIT)
+    _narc.cast_ray_pairs(shapes, bodies, _rays(xy, motion, fraction), body, {"search": {"workers": threads}, **options}, out)
     return out
 
 
@@ -132,7 +168,8 @@ class Contacts(_narc.Handle):
     _kind: Any
 
     def __new__(cls, rows: str = "manifolds") -> Contacts:
-        kinds = {"manifolds": (MANIFOLD, CONSTANTS["NARC_MANIFOLD_ROWS"]), "contacts": (CONTACT, CONSTANTS["NARC_CONTACT_ROWS"])}
+        kinds = {"manifolds": (MANIFOLD, int(CONSTANTS["NARC_MANIFOLD_ROWS"])),
+                 "contacts": (CONTACT, int(CONSTANTS["NARC_CONTACT_ROWS"]))}
         if rows not in kinds:
             raise ValueError(f"rows is {rows!r}, it must be 'manifolds' or 'contacts'")
         self = super().__new__(cls, "Contacts", kinds[rows][1])
@@ -140,21 +177,23 @@ class Contacts(_narc.Handle):
         return self
 
     def update(self, shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, skin: float = 0.0, recycling: float = 0.0,
-               threads: int = 1, kind: Any = None, category: Any = None, mask: Any = None, group: Any = None,
-               **options: Any) -> Step:
-        """A step: finds what is near, asks again what has moved, and tells what began and ended. Columns kind, category, mask
-        and group say which bodies may meet (narc_pair_filter). `options` are those of narc_step: second_margin, flat_angle,
-        front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs."""
-        filters = {"kind": kind, "category": category, "mask": mask, "group": group}
-        chosen = None if all(column is None for column in filters.values()) else filters
+               threads: int = 1, **options: Any) -> Step:
+        """A step: finds what is near, asks again what has moved, and tells what began and ended. `options` are those of
+        narc_step: second_margin, flat_angle, front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs, origin; and
+        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner."""
+        filters, options = split(options, "narc_pair_filter")
         step = _narc.update_contacts(self, shapes, bodies, {"margin": margin, "skin": skin, "recycling": recycling,
-                                                            "filter": chosen, "workers": threads, **options})
+                                                            "filter": filters, "workers": threads, **options})
         return self._step(step)
 
     def _step(self, step: tuple[Any, ...]) -> Step:
         kinds = (np.uint32, np.uint32, self._kind, self._kind, TOUCH_EVENT, TOUCH_EVENT, np.uint32)
-        arrays = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
+        arrays: list[Any] = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
         return Step(arrays[0].reshape(-1, 2), *arrays[1:], *step[7:])
+
+    def slots_of(self, body: int) -> NDArray[np.uint32]:
+        """The slots of all pairs of a body, by its number in the last step."""
+        return np.frombuffer(_narc.find_body_slots(self, body), np.uint32)
 
     def forget(self, ids: ArrayLike | None = None) -> None:
         """Takes bodies out by their ids, or forgets all pairs."""

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
-from ._tables import ARC, CHAIN_ENTRY, CIRCLE, CONSTANTS, MASS
+from ._tables import AABB, ARC, CHAIN_ENTRY, CIRCLE, CONSTANTS, FOUR_ARC, MASS
 
 Arcs = NDArray[np.void]
 _MOST = int(CONSTANTS["NARC_MAX_ARCS"])
@@ -30,10 +30,10 @@ def _built(build: Any, *arguments: Any) -> Arcs:
     return out[: build(*arguments, out)].copy()
 
 
-def _one(compute: Any, arcs: ArrayLike, kind: Any) -> Any:
+def _one(compute: Any, arcs: ArrayLike, kind: Any) -> np.void:
     out = np.zeros(1, kind)
     compute(_arcs(arcs), out)
-    return out[0]
+    return cast(np.void, out[0])
 
 
 class Shapes(_narc.Handle):
@@ -46,8 +46,12 @@ class Shapes(_narc.Handle):
     def __new__(cls) -> Shapes:
         return super().__new__(cls, "Shapes")
 
-    def add(self, arcs: ArrayLike) -> int:
-        """Adds arcs: an array of narc.ARC, or rows of (center x, center y, radius, start, end)."""
+    def add(self, arcs: ArrayLike, shape: int | None = None) -> int:
+        """Adds arcs: an array of narc.ARC, or rows of (center x, center y, radius, start, end). `shape`: a number of your
+        choice, which is free."""
+        if shape is not None:
+            _narc.add_shape_at(self, shape, _arcs(arcs))
+            return shape
         out = np.zeros(1, np.uint32)
         _narc.add_shape(self, _arcs(arcs), out)
         return int(out[0])
@@ -83,6 +87,16 @@ class Shapes(_narc.Handle):
         """The smooth shape of 4, 8, 12 ... arcs that is nearest to an ellipse."""
         return self.add(_built(_narc.build_ellipse, half_x, half_y, arcs))
 
+    def four_arc(self, radius_low: float, radius_high: float, distance: float, radius_left: float = 0.0,
+                 radius_right: float = 0.0) -> int:
+        """A lens of two large circles, whose centres are `distance` apart, with tips of these radii."""
+        form = np.array([(radius_low, radius_high, distance, radius_left, radius_right)], FOUR_ARC)
+        return self.add(_built(_narc.build_four_arc, form))
+
+    def smooth(self, xy: ArrayLike, radius: float = 0.0) -> int:
+        """The smooth shape whose arcs meet at these points (n, 2), counter-clockwise; `radius` of arc 0: radius_range()."""
+        return self.add(_built(_narc.build_points, _points(xy), radius))
+
     def ring(self, xy: ArrayLike) -> int:
         """A smooth shape of arcs near any simple polygon, points (n, 2) in either orientation."""
         return self.add(_built(_narc.build_ring, _points(xy)))
@@ -112,13 +126,17 @@ class Shapes(_narc.Handle):
         """The arcs of a shape as they are stored, in single precision; none of a shape that is not there."""
         return _built(_narc.get_arcs, self, shape)
 
+    def flags(self, shape: int) -> int:
+        """What the store knows of a shape: bits of CONSTANTS["NARC_SHAPE_..."]."""
+        return int(_narc.shape_flags(self, shape))
+
     def uses(self, shape: int) -> int:
         """How often a shape was added, and not removed."""
         return int(_narc.count_uses(self, shape))
 
     def mass(self, shape: int) -> np.void:
         """Area, centroid and second moment about it: a row of narc.MASS, to be multiplied by a density."""
-        return _one(_narc.compute_mass, self.arcs(shape), MASS)
+        return mass(self.arcs(shape))
 
     def bounding_circle(self, shape: int) -> np.void:
         """The smallest circle around a shape, a row of narc.CIRCLE."""
@@ -154,9 +172,103 @@ def _load(kind: type[Shapes], data: bytes) -> Shapes:
     return shapes
 
 
+def outlines(shapes: Shapes, bodies: NDArray[np.void], tolerance: float = 1e-2) -> list[NDArray[np.float64]]:
+    """Points (n, 2) on the outline of each body, rows of narc.BODY, as Shapes.as_polygon() has them: for plots."""
+    known = {shape: shapes.as_polygon(int(shape), tolerance) for shape in set(bodies["shape"])}
+    out = []
+    for body in bodies:
+        points = body["scale"] * known[body["shape"]]
+        turned = np.stack([body["cosine"] * points[:, 0] - body["sine"] * points[:, 1],
+                           body["sine"] * points[:, 0] + body["cosine"] * points[:, 1]], axis=1)
+        out.append(body["xy"] + turned)
+    return out
+
+
 def mass(arcs: ArrayLike) -> np.void:
     """Area, centroid and second moment of a list of arcs, a row of narc.MASS."""
     return _one(_narc.compute_mass, arcs, MASS)
+
+
+def validate_arcs(arcs: ArrayLike) -> None:
+    """Raises narc.Error where a list of arcs is no shape, and says why."""
+    _narc.validate_arcs(_arcs(arcs))
+
+
+def perimeter(arcs: ArrayLike) -> float:
+    """The length of arcs and edges."""
+    return float(_one(_narc.compute_perimeter, arcs, np.float64))  # type: ignore[arg-type]
+
+
+def bounding_circle(arcs: ArrayLike) -> np.void:
+    """The smallest circle around a list of arcs, a row of narc.CIRCLE."""
+    return _one(_narc.compute_bounding_circle, arcs, CIRCLE)
+
+
+def inscribed_circle(arcs: ArrayLike) -> np.void:
+    """A largest circle within a list of arcs, a row of narc.CIRCLE."""
+    return _one(_narc.compute_inscribed_circle, arcs, CIRCLE)
+
+
+def bounding_box(arcs: ArrayLike, angle: float = 0.0) -> np.void:
+    """The box around a list of arcs that is turned by `angle`: `min` and `max`."""
+    out = np.zeros(1, AABB)
+    _narc.compute_aabb(_arcs(arcs), angle, out)
+    return cast(np.void, out[0])
+
+
+def support(arcs: ArrayLike, direction: ArrayLike) -> tuple[NDArray[np.float64], int]:
+    """The point that lies furthest in a direction, and its arc."""
+    x, y = direction  # type: ignore[misc]
+    out = np.zeros((1, 2))
+    arc = _narc.find_support(_arcs(arcs), x, y, out)
+    return out[0], int(arc)
+
+
+def depths(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.float64]:
+    """How far points (n, 2) are from the outline, below 0 inside: (n,) of float64."""
+    points = _points(xy)
+    out = np.zeros(len(points))
+    _narc.compute_distance(_arcs(arcs), points, out)
+    return out
+
+
+def contains(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.bool_]:
+    """Which points (n, 2) are inside, or on the outline: (n,) of bool."""
+    points = _points(xy)
+    out = np.zeros(len(points), np.bool_)
+    _narc.contains_point(_arcs(arcs), points, out)
+    return out
+
+
+def weld(xy: ArrayLike, tolerance: float) -> NDArray[np.float64]:
+    """A polygon without the corners that hardly matter: those within `tolerance` of the sides in their place."""
+    points = _points(xy)
+    out = np.zeros_like(points)
+    return out[: _narc.weld_polygon(points, tolerance, out)]
+
+
+def adjust(xy: ArrayLike) -> NDArray[np.float64]:
+    """Points near those of any simple polygon at which the arcs of a smooth shape can meet: for Shapes.smooth()."""
+    points = _points(xy)
+    out = np.zeros_like(points)
+    return out[: _narc.adjust_polygon(points, out)]
+
+
+def radius_range(xy: ArrayLike) -> tuple[float, float, float]:
+    """The least and largest radius of arc 0 that Shapes.smooth() takes for these points, and its choice."""
+    out = np.zeros(3)
+    _narc.find_radius_range(_points(xy), out)
+    return float(out[0]), float(out[1]), float(out[2])
+
+
+def mirror(arcs: ArrayLike) -> Arcs:
+    """The mirror image at the y axis."""
+    return _built(_narc.mirror_arcs, _arcs(arcs))
+
+
+def center(arcs: ArrayLike) -> Arcs:
+    """The same arcs with their centroid at the origin."""
+    return _built(_narc.center_arcs, _arcs(arcs))
 
 
 def union_mass(parts: list[ArrayLike]) -> np.void:
@@ -164,7 +276,7 @@ def union_mass(parts: list[ArrayLike]) -> np.void:
     arcs = [np.asarray(_arcs(part)).view(ARC).reshape(-1) for part in parts]
     out = np.zeros(1, MASS)
     _narc.compute_union_mass(np.concatenate(arcs), np.array([len(a) for a in arcs], np.uint64), out)
-    return out[0]
+    return cast(np.void, out[0])
 
 
 def move(arcs: ArrayLike, xy: ArrayLike = (0, 0), angle: float = 0.0, scale: float = 1.0) -> Arcs:

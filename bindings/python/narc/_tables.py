@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from . import _narc
@@ -12,7 +14,7 @@ _LAYOUTS = _narc.layouts()
 CONSTANTS: dict[str, int | float] = _narc.constants()
 
 
-def row_type(name: str) -> np.dtype:
+def row_type(name: str) -> np.dtype[np.void]:
     """The type of rows of a structure. What is x and y of one thing is a pair: `normal_x`, `normal_y` are `normal`, and a plain
     `x`, `y` is `xy`."""
     size, members = _LAYOUTS[name]
@@ -28,10 +30,16 @@ def row_type(name: str) -> np.dtype:
                      "offsets": [o for _, o in fields.values()], "itemsize": size})
 
 
-def _known(name: str) -> np.dtype:
+def _known(name: str) -> np.dtype[np.void]:
     kind = row_type(name)
     _narc.know(name, kind)
     return kind
+
+
+def split(options: dict[str, Any], structure: str) -> tuple[dict[str, Any] | None, dict[str, Any]]:
+    """Options that are members of a structure, None if there are none, and the others."""
+    members = _LAYOUTS[structure][1]
+    return ({k: v for k, v in options.items() if k in members} or None, {k: v for k, v in options.items() if k not in members})
 
 
 ARC = _known("narc_arc")
@@ -44,5 +52,9 @@ DISTANCE = _known("narc_distance")
 IMPACT = _known("narc_impact")
 MANIFOLD = _known("narc_manifold")
 MASS = _known("narc_mass")
+AABB = _known("narc_aabb")
+INDEX_STATISTICS = _known("narc_index_statistics")
+FOUR_ARC = row_type("narc_four_arc")
+REFINED_CONTACT = _known("narc_refined_contact")
 RAY_HIT = _known("narc_ray_hit")
 TOUCH_EVENT = _known("narc_touch_event")

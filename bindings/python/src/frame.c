@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "format.h"
 #include "threads.h"
 
 void frame_begin(frame *f) {
@@ -89,143 +90,6 @@ static const narc_layout *find_known(PyObject *array) {
     return layout;
 }
 
-/* ------------------------------------------------------------------------------------------------ formats */
-
-/* An item of a format, as the buffer protocol writes it (PEP 3118): one number or several of a kind. */
-typedef struct item {
-    char code, order;
-    size_t offset, size, count; /* the size of one number */
-    const char *name;
-    size_t name_length;
-} item;
-
-static size_t size_of(char code, char order) {
-    const bool native = order == '@' || order == '^';
-    switch (code) {
-    case 'x':
-    case 'c':
-    case 'b':
-    case 'B':
-    case '?':
-    case 's':
-    case 'p':
-        return 1;
-    case 'h':
-    case 'H':
-    case 'e':
-        return 2;
-    case 'i':
-    case 'I':
-    case 'f':
-    case 'w':
-        return 4;
-    case 'l':
-    case 'L':
-        return native ? sizeof(long) : 4;
-    case 'q':
-    case 'Q':
-    case 'd':
-        return 8;
-    case 'n':
-    case 'N':
-    case 'O':
-    case 'P':
-        return sizeof(void *);
-    case 'g':
-        return sizeof(long double);
-    default:
-        return 0;
-    }
-}
-
-/* Reads the next item of a format and goes on behind it; false at the end or where it is not understood. */
-static bool next_item(const char **format, char *order, size_t *end, item *out) {
-    const char *p = *format;
-    size_t count = 1, factor = 1;
-    for (; *p && strchr("@=<>!^(0123456789,) \n", *p); p++) {
-        if (strchr("@=<>!^", *p))
-            *order = *p;
-        else if (*p >= '0' && *p <= '9') {
-            size_t number = 0;
-            for (; *p >= '0' && *p <= '9'; p++)
-                number = number * 10 + (size_t)(*p - '0');
-            count *= number;
-            p--;
-        }
-    }
-    if (*p == 'Z') { /* complex: two numbers */
-        factor = 2;
-        p++;
-    }
-    *out = (item){.code = *p, .order = *order, .count = count};
-    if (*p == 'T' && p[1] == '{') {
-        item part;
-        size_t inner = 0;
-        for (p += 2; *p && *p != '}';)
-            if (!next_item(&p, order, &inner, &part))
-                return false;
-        out->size = inner;
-    } else {
-        out->size = *p ? size_of(*p, *order) : 0;
-        if (*order == '@' && out->size)
-            *end = (*end + out->size - 1) / out->size * out->size;
-    }
-    if (!*p || *p == '}' || (out->size == 0 && out->code != 'T'))
-        return false;
-    out->size *= factor;
-    out->code = factor == 2 ? 'Z' : out->code;
-    p++;
-    if (*p == ':') {
-        out->name = ++p;
-        while (*p && *p != ':')
-            p++;
-        out->name_length = (size_t)(p - out->name);
-        p += *p == ':';
-    }
-    out->offset = *end;
-    *end += out->size * count;
-    *format = p;
-    return true;
-}
-
-/* The only item of a format, or the field of records that is called like this: member "motion_x" is also number 0 of a field
- * "motion", and "y" number 1 of "xy". */
-static bool find_item(const char *format, const char *member, item *out) {
-    char order = '@';
-    size_t end = 0;
-    if (!format)
-        format = "B";
-    if (!member)
-        return next_item(&format, &order, &end, out) && !*format && out->code != 'T';
-    if (format[0] != 'T' || format[1] != '{')
-        return false;
-    const size_t length = strlen(member), stem = length > 2 && member[length - 2] == '_' ? length - 2 : 0;
-    const size_t which = member[length - 1] == 'x' ? 0 : member[length - 1] == 'y' ? 1 : 2;
-    for (format += 2; next_item(&format, &order, &end, out);) {
-        if (!out->name)
-            continue;
-        if (out->name_length == length && memcmp(out->name, member, length) == 0 && out->count == 1)
-            return true;
-        const bool pair = which < 2 && out->count == 2 &&
-                          (stem ? out->name_length == stem && memcmp(out->name, member, stem) == 0
-                                : length == 1 && out->name_length == 2 && memcmp(out->name, "xy", 2) == 0);
-        if (pair) {
-            out->offset += which * out->size;
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool is_big_endian(void) {
-    const uint16_t one = 1;
-    return *(const uint8_t *)&one == 0;
-}
-
-static bool is_foreign(const item *from) {
-    return from->size > 1 && (from->order == '<' ? is_big_endian() : strchr(">!", from->order) && !is_big_endian());
-}
-
 /* ------------------------------------------------------------------------------------------------ columns */
 
 /* Numbers in memory: from a buffer, or a single one with a stride of 0. */
@@ -235,45 +99,29 @@ typedef struct numbers {
     item item;
 } numbers;
 
-static const char *describe(const item *from) {
-    switch (from->code) {
-    case 'f':
-        return "float32";
-    case 'd':
-        return "float64";
-    case 'e':
-        return "float16";
-    case '?':
-        return "bool";
-    case 'Z':
-        return "complex";
-    case 'O':
-        return "objects";
-    case 'T':
-        return "records";
-    case 'b':
-    case 'h':
-    case 'i':
-    case 'l':
-    case 'q':
-    case 'n':
-        return from->size == 8 ? "int64" : from->size == 4 ? "int32" : from->size == 2 ? "int16" : "int8";
-    case 'B':
-    case 'H':
-    case 'I':
-    case 'L':
-    case 'Q':
-    case 'N':
-        return from->size == 8 ? "uint64" : from->size == 4 ? "uint32" : from->size == 2 ? "uint16" : "uint8";
+static bool is_member(const char *type, const char *of) { return strcmp(type, of) == 0; }
+
+/* A whole number of any size, which may not be aligned; below 0 as its complement. */
+static uint64_t read_whole(const char *at, size_t size, bool with_sign) {
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    uint64_t eight;
+    switch (size) {
+    case 1:
+        memcpy(&one, at, sizeof one);
+        return with_sign ? (uint64_t)(int64_t)(int8_t)one : one;
+    case 2:
+        memcpy(&two, at, sizeof two);
+        return with_sign ? (uint64_t)(int64_t)(int16_t)two : two;
+    case 4:
+        memcpy(&four, at, sizeof four);
+        return with_sign ? (uint64_t)(int64_t)(int32_t)four : four;
     default:
-        return "something else";
+        memcpy(&eight, at, sizeof eight);
+        return eight;
     }
 }
-
-static bool is_signed(char code) { return strchr("bhilqn", code) != NULL; }
-static bool is_integer(char code) { return strchr("bhilqnBHILQN", code) != NULL; }
-
-static bool is_member(const char *type, const char *of) { return strcmp(type, of) == 0; }
 
 /* Whole numbers of another size, converted to a column's own. */
 static const void *convert(frame *f, const numbers *from, size_t size, const char *path) {
@@ -282,37 +130,12 @@ static const void *convert(frame *f, const numbers *from, size_t size, const cha
     if (!made)
         return PyErr_NoMemory();
     f->memory[f->memory_count++] = made;
-    const bool with_sign = is_signed(from->item.code);
+    const bool with_sign = is_signed(&from->item);
     for (Py_ssize_t k = 0; k < count; k++) {
-        const char *const at = from->base + k * from->stride;
-        uint64_t value = 0;
-        int64_t number = 0;
-        switch (from->item.size) {
-        case 1:
-            value = *(const uint8_t *)at, number = *(const int8_t *)at;
-            break;
-        case 2: {
-            uint16_t v;
-            memcpy(&v, at, 2);
-            value = v, number = (int16_t)v;
-            break;
-        }
-        case 4: {
-            uint32_t v;
-            memcpy(&v, at, 4);
-            value = v, number = (int32_t)v;
-            break;
-        }
-        default:
-            memcpy(&value, at, 8);
-            number = (int64_t)value;
-        }
-        if (with_sign ? number < 0 || (size == 4 && number > UINT32_MAX) : size == 4 && value > UINT32_MAX) {
-            if (with_sign)
-                PyErr_Format(PyExc_IndexError, "%s: item %zd is %lld", path, k, (long long)number);
-            else
-                PyErr_Format(PyExc_IndexError, "%s: item %zd is %llu", path, k, (unsigned long long)value);
-            return NULL;
+        const uint64_t value = read_whole(from->base + k * from->stride, from->item.size, with_sign);
+        if ((with_sign && value >> 63) || (size == 4 && value > UINT32_MAX)) {
+            const char *const format = with_sign ? "%s: item %zd is %lld" : "%s: item %zd is %llu";
+            return PyErr_Format(PyExc_IndexError, format, path, k, (unsigned long long)value);
         }
         const uint32_t small = (uint32_t)value;
         memcpy(made + (size_t)k * size, size == 4 ? (const void *)&small : (const void *)&value, size);
@@ -340,11 +163,11 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
     } else { /* whole numbers are converted */
         size = is_member(type, "narc_word_column") ? 8 : 4;
         wanted = size == 8 ? "uint64" : "uint32";
-        whole = is_integer(i->code);
-        fits = whole && i->size == size && !is_signed(i->code);
+        whole = is_integer(i);
+        fits = whole && i->size == size && !is_signed(i);
     }
     if (is_foreign(i) || !(fits || whole)) {
-        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %s%s", path, wanted, describe(i),
+        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %s%s", path, wanted, describe_item(i),
                      is_foreign(i) ? " in another order of bytes" : "");
         return false;
     }
@@ -363,7 +186,7 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
     Py_ssize_t stride = from->stride;
     if (!fits || ((uintptr_t)base | (size_t)stride) % size != 0) {
         if (!whole) {
-            PyErr_Format(PyExc_ValueError, "%s: items of %s are not aligned", path, describe(i));
+            PyErr_Format(PyExc_ValueError, "%s: items of %s are not aligned", path, describe_item(i));
             return false;
         }
         base = convert(f, from, size, path);
@@ -400,6 +223,8 @@ static bool set_constant(frame *f, const char *type, void *column, PyObject *giv
         memcpy(room, &value, sizeof value);
         if (is_member(type, "narc_byte_column")) {
             const uint8_t byte = (uint8_t)value;
+            if (value > UINT8_MAX)
+                PyErr_SetNone(PyExc_OverflowError);
             one.item.code = 'B', one.item.size = 1;
             memcpy(room, &byte, 1);
         }
@@ -418,7 +243,8 @@ static bool take_column(frame *f, const char *type, void *column, const Py_buffe
                         unsigned char group, const char *path) {
     numbers from = {.base = (const char *)view->buf, .count = -1};
     if (!find_item(view->format, NULL, &from.item) || from.item.count != 1) {
-        PyErr_Format(PyExc_TypeError, "%s: an array of numbers is wanted, not of the format %s", path, view->format);
+        PyErr_Format(PyExc_TypeError, "%s: an array of numbers is wanted, not of the format %s", path,
+                     view->format ? view->format : "B");
         return false;
     }
     if (view->ndim == 0 && width == 1)
@@ -435,18 +261,17 @@ static bool take_column(frame *f, const char *type, void *column, const Py_buffe
     return set_column(f, type, column, &from, group, path);
 }
 
-static bool read_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group,
-                        const char *path) {
+bool frame_column(frame *f, const char *type, void *column, size_t *out_count, PyObject *given, unsigned char group) {
+    *out_count = 1;
     if (given == Py_None)
         return true;
     if (!PyObject_CheckBuffer(given))
-        return set_constant(f, type, column, given, path);
+        return set_constant(f, type, column, given, f->argument);
     const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
-    return view && take_column(f, type, column, view, 1, 0, group, path);
-}
-
-bool frame_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group) {
-    return read_column(f, type, column, given, group, f->argument);
+    if (!view || !take_column(f, type, column, view, 1, 0, group, f->argument))
+        return false;
+    *out_count = view->ndim ? (size_t)view->shape[0] : 1;
+    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ structures */
@@ -463,11 +288,15 @@ static bool is_column(const narc_member *member) {
     return length > 7 && strcmp(member->type + length - 7, "_column") == 0;
 }
 
-/* Numbers of the pairs or bodies to look at, and what things bodies are parts of, have lengths of their own. */
+/* The member that is the length of a column, such as narc_query.selection_count; NULL: it has that of a group. */
+static const narc_member *find_count(const narc_layout *layout, const narc_member *column) {
+    char name[64];
+    PyOS_snprintf(name, sizeof name, "%s_count", column->name);
+    return find_member(layout, name);
+}
+
 static unsigned char group_of(const narc_layout *layout, const narc_member *member, unsigned char group) {
-    char count[64];
-    PyOS_snprintf(count, sizeof count, "%s_count", member->name);
-    if (find_member(layout, count))
+    if (find_count(layout, member))
         return 0;
     return is_member(layout->name, "narc_owners") && is_member(member->name, "owner") ? 'B' : group;
 }
@@ -500,16 +329,14 @@ static bool set_member(frame *f, const narc_layout *layout, const narc_member *m
         return true;
     if (is_column(m)) {
         const unsigned char own = group_of(layout, m, group);
-        if (!read_column(f, m->type, place, given, own, path))
-            return false;
-        if (!own && PyObject_CheckBuffer(given)) { /* its length is a member, too */
-            char count[64];
-            PyOS_snprintf(count, sizeof count, "%s_count", m->name);
-            const Py_buffer *const view = &f->buffers[f->buffer_count - 1];
-            const narc_member *const of = find_member(layout, count);
-            *(size_t *)(structure + of->offset) = view->ndim ? (size_t)view->shape[0] : 1;
-        }
-        return true;
+        const char *const argument = f->argument;
+        size_t count;
+        f->argument = path;
+        const bool is_set = frame_column(f, m->type, place, &count, given, own);
+        f->argument = argument;
+        if (is_set && !own) /* its length is a member, too */
+            *(size_t *)(structure + find_count(layout, m)->offset) = count;
+        return is_set;
     }
     if (is_member(m->type, "const narc_workers *"))
         return frame_workers(f, given, place);
@@ -525,12 +352,15 @@ static bool set_member(frame *f, const narc_layout *layout, const narc_member *m
         if (pointer)
             *(void **)place = room;
         /* pairs, and another set of bodies, have lengths of their own */
-        return frame_fill(f, inner, room, given,
-                          is_member(m->name, "other_bodies") ? 'O'
-                          : is_member(m->name, "pairs")      ? 'P'
-                                                             : group);
+        const unsigned char own = is_member(m->name, "other_bodies") ? 'O' : is_member(m->name, "pairs") ? 'P' : group;
+        const char *const argument = f->argument;
+        f->argument = path;
+        const bool is_filled = frame_fill(f, inner, room, given, own);
+        f->argument = argument;
+        return is_filled;
     }
-    if (strchr(m->type, '*') || m->count > 1) {
+    /* rows lie where arrays have them */
+    if (strchr(m->type, '*') || m->count > 1 || is_member(m->name, "row_stride")) {
         PyErr_Format(PyExc_TypeError, "%s can't be given", path);
         return false;
     }
@@ -552,9 +382,8 @@ static bool find_two(const narc_layout *layout, const char *stem, const narc_mem
     return true;
 }
 
-static bool fill_two(frame *f, const narc_member *const two[2], char *structure, PyObject *given, unsigned char group,
-                     const char *path) {
-    const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
+static bool fill_two(frame *f, const narc_member *const two[2], char *structure, const Py_buffer *view,
+                     unsigned char group, const char *path) {
     for (int k = 0; view && k < 2; k++)
         if (!take_column(f, two[k]->type, structure + two[k]->offset, view, 2, k, group, path))
             return false;
@@ -565,13 +394,14 @@ static bool find_field(const char *format, const narc_layout *rows, const char *
     if (!rows)
         return find_item(format, name, out);
     const narc_member *const m = find_member(rows, name);
-    if (m)
+    const bool is_number = m && strchr("fdu", m->type[0]) && m->count == 1;
+    if (is_number)
         *out = (item){.code = m->type[0] == 'u' ? 'I' : m->type[0],
                       .order = '@',
                       .offset = m->offset,
                       .size = m->size,
                       .count = 1};
-    return m != NULL;
+    return is_number;
 }
 
 /* Records: a field for each column. `rows`: what they are, if that is known, NULL: as their format says. */
@@ -592,7 +422,7 @@ static bool fill_records(frame *f, const narc_layout *layout, char *structure, c
     }
     if (!found)
         PyErr_Format(PyExc_TypeError, "%s: records have no field of %s, their format is %s", f->argument, layout->name,
-                     view->format);
+                     rows ? rows->name : view->format);
     return found > 0;
 }
 
@@ -606,11 +436,32 @@ static bool fill_mapping(frame *f, const narc_layout *layout, char *structure, P
         if (!name)
             return false;
         PyOS_snprintf(path, sizeof path, "%s.%s", f->argument, name);
-        if (m ? !set_member(f, layout, m, structure, value, group, path)
-              : find_two(layout, name, two) && value != Py_None && !fill_two(f, two, structure, value, group, path))
+        bool is_set = value == Py_None;
+        if (m)
+            is_set = set_member(f, layout, m, structure, value, group, path);
+        else if (!find_two(layout, name, two))
+            return PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name) != NULL;
+        else if (!is_set)
+            is_set = fill_two(f, two, structure, frame_view(f, value, PyBUF_RECORDS_RO), group, path);
+        if (!is_set)
             return false;
-        if (!m && !find_two(layout, name, two)) {
-            PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name);
+    }
+    return true;
+}
+
+/* All members, which are numbers: a place is (x, y). */
+static bool fill_tuple(frame *f, const narc_layout *layout, char *structure, PyObject *given) {
+    if (PyTuple_Size(given) != (Py_ssize_t)layout->member_count) {
+        PyErr_Format(PyExc_TypeError, "%s: %zd numbers, where there are to be %zd", f->argument, PyTuple_Size(given),
+                     (Py_ssize_t)layout->member_count);
+        return false;
+    }
+    for (size_t k = 0; k < layout->member_count; k++) {
+        const narc_member *const m = &layout->members[k];
+        if (strchr(m->type, '*') || is_column(m) || m->count > 1 ||
+            !set_number(structure + m->offset, m->type, m->size, PyTuple_GetItem(given, (Py_ssize_t)k), f->argument)) {
+            if (!PyErr_Occurred())
+                PyErr_Format(PyExc_TypeError, "%s can't be a tuple", f->argument);
             return false;
         }
     }
@@ -623,7 +474,10 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
         *(size_t **)((char *)structure + skipped->offset) = &f->skipped;
     if (given == Py_None)
         return true;
-    if (PyDict_Check(given)) {
+    if (PyTuple_Check(given)) {
+        if (!fill_tuple(f, layout, structure, given))
+            return false;
+    } else if (PyDict_Check(given)) {
         if (!fill_mapping(f, layout, structure, given, group))
             return false;
     } else {
@@ -635,9 +489,8 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
             if (!fill_records(f, layout, structure, view, rows, group))
                 return false;
         } else if (find_two(layout, "xy", two) || find_two(layout, "ab", two)) {
-            for (int k = 0; k < 2; k++)
-                if (!take_column(f, two[k]->type, (char *)structure + two[k]->offset, view, 2, k, group, f->argument))
-                    return false;
+            if (!fill_two(f, two, structure, view, group, f->argument))
+                return false;
         } else {
             PyErr_Format(PyExc_TypeError, "%s: records or a mapping of columns are wanted", f->argument);
             return false;

@@ -26,6 +26,7 @@ typedef struct frame {
     size_t count, skipped; /* what the library tells */
     narc_pairs pairs;
     const narc_step_result *step;
+    const uint32_t *slots;
     narc_error error;
     size_t largest;                  /* the longest column: is it worth to let other threads of Python run? */
     const char *argument;            /* which one is read, for messages */
@@ -50,7 +51,7 @@ Py_buffer *frame_view(frame *f, PyObject *object, int flags);
 /* Tells that arrays with this dtype hold rows of the layout: NumPy takes microseconds to write down the format of records. */
 bool frame_know(PyObject *dtype, const narc_layout *layout);
 
-/* Fills a structure: from None (nothing), a mapping of members, records with fields of the members' names, or an array with two
+/* Fills a structure: from None (nothing), a mapping of members, a tuple of all, records with fields of the members' names, or an array with two
  * columns, x and y or a and b. Columns belong to `group`. False, with an error that names the member. */
 bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *given, unsigned char group);
 
@@ -62,7 +63,7 @@ bool frame_workers(frame *f, PyObject *given, const narc_workers **out_workers);
 bool frame_rows(frame *f, const narc_layout *layout, size_t size, bool writable, PyObject *given, void **out_rows,
                 size_t *out_count);
 
-/* A column by itself: its `type` is that of a member. */
-bool frame_column(frame *f, const char *type, void *column, PyObject *given, unsigned char group);
+/* A column by itself, and how long it is: its `type` is that of a member. */
+bool frame_column(frame *f, const char *type, void *column, size_t *out_count, PyObject *given, unsigned char group);
 
 #endif

@@ -7,6 +7,7 @@
  */
 #include "frame.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include <narc_broad_phase.h>
@@ -119,15 +120,15 @@ static PyType_Spec handle_spec = {"narc._narc.Handle", sizeof(handle), 0, Py_TPF
 
 /* What a call returns: how many rows there are, if more than there was room for, too; pairs that the library owns, or the last
  * step, as copies; bytes. */
-typedef enum result { COUNT, PAIRS, STEP } result;
+typedef enum result { COUNT, PAIRS, SLOTS, STEP } result;
 
 typedef struct call {
     const char *name;
     /* name:type of each argument, in the order of slots.
-     *   Shapes, Shapes!      a handle of this kind; it is changed
+     *   Shapes, Shapes!      a handle of this kind; it is changed. Index!@B: as many boxes are a length
      *   narc_query@P         a structure, and what its columns have the length of
      *   narc_index_column@P  a column
-     *   <narc_arc, >narc_arc rows that are read, or filled; <8, >8: items of so many bytes
+     *   <narc_arc, >narc_arc rows that are read, or filled; <8, >8: items of so many bytes; >narc_arc*64: at least so many
      *   double, size, flag   a number
      *   bytes, threads */
     const char *arguments;
@@ -146,6 +147,24 @@ static narc_status load_shapes(void *object, const void *bytes, size_t size, nar
         self->pointer = loaded;
     }
     return status;
+}
+
+/* The number of a shape or body: too large a one is none. */
+static uint32_t number(size_t n) { return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; }
+
+static narc_status find_depths(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
+                               double *out) {
+    bool are = true;
+    for (size_t k = 0; k < point_count; k++)
+        are = are && narc_compute_distance(arcs, count, &points[k], &out[k]);
+    return MUST(are);
+}
+
+static narc_status find_inside(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
+                               bool *out) {
+    for (size_t k = 0; k < point_count; k++)
+        out[k] = narc_contains_point(arcs, count, &points[k]);
+    return MUST(count > 0 && count <= NARC_MAX_ARCS);
 }
 
 static narc_status update_contacts(void **p, const narc_step_result **out_step, narc_error *error) {
@@ -183,6 +202,8 @@ typedef struct argument {
     int kind;                  /* of a handle */
     const narc_layout *layout; /* of a structure or of rows */
     size_t size;               /* of items without a layout */
+    Py_ssize_t least;          /* rows to be filled, whatever the call */
+    bool is_bits;              /* words of 64 bits, one bit for each item of the group */
     char column[32];
 } argument;
 
@@ -197,17 +218,19 @@ static signature signatures[CALLS];
 static bool read_argument(const char *text, argument *out) {
     char kind[48];
     const size_t name = strcspn(text, ":"), end = strcspn(text, " ");
-    const char *const at = memchr(text, '@', end);
-    const size_t length = (at ? (size_t)(at - text) : end) - name - 1;
+    const char *const at = memchr(text, '@', end), *const star = memchr(text, '*', end), *const mark = at ? at : star;
+    const size_t length = (mark ? (size_t)(mark - text) : end) - name - 1;
     PyOS_snprintf(out->name, sizeof out->name, "%.*s", (int)name, text);
     PyOS_snprintf(kind, sizeof kind, "%.*s", (int)length, text + name + 1);
     out->group = at ? (unsigned char)at[1] : 0;
+    out->least = star ? (Py_ssize_t)strtol(star + 1, NULL, 10) : 0;
     const bool rows = kind[0] == '<' || kind[0] == '>', changed = kind[length - 1] == '!';
     if (rows) {
         out->type = kind[0] == '<' ? ROWS_IN : ROWS_OUT;
         out->layout = narc_find_layout(kind + 1);
-        out->size = out->layout ? out->layout->size : (size_t)(kind[1] - '0');
-        return out->layout || (kind[1] >= '1' && kind[1] <= '8');
+        out->is_bits = strcmp(kind + 1, "bits") == 0;
+        out->size = out->layout ? out->layout->size : out->is_bits ? sizeof(uint64_t) : (size_t)(kind[1] - '0');
+        return out->layout || out->is_bits || (kind[1] >= '1' && kind[1] <= '8');
     }
     if ((out->kind = find_kind(kind, length - changed)) >= 0) {
         out->type = changed ? CHANGED_HANDLE : HANDLE;
@@ -252,6 +275,9 @@ static bool take_handle(frame *f, const argument *a, PyObject *given, int slot) 
         h->readers++;
     f->handles[slot] = h;
     f->p[slot] = h->pointer;
+    narc_index_statistics index;
+    if (a->group && narc_describe_index(h->pointer, &index, NULL) == NARC_OK)
+        f->lengths[a->group] = (Py_ssize_t)index.boxes;
     return true;
 }
 
@@ -278,7 +304,7 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         f->p[k] = frame_allocate(f, a->layout->size);
         if (!f->p[k])
             return false;
-        return a->type == COLUMN ? frame_column(f, a->column, f->p[k], given, a->group)
+        return a->type == COLUMN ? frame_column(f, a->column, f->p[k], &f->n[k], given, a->group)
                                  : frame_fill(f, a->layout, f->p[k], given, a->group);
     case ROWS_IN:
     case ROWS_OUT:
@@ -295,14 +321,17 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         return frame_workers(f, given, (const narc_workers **)&f->p[k]);
     }
     /* rows for each item of a group */
-    const unsigned char group = a->group == 'W' ? 'P' : a->group;
     const Py_ssize_t rows = (Py_ssize_t)f->n[k];
-    if (!group || (a->type == ROWS_IN && f->lengths[group] < 0)) {
-        f->lengths[group] = group ? rows : -1;
+    if (rows < a->least) {
+        PyErr_Format(PyExc_ValueError, "%s has %zd rows, %zd are needed", a->name, rows, a->least);
+        return false;
+    }
+    if (!a->group || (a->type == ROWS_IN && f->lengths[a->group] < 0)) {
+        f->lengths[a->group] = a->group ? rows : -1;
         return true;
     }
-    const Py_ssize_t length = f->lengths[group] < 0 ? 1 : f->lengths[group];
-    const Py_ssize_t wanted = a->group == 'W' ? (length + 63) / 64 : length;
+    const Py_ssize_t length = f->lengths[a->group] < 0 ? 1 : f->lengths[a->group];
+    const Py_ssize_t wanted = a->is_bits ? (length + 63) / 64 : length;
     if (rows >= wanted && (a->type == ROWS_OUT || rows == wanted))
         return true;
     PyErr_Format(PyExc_ValueError, "%s has %zd rows, where there are %zd", a->name, rows, wanted);
@@ -372,6 +401,8 @@ static PyObject *make_result(const frame *f, const signature *s, narc_status sta
     switch (s->call->result) {
     case PAIRS:
         return copy_pairs(&f->pairs, NULL, f->pairs.count);
+    case SLOTS:
+        return copy_rows(f->slots, sizeof *f->slots, NULL, f->count);
     case STEP:
         return copy_step(f->step);
     default:
@@ -467,6 +498,27 @@ static PyObject *set_isa(PyObject *self, PyObject *name) {
     Py_RETURN_NONE;
 }
 
+/* {"isa": names, "kernel": names, "cpu": names}; of instruction sets those that can be had */
+static PyObject *list_names(PyObject *self, PyObject *unused) {
+    static const struct {
+        const char *key, *(*name)(size_t index);
+    } lists[] = {{"isa", narc_isa_name}, {"kernel", narc_kernel_name}, {"cpu", narc_cpu_feature}};
+    PyObject *names = PyDict_New();
+    (void)self, (void)unused;
+    for (int list = 0; list < 3; list++) {
+        PyObject *const made = PyList_New(0);
+        const char *name;
+        for (size_t k = 0; made && (name = lists[list].name(k)); k++) {
+            PyObject *const text = list > 0 || narc_isa_supported(name) ? PyUnicode_FromString(name) : NULL;
+            if (text && PyList_Append(made, text))
+                PyErr_Clear();
+            Py_XDECREF(text);
+        }
+        put(&names, lists[list].key, made);
+    }
+    return names;
+}
+
 /* know(structure, dtype) */
 static PyObject *know(PyObject *self, PyObject *given) {
     const char *name;
@@ -480,9 +532,14 @@ static PyObject *know(PyObject *self, PyObject *given) {
 }
 
 static PyMethodDef functions[] = {
-    {"layouts", list_layouts, METH_NOARGS, NULL}, {"constants", list_constants, METH_NOARGS, NULL},
-    {"get_isa", get_isa, METH_NOARGS, NULL},      {"set_isa", set_isa, METH_O, NULL},
-    {"know", know, METH_VARARGS, NULL},           {NULL, NULL, 0, NULL}};
+    {"layouts", list_layouts, METH_NOARGS, NULL},
+    {"constants", list_constants, METH_NOARGS, NULL},
+    {"get_isa", get_isa, METH_NOARGS, "The name of the instruction set in use."},
+    {"set_isa", set_isa, METH_O,
+     "Chooses the instruction set for all later calls, such as \"avx2\" or \"scalar\"; None: the best."},
+    {"know", know, METH_VARARGS, NULL},
+    {"names", list_names, METH_NOARGS, NULL},
+    {NULL, NULL, 0, NULL}};
 
 static bool add(PyObject *module, const char *name, PyObject *value) {
     return value && PyModule_AddObjectRef(module, name, value) == 0;

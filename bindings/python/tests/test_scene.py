@@ -73,6 +73,35 @@ def test_arcs_move_and_parts_have_a_mass():
     assert np.allclose(narc.place_parts(owners, parts, np.zeros(2, np.uint32))["xy"], [[5, 6], [3, 5]], atol=1e-6)
 
 
+def test_lists_of_arcs_are_asked():
+    shapes = narc.Shapes()
+    arcs = shapes.arcs(shapes.box(4, 2))
+    narc.validate_arcs(arcs)
+    with pytest.raises(narc.Error):
+        narc.validate_arcs(arcs[:3])
+    assert narc.perimeter(arcs) == pytest.approx(12) and narc.inscribed_circle(arcs)["radius"] == pytest.approx(1)
+    assert narc.bounding_circle(arcs)["radius"] == pytest.approx(5**0.5)
+    assert np.allclose(narc.bounding_box(arcs, np.pi / 2)["max"], [1, 2])
+    points = np.array([[0, 0], [3, 0], [2, 1], [-1.5, 0.5]])
+    assert np.allclose(narc.depths(arcs, points), [-1, 1, 0, -0.5]) and list(narc.contains(arcs, points)) == [1, 0, 1, 1]
+    point, arc = narc.support(arcs, (1, 1))
+    assert np.allclose(point, [2, 1]) and np.allclose(arcs[arc]["center"], point)
+    assert np.allclose(narc.mirror(narc.move(arcs, (3, 0)))["center"].mean(0), [-3, 0])
+    assert np.allclose(narc.mass(narc.center(narc.move(arcs, (3, 1))))["centroid"], 0)
+    ring = np.array([[0, 0], [4, 0], [4, 3], [2, 3.001], [0, 3]])
+    assert len(narc.weld(ring, 0.01)) == 4
+    junctions = narc.adjust([[0, 0], [4, 0], [4, 3], [0, 3]])
+    least, most, chosen = narc.radius_range(junctions)
+    assert least < chosen < most and shapes.arcs(shapes.smooth(junctions, chosen))[0]["radius"] == pytest.approx(chosen)
+    assert shapes.mass(shapes.four_arc(5, 5, 8, 0.25, 0.25))["area"] > 1
+    assert shapes.add(arcs, shape=40) == 40 and shapes.uses(40) == 1
+    with pytest.raises(narc.Error) as caught:
+        shapes.add(arcs, shape=40)
+    assert caught.value.status == "NARC_ERROR_IN_USE"
+    cosine, sine = narc.poses([0.0, np.pi / 2])
+    assert np.allclose(cosine, [1, 0], atol=1e-7) and np.allclose(sine, [0, 1])
+
+
 def test_shapes_are_pickled():
     shapes = narc.Shapes()
     shapes.circle(1), shapes.ellipse(3, 1)
@@ -120,6 +149,13 @@ def test_rays_meet_circles_where_a_formula_says(random):
     assert hit.sum() > 200 and (hits["count"][clear] == (first[clear] < 1)).all()
     assert np.allclose(hits["fraction"][hit], first[hit], atol=1e-5)
     assert (hits["body"][hit] == fraction.argmin(1)[hit]).all()
+    again = narc.rays(shapes, bodies, start, motion, hits["body"], inside=2)
+    assert (again["fraction"] == hits["fraction"])[hits["count"] == 1].all()
+    far = narc.bodies(bodies["xy"] + 1e9, shape=bodies["shape"])
+    same = narc.Index(shapes, far, origin=(1e9, 1e9)).rays(start + 1e9, motion, inside=2)
+    assert (same["body"] == hits["body"])[hit].mean() > 0.99
+    with pytest.raises(TypeError, match="options.origin"):
+        narc.Index(shapes, far, origin=(1, "far"))
     fan = index.rays((30, 30), motion, most=3, threads=3)
     assert fan.shape == (500, 3) and (fan["fraction"][:, 1] >= fan["fraction"][:, 0])[fan["count"][:, 1] == 1].all()
     assert index.rays(np.float32([[30, 30]]), motion[:1]).shape == (1,)
@@ -139,13 +175,22 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     masks = np.where(np.arange(len(bodies)) % 2, 1, 2).astype(np.uint64)
     odd = narc.Index(shapes, bodies, category=masks).nearest(points, mask=1)
     assert (odd["body"] % 2 == 1).all()
+    with pytest.raises(ValueError, match="owners.owner has 3 items"):
+        index.nearest(points, owners={"owner": np.zeros(3, np.uint32)})
     boxes = np.float32([[0, 0, 10, 10], [50, 50, 70, 70]])
     found = index.regions(boxes)
     inside = [((bodies["xy"] >= box[:2] - 1) & (bodies["xy"] <= box[2:] + 1)).all(1) for box in boxes]
     assert (found == np.argwhere(inside)).all()
+    deep = narc.inside(shapes, bodies, points, near["body"])
+    assert (deep == (near["separation"] < 0))[np.abs(near["separation"]) > 1e-4].all() and deep.any()
+    bodies["xy"][:100] += 100
+    index.update(changed=np.arange(100))
+    assert (index.regions(boxes) == [row for row in found if row[1] >= 100]).all()
     bodies["xy"] += 100
     index.update()
     assert len(index.regions(boxes)) == 0 and repr(index) == "<narc.Index of 400 bodies>"
+    index.update(bodies[:50].copy())
+    assert len(index) == 50 and index.statistics()["bodies"] == 50
 
 
 def test_casts_hit_when_circles_meet():
@@ -172,6 +217,8 @@ def test_steps_have_the_rows_of_batches(scene):
         assert len(set(r.slots)) == len(r.slots) and (r.rows["pair"] == r.slots).all()
         if step == 0:
             assert len(r.began) == len(r.slots) and len(r.ended) == 0
+    body = int(r.pairs[0, 0])
+    assert set(r.slots[(r.pairs == body).any(1)]) <= set(contacts.slots_of(body))
     data = contacts.save()
     again = narc.Contacts()
     assert again.load(scene.shapes, data).rows.tobytes() == r.rows.tobytes()
@@ -180,6 +227,8 @@ def test_steps_have_the_rows_of_batches(scene):
     assert all(np.array_equal(a, b) for a, b in zip(one, other))
     still = np.full(len(scene.bodies), narc.CONSTANTS["NARC_STATIC"], np.uint8)
     contacts.forget()
+    one_thing = np.zeros(len(scene.bodies), np.uint32)
+    assert len(contacts.update(scene.shapes, scene.bodies, owner=one_thing).slots) == 0
     assert len(contacts.update(scene.shapes, scene.bodies, margin=0.02, kind=still).slots) == 0
     with pytest.raises(ValueError, match="rows is"):
         narc.Contacts("points")
@@ -193,6 +242,7 @@ def test_a_child_of_fork_answers(scene):
     assert os.waitpid(child, 0)[1] == 0
 
 
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer keeps memory for a while")
 def test_memory_comes_back(scene):
     pairs = narc.pairs(scene.shapes, scene.bodies).astype(np.int64)
 

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Is everything that the headers declare there from Python, or left out for a reason?"""
+
+import ctypes
+import pathlib
+import re
+import textwrap
+
+import pytest
+
+import narc
+
+HERE = pathlib.Path(__file__).parent.parent
+INCLUDE = HERE.parent.parent / "include"
+
+# Python has these itself, or needs them not.
+OWN = """create_shapes destroy_shapes create_index destroy_index create_contacts destroy_contacts create_broad_phase
+destroy_broad_phase get_layout get_constant find_layout write_layouts view_bodies openmp_workers copy_pairs status_name version
+reserve_shapes get_aabb""".split()
+LIBRARIES = ["narc_files.h", "narc_fit.h", "narc_methods.h"]
+
+
+@pytest.mark.skipif(not INCLUDE.exists(), reason="the headers are not here")
+def test_all_functions_are_called():
+    declared = set()
+    for header in INCLUDE.glob("narc*.h"):
+        if header.name not in LIBRARIES:
+            text = re.sub(r"/\*.*?\*/", "", header.read_text(), flags=re.S)
+            declared.update(re.findall(r"NARC_API[^;(]*?\bnarc_(\w+)\(", text))
+    sources = "".join(path.read_text() for path in (HERE / "src").glob("*.*"))
+    called = set(re.findall(r"\bnarc_(\w+)\b", sources))
+    used = set(re.findall(r"_narc\.(\w+)", "".join(path.read_text() for path in (HERE / "narc").glob("*.py"))))
+    assert len(declared) > 90
+    assert sorted(declared - called - set(OWN)) == []
+    table = set(re.findall(r"^CALL\((\w+),", sources, flags=re.M))
+    assert sorted(table - used) == []
+
+
+def test_functions_of_c_are_not_shown_to_others():
+    library = ctypes.CDLL(narc._narc.__file__)
+    assert hasattr(library, "PyInit__narc") and not hasattr(library, "narc_version")
+
+
+def test_the_first_page_runs():
+    scope: dict = {}
+    for text in ((HERE / "README.md").read_text().split("```python\n")[1].split("```")[0], narc.__doc__.split("\n\n")[1]):
+        exec(textwrap.dedent(text), scope)
+    assert len(scope["rows"]) > 0 and len(scope["hits"]) == 2
+
+
+def test_what_is_public_has_words():
+    for name in narc.__all__:
+        thing = getattr(narc, name)
+        if callable(thing):
+            assert thing.__doc__ and len(thing.__doc__) > 20, name
+            for method, value in vars(thing).items() if isinstance(thing, type) else ():
+                assert method.startswith("_") or not callable(value) or value.__doc__, f"{name}.{method}"
