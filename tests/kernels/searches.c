@@ -521,13 +521,13 @@ TEST(rays_are_put_in_order) {
         for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
             const narc_rays view = view_rays(rays, count);
             size_t skipped = 0, skipped_too = 1;
-            narc_ray_options asking = ways[way];
-            asking.out_skipped = &skipped;
-            narc_ray_hit *const right = cast_in_room(&room, &view, &asking);
-            asking.out_skipped = &skipped_too;
-            asking.out_order = order;
-            narc_ray_hit *const found = cast_in_room(&room, &view, &asking);
-            assert_memory_equal(found, right, count * (asking.most ? asking.most : 1) * sizeof *found);
+            narc_ray_options chosen = ways[way];
+            chosen.out_skipped = &skipped;
+            narc_ray_hit *const right = cast_in_room(&room, &view, &chosen);
+            chosen.out_skipped = &skipped_too;
+            chosen.out_order = order;
+            narc_ray_hit *const found = cast_in_room(&room, &view, &chosen);
+            assert_memory_equal(found, right, count * (chosen.most ? chosen.most : 1) * sizeof *found);
             assert_int_equal(skipped, skipped_too);
             memset(asked, 0, count * sizeof *asked);
             for (size_t k = 0; k < count; k++) {
