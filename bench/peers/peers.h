@@ -23,8 +23,9 @@ struct asked {
     const struct pair *pairs; /* "contact", "overlap": uint8_t, do they collide? */
     const struct ray *rays;   /* "ray": float, the fraction of the first hit, above 1 if there is none. Bodies that it
                                  * starts in do not count */
-    const narc_box *regions;  /* "region": uint64_t, pairs region << 32 | body; returns how many. "move": of all bodies, */
-    const uint32_t *moved;    /* of which these have moved */
+    const narc_box
+        *regions;          /* "region": uint64_t, pairs region << 32 | body; returns how many. "move": of all bodies, */
+    const uint32_t *moved; /* of which these have moved */
     const struct outline *polygon; /* "impact" of bodies 2 k and 2 k + 1: float, when they meet, above 1 if never */
     const narc_body *bodies;
     const struct motion *motions;

@@ -124,8 +124,8 @@ INLINE vm judge_two_circles(const struct call *call, const struct box_form *a, c
 
 /* Pairs with a circle, in the lanes `which`: returns those that are known, `*out_near` of which may have a contact. */
 INLINE vm judge_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
-                        const struct placement *placement, vm which, int32_t number, enum circle_pairs of,
-                        vm *out_near, struct circle_pair *out) {
+                        const struct placement *placement, vm which, int32_t number, enum circle_pairs of, vm *out_near,
+                        struct circle_pair *out) {
     if (of == TWO_CIRCLES)
         return judge_two_circles(call, a, b, placement, which, number, out_near, out);
     const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
@@ -139,7 +139,8 @@ INLINE vm judge_circles(const struct call *call, const struct box_form *a, const
     const vec2 half = choose_side_vec2(of, is_a, b->half, a->half);
     const vf scale = choose_side(of, is_a, pose->scale_b, pose->scale_a);
     const vf radius_a = v_mul(a->radius, pose->scale_a), radius_b = v_mul(b->radius, pose->scale_b);
-    const vf radius = choose_side(of, is_a, radius_b, radius_a), radius_circle = choose_side(of, is_a, radius_a, radius_b);
+    const vf radius = choose_side(of, is_a, radius_b, radius_a),
+             radius_circle = choose_side(of, is_a, radius_a, radius_b);
     const vf radii = v_add(radius_a, radius_b);
     const vec2 size = v2_scale(half, scale), p = choose_side_vec2(of, is_a, (vec2){v_neg(t_b.x), v_neg(t_b.y)}, t);
     const vf beyond_x = v_sub(v_abs(p.x), size.x), beyond_y = v_sub(v_abs(p.y), size.y);

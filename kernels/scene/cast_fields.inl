@@ -38,11 +38,11 @@ typedef struct narc_casts {
     union {
         struct {
             struct narc_cast_side side[2]; /* A, B */
-            float target[CAST_SLOTS];      /* the caller's; below that where it is let go, and above at the end of that */
-            float time[CAST_SLOTS];        /* where it is now */
-            float back[CAST_SLOTS];        /* where it was to go, had it not tried to go further; CAST_FREE: it has not;
+            float target[CAST_SLOTS]; /* the caller's; below that where it is let go, and above at the end of that */
+            float time[CAST_SLOTS];   /* where it is now */
+            float back[CAST_SLOTS];   /* where it was to go, had it not tried to go further; CAST_FREE: it has not;
                                          CAST_DIRECT: it went too far once, and tries no more */
-            float rounds[CAST_SLOTS];      /* contacts so far */
+            float rounds[CAST_SLOTS]; /* contacts so far */
             uint32_t pair[CAST_SLOTS], body[CAST_SLOTS]; /* its number, and that of B */
         };
         float single[20][CAST_SLOTS];
