@@ -60,7 +60,6 @@ typedef struct narc_casts {
     /* What does not move: where they are at their times, A at the origin, and what touches there. */
     float x_now[CAST_SLOTS], y_now[CAST_SLOTS], cosine_now[2][CAST_SLOTS], sine_now[2][CAST_SLOTS];
     double turned_x[2][CAST_SLOTS], turned_y[2][CAST_SLOTS];
-    float looked[CAST_SLOTS]; /* these times; only kept where bodies are let go */
     narc_contact contact[CAST_SLOTS];
     size_t count;
     bool front_only; /* the caller's */

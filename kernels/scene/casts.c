@@ -46,7 +46,9 @@ struct cast_call {
     enum pose_layout layout[2];
     bool own, pieces; /* do pairs bring their own bodies; are there pieces of chains? */
     bool lets_go;     /* what is at its target at the start */
-    size_t skipped;   /* pairs without an answer */
+    float
+        looked[V_WIDTH]; /* times at which those were looked at that are advanced; only kept where bodies are let go */
+    size_t skipped;      /* pairs without an answer */
 };
 
 /* ------------------------------------------------------------------------------------------------ rows */
@@ -120,21 +122,22 @@ INLINE bool is_let_go(const narc_cast_batch *given, const narc_casts *casts, siz
 /* Lets go what is at its target at the start. Its target is deeper by `parting` from then on, until it is seen clear of the
  * caller's: nothing that does not turn comes back from there, as separations are convex in time. What comes so deep before
  * hits at the start, which is looked at once more with a target that all have reached. */
-static int let_go(const narc_cast_batch *given, narc_casts *casts, size_t slot, int outcome) {
-    const float separation = casts->contact[slot].separation, enough = (float)casts->enough[slot],
-                wanted = find_target(given, casts, slot), target = casts->target[slot];
+static int let_go(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
+    const narc_cast_batch *const given = call->given;
+    const float looked = call->looked[slot % V_WIDTH], separation = casts->contact[slot].separation,
+                enough = (float)casts->enough[slot], wanted = find_target(given, casts, slot),
+                target = casts->target[slot];
     const bool is_gone = target < wanted;
     if (outcome == NARC_CAST_HIT && (is_gone || (target <= wanted && !(casts->time[slot] > 0)))) {
         const float deeper = separation - given->parting - enough;
         casts->target[slot] = is_gone ? FLT_MAX : deeper < wanted ? deeper : nextafterf(wanted, -INFINITY);
         casts->time[slot] = 0;
-    } else if (is_gone &&
-               (outcome == NARC_CAST_MISS || (outcome == CAST_GOES_ON && casts->time[slot] >= casts->looked[slot])) &&
+    } else if (is_gone && (outcome == NARC_CAST_MISS || (outcome == CAST_GOES_ON && casts->time[slot] >= looked)) &&
                separation > wanted + enough) {
         if (!(casts->moved[slot] > 0))
             return NARC_CAST_MISS;
         casts->target[slot] = wanted;
-        casts->time[slot] = casts->looked[slot];
+        casts->time[slot] = looked;
     } else
         return outcome;
     casts->back[slot] = CAST_FREE;
@@ -151,7 +154,7 @@ NOINLINE int end_alone(const struct cast_call *call, narc_casts *casts, size_t s
             outcome = cast_pieces(call, casts, slot, outcome);
 #endif
         if (call->lets_go)
-            outcome = let_go(call->given, casts, slot, outcome);
+            outcome = let_go(call, casts, slot, outcome);
     }
     return outcome;
 }
@@ -520,7 +523,7 @@ NOINLINE void advance_casts(struct cast_call *call, narc_casts *casts) {
                 select_steps(straight, &step, &turned);
         }
         if (call->lets_go)
-            v_store(casts->looked + k, v_load(casts->time + k));
+            v_store(call->looked, v_load(casts->time + k));
         v_store(casts->time + k, v_load(step.time));
         v_store(casts->back + k, v_load(step.back));
         v_store(casts->rounds + k, v_load(step.rounds));
