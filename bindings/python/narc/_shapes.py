@@ -93,6 +93,10 @@ class Shapes(_narc.Handle):
         form = np.array([(radius_low, radius_high, distance, radius_left, radius_right)], FOUR_ARC)
         return self.add(_built(_narc.build_four_arc, form))
 
+    def hull(self, xy: ArrayLike, radius: float = 0.0, tolerance: float = 0.0) -> int:
+        """The convex hull of points (n, 2) in any order, with a skin; so far points may stay outside (narc_build_hull())."""
+        return self.add(_built(_narc.build_hull, _points(xy), tolerance, radius))
+
     def smooth(self, xy: ArrayLike, radius: float = 0.0) -> int:
         """The smooth shape whose arcs meet at these points (n, 2), counter-clockwise; `radius` of arc 0: radius_range()."""
         return self.add(_built(_narc.build_points, _points(xy), radius))
@@ -144,14 +148,7 @@ class Shapes(_narc.Handle):
 
     def as_polygon(self, shape: int, tolerance: float = 1e-2) -> NDArray[np.float64]:
         """Points (n, 2) on the outline, counter-clockwise, whose chords are within `tolerance` of it: for plots."""
-        points = []
-        for arc in self.arcs(shape):
-            turn = (arc["end"] - arc["start"]) % (2 * np.pi) or 2 * np.pi
-            step = 2 * np.arccos(max(0.0, 1 - tolerance / arc["radius"])) if arc["radius"] > tolerance else np.pi
-            angles = arc["start"] + turn * np.linspace(0, 1, 2 + int(turn / max(step, 1e-3)))
-            ends = angles[:1] if arc["radius"] == 0 else angles
-            points.append(arc["center"] + arc["radius"] * np.stack([np.cos(ends), np.sin(ends)], axis=1))
-        return np.concatenate(points)
+        return flatten(self.arcs(shape), tolerance)
 
     def __len__(self) -> int:
         """How many numbers were given out, those of removed shapes included."""
@@ -222,6 +219,18 @@ def support(arcs: ArrayLike, direction: ArrayLike) -> tuple[NDArray[np.float64],
     out = np.zeros((1, 2))
     arc = _narc.find_support(_arcs(arcs), x, y, out)
     return out[0], int(arc)
+
+
+def flatten(arcs: ArrayLike, tolerance: float, closed: bool = True) -> NDArray[np.float64]:
+    """Points (n, 2) on the outline of a list of arcs, of ground if it is not closed, whose chords are within `tolerance`."""
+    given = _arcs(arcs)
+    room = 64
+    while True:
+        out = np.zeros((room, 2))
+        count = _narc.flatten_arcs(given, int(closed), tolerance, out)
+        if count <= room:
+            return out[:count]
+        room = count
 
 
 def depths(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.float64]:

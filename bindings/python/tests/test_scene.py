@@ -47,6 +47,14 @@ def test_outlines_are_within_the_tolerance():
             assert 0 <= exact - area <= 35 * tolerance
 
 
+def test_hulls_hold_their_points():
+    xy = np.random.default_rng(5).normal(size=(500, 2))
+    shapes = narc.Shapes()
+    hull = shapes.arcs(shapes.hull(xy, tolerance=1e-3, radius=0.25))
+    assert 3 <= len(hull) <= 64 and (narc.depths(hull, xy) < -0.248).all()
+    assert len(narc.flatten(hull, 1e-4)) > 64 and len(narc.flatten(hull[:1], 1e-4, closed=False)) >= 2
+
+
 def test_what_is_no_shape_is_refused():
     shapes = narc.Shapes()
     for call, words in ((lambda: shapes.box(-1, 2), "width is -1"), (lambda: shapes.polygon([[0, 0], [1, 0]]), "points"),
