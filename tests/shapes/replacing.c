@@ -50,7 +50,7 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
             used += narc_count_records(&shapes->headers[k]);
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
             expect_same_shape(shapes, k, &model->shape[k]);
-            boxes += shapes->boxes[k].info != 0;
+            boxes += narc_has_form(&shapes->boxes[k]);
         } else {
             assert_int_equal(shapes->boxes[k].info, 0);
             narc_aabb box;

@@ -141,9 +141,14 @@ static narc_box_form find_form(const narc_arc *arcs, size_t count) {
     narc_shapes *shapes = empty_store();
     assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
     const narc_box_form form = shapes->boxes[0];
-    assert_int_equal(shapes->box_count, form.info != 0);
+    assert_int_equal(shapes->box_count, narc_has_form(&form));
     narc_destroy_shapes(shapes);
     return form;
+}
+
+static bool is_none_of_these(const narc_arc *arcs, size_t count) {
+    const narc_box_form form = find_form(arcs, count);
+    return !narc_has_form(&form);
 }
 
 static void expect_form(const struct shape *shape, float half_x, float half_y, float radius, uint32_t info) {
@@ -185,7 +190,7 @@ TEST(knows_boxes) {
             shape = box_of(4, 2, 1); /* a capsule of four arcs */
         if (change == 5)
             shape = box_of(4, 2, 0.9999999); /* its short sides are no edges */
-        assert_int_equal(find_form(shape.arcs, shape.count).info, 0);
+        assert_true(is_none_of_these(shape.arcs, shape.count));
     }
 }
 
@@ -199,10 +204,10 @@ TEST(knows_circles) {
     for (int axis = 0; axis < 2; axis++) {
         circle = circle_of(2);
         *(axis ? &circle.arcs[0].center_y : &circle.arcs[0].center_x) = 1e-6;
-        assert_int_equal(find_form(circle.arcs, circle.count).info, 0);
+        assert_true(is_none_of_these(circle.arcs, circle.count));
     }
     circle = capsule_of(0, 2); /* two half circles */
-    assert_int_equal(find_form(circle.arcs, circle.count).info, 0);
+    assert_true(is_none_of_these(circle.arcs, circle.count));
 }
 
 /* Capsules along the x axis about their origin, listed from either end, with the signs of the zeros in their normals;
@@ -231,8 +236,29 @@ TEST(knows_capsules) {
         }
         if (change == 4)
             shape = capsule_of(1e-7, 1); /* its sides are no edges */
-        assert_int_equal(find_form(shape.arcs, shape.count).info, 0);
+        assert_true(is_none_of_these(shape.arcs, shape.count));
     }
+}
+
+/* Of 3 to NARC_FORM_CORNERS corners that have one radius; what is a box is that. */
+TEST(knows_polygons) {
+    for (size_t corners = 3; corners <= NARC_FORM_CORNERS + 1; corners++)
+        for (int change = 0; change < 3; change++) {
+            struct shape shape;
+            assert_int_equal(narc_build_regular_polygon(corners, 2, 0.25 * change, shape.arcs, &shape.count, NULL),
+                             NARC_OK);
+            const bool is = corners <= NARC_FORM_CORNERS && change < 2;
+            if (change == 2) { /* one corner is rounder than the others, its sides where they were */
+                shape.arcs[0].radius = 0.75;
+                shape.arcs[0].center_x -= 0.25 / cos(3.14159265358979323846 / (double)corners);
+            }
+            assert_true(is_none_of_these(shape.arcs, shape.count));
+            assert_int_equal(find_form(shape.arcs, shape.count).info, is ? NARC_IS_POLYGON : 0);
+        }
+    struct shape box = box_of(4, 2, 0), smooth;
+    assert_int_equal(find_form(box.arcs, box.count).info, NARC_IS_BOX);
+    assert_int_equal(narc_build_ellipse(2, 1, 8, smooth.arcs, &smooth.count, NULL, NULL), NARC_OK);
+    assert_int_equal(find_form(smooth.arcs, smooth.count).info, 0);
 }
 
 /* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
