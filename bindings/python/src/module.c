@@ -314,9 +314,12 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
     case DOUBLE:
         f->d[k] = PyFloat_AsDouble(given);
         return !PyErr_Occurred();
-    case SIZE:
-        f->n[k] = PyLong_AsSize_t(given);
+    case SIZE: {
+        PyObject *const whole = PyNumber_Index(given);
+        f->n[k] = whole ? PyLong_AsSize_t(whole) : 0;
+        Py_XDECREF(whole);
         return !PyErr_Occurred();
+    }
     default:
         return frame_workers(f, given, (const narc_workers **)&f->p[k]);
     }
@@ -437,7 +440,8 @@ static PyObject *invoke(PyObject *self, PyObject *const *given, Py_ssize_t count
             PyEval_RestoreThread(state);
             made = make_result(&f, s, status);
         }
-    }
+    } else if (!PyErr_Occurred())
+        raise_error(&f.error, f.error.status);
     give_handles_back(&f, s);
     frame_end(&f);
     return made;
