@@ -17,15 +17,15 @@ from ._batch import (bodies, box_pairs, boxes, contact, contacts, manifold, mani
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
 from ._scene import Contacts, Index, Step, casts, distances, inside, rays
-from ._shapes import (Shapes, adjust, bounding_box, bounding_circle, center, contains, depths, inscribed_circle, mass, mirror,
-                      move, outlines, perimeter, radius_range, support, union_mass, validate_arcs, weld)
+from ._shapes import (Shapes, adjust, bounding_box, bounding_circle, center, contains, depths, flatten, inscribed_circle, mass,
+                      mirror, move, outlines, perimeter, radius_range, support, union_mass, validate_arcs, weld)
 from ._tables import (AABB, ARC, BODY, BOX, CHAIN_ENTRY, CIRCLE, CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, MASS, RAY_HIT,
                       REFINED_CONTACT, TOUCH_EVENT)
 
 __all__ = ["AABB", "ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "CONTACT", "Contacts", "DISTANCE", "Error",
            "IMPACT", "Index", "MANIFOLD", "MASS", "NoAnswer", "OutOfRange", "RAY_HIT", "REFINED_CONTACT", "Shapes", "Step",
            "TOUCH_EVENT", "__version__", "adjust", "bodies", "bounding_box", "bounding_circle", "box_pairs", "boxes",
-           "casts", "center", "contact", "contacts", "contains", "depths", "distances", "get_isa", "inscribed_circle", "inside",
-           "manifold", "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter",
+           "casts", "center", "contact", "contacts", "contains", "depths", "distances", "flatten", "get_isa", "inscribed_circle",
+           "inside", "manifold", "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter",
            "place_parts", "poses", "radius_range", "rays", "refine", "separations", "set_isa", "support", "union_mass",
            "validate", "validate_arcs", "weld"]

@@ -79,6 +79,11 @@ class Shapes(_narc.Handle):
             return self.add(_built(_narc.build_skin_polygon, _points(xy), skin))
         return self.add(_built(_narc.build_polygon, _points(xy), radius))
 
+    def hull(self, xy: ArrayLike, *, tolerance: float = 0.0, skin: float = 0.0) -> int:
+        """The convex hull of points (n, 2) in any order, and all within `skin` of it; corners that are within `tolerance` of the
+        others' hull are left out."""
+        return self.add(_built(_narc.build_hull, _points(xy), tolerance, skin))
+
     def regular(self, corners: int, circumradius: float, radius: float = 0.0) -> int:
         """A regular polygon around the origin, corner 0 at (circumradius, 0)."""
         return self.add(_built(_narc.build_regular_polygon, corners, circumradius, radius))
@@ -144,14 +149,7 @@ class Shapes(_narc.Handle):
 
     def as_polygon(self, shape: int, tolerance: float = 1e-2) -> NDArray[np.float64]:
         """Points (n, 2) on the outline, counter-clockwise, whose chords are within `tolerance` of it: for plots."""
-        points = []
-        for arc in self.arcs(shape):
-            turn = (arc["end"] - arc["start"]) % (2 * np.pi) or 2 * np.pi
-            step = 2 * np.arccos(max(0.0, 1 - tolerance / arc["radius"])) if arc["radius"] > tolerance else np.pi
-            angles = arc["start"] + turn * np.linspace(0, 1, 2 + int(turn / max(step, 1e-3)))
-            ends = angles[:1] if arc["radius"] == 0 else angles
-            points.append(arc["center"] + arc["radius"] * np.stack([np.cos(ends), np.sin(ends)], axis=1))
-        return np.concatenate(points)
+        return flatten(self.arcs(shape), tolerance)
 
     def __len__(self) -> int:
         """How many numbers were given out, those of removed shapes included."""
@@ -238,6 +236,19 @@ def contains(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.bool_]:
     out = np.zeros(len(points), np.bool_)
     _narc.contains_point(_arcs(arcs), points, out)
     return out
+
+
+def flatten(arcs: ArrayLike, tolerance: float, *, closed: bool = True, body: np.void | None = None) -> NDArray[np.float64]:
+    """Points (n, 2) on an outline, or with `closed` false on a chain, whose chords are within `tolerance` of it. `body`: where they
+    are wanted, a row of narc.BODY."""
+    given = _arcs(arcs)
+    room = 8 * len(given) + 16
+    while True:
+        out = np.zeros((room, 2))
+        count = _narc.flatten_arcs(given, closed, body, tolerance, out)
+        if count <= room:
+            return out[:count]
+        room = count
 
 
 def weld(xy: ArrayLike, tolerance: float) -> NDArray[np.float64]:
