@@ -518,6 +518,8 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     move_origin(broad, step, last_count);
     const bool listed = (step->moved.base || step->moved.stride) && may_trust(&u, shapes);
     status = narc_compute_step_boxes(broad, shapes, step, listed, error);
+    if (status != NARC_OK && broad->reframed)
+        narc_forget_poses(broad); /* their boxes are from another origin */
     return status == NARC_OK ? finish(&u, listed, out_list) : status;
 }
 

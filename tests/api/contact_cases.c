@@ -819,6 +819,26 @@ TEST(an_origin_that_moves_keeps_everything) {
     }
 }
 
+/* A step that is refused while its origin moves: the next one finds what comes, though all others stand where they stood. */
+TEST(a_step_that_is_refused_forgets_no_origin) {
+    struct few *const few = make_crowd(0, 0);
+    narc_point origin = {0, 0};
+    few->step.origin = &origin;
+    step_few(few);
+    for (int k = 1; k < 4; k++) {
+        const narc_step_result *r;
+        narc_error error;
+        origin.x = 1e6 * k;
+        few->body[599].shape = 7;
+        expect_error(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_INDEX, &error,
+                     "body 599: shape is 7");
+        few->body[599].shape = few->body[0].shape;
+        few->body[20 * k].x += 1.5; /* over the next one */
+        assert_true(step_few(few)->began_count > 0);
+    }
+    destroy_few(few);
+}
+
 /* Contacts that were saved go on from their boxes' origin. */
 TEST(the_origin_is_saved) {
     struct few *const few = make_crowd(1e7, 1e7);

@@ -49,7 +49,8 @@ def validate(shapes: Shapes, bodies: Bodies) -> None:
 
 
 def boxes(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, threads: int = 1, **options: Any) -> Rows:
-    """The boxes of all bodies, rows of narc.BOX with `min` and `max`. `options` are those of narc_box_options: motion (n, 2)."""
+    """The boxes of all bodies, rows of narc.BOX with `min` and `max`. `options` are those of narc_box_options: motion (n, 2),
+    origin."""
     out = np.zeros(count_of(bodies), BOX)
     _narc.compute_boxes(shapes, bodies, {"margin": margin, "workers": threads, **options}, out)
     return out
@@ -57,7 +58,7 @@ def boxes(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, threads: int =
 
 def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[np.uint32]:
     """All pairs a < b of boxes that overlap, (m, 2), in order. `boxes`: rows of narc.BOX, or of four float32. `filters` are
-    the columns of narc_pair_filter: kind, category, mask, owner."""
+    the columns of narc_pair_filter: kind, category, mask, owner, world."""
     broad = _narc.Handle("BroadPhase")
     room = 4 * len(boxes) + 16  # type: ignore[arg-type]
     while True:

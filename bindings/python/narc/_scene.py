@@ -33,11 +33,12 @@ def _rays(xy: ArrayLike, motion: Any, fraction: Any) -> dict[str, Any]:
 
 class Index(_narc.Handle):
     """A tree over the boxes of bodies, for questions to a scene. It keeps the bodies, not a copy: update() after they have
-    moved. `options` are those of narc_index_options: category, 64 bits for each body, which `mask` of a question selects; fast;
-    origin, a place (x, y) near bodies that are far from (0, 0).
+    moved. `options` are those of narc_index_options: category, 64 bits for each body, which `mask` of a question selects; world,
+    a number for each body, of which `world` of a question selects one; fast; origin, a place (x, y) near bodies that are far
+    from (0, 0).
 
     Questions go through all bodies, or those that options of narc_index_query select, for each question: mask, 64 bits;
-    ignored, a body; owners, {"owner": of each body, "ignored": of each question}, which says what bodies are one thing."""
+    world; ignored, a body; owners, {"owner": of each body, "ignored": of each question}, which says what bodies are one thing."""
 
     _shapes: Shapes
     _bodies: Bodies
@@ -45,18 +46,19 @@ class Index(_narc.Handle):
 
     def __new__(cls, shapes: Shapes, bodies: Bodies, *, threads: int = 1, **options: Any) -> Index:
         self = super().__new__(cls, "Index")
-        self._shapes, self._bodies = shapes, bodies
-        self._options = {**options, "workers": threads}
-        _narc.build_index(self, self._boxes(), self._options)
+        self._shapes, self._bodies, self._options = shapes, bodies, {**options, "workers": threads}
+        _narc.build_index(self, self._boxes(bodies, self._options), self._options)
         return self
 
-    def _boxes(self) -> Rows:
-        return boxes(self._shapes, self._bodies, origin=self._options.get("origin"), threads=self._options["workers"])
+    def _boxes(self, bodies: Bodies, options: dict[str, Any]) -> Rows:
+        return boxes(self._shapes, bodies, origin=options.get("origin"), threads=options["workers"])
 
-    def update(self, bodies: Bodies = None, changed: Any = None) -> None:
-        """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were."""
-        self._bodies = self._bodies if bodies is None else bodies
-        _narc.update_index(self, self._boxes(), changed, self._options)
+    def update(self, bodies: Bodies = None, changed: Any = None, **options: Any) -> None:
+        """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were.
+        `options` are those that are others from now on, such as columns for more bodies."""
+        bodies, options = self._bodies if bodies is None else bodies, {**self._options, **options}
+        _narc.update_index(self, self._boxes(bodies, options), changed, options)
+        self._bodies, self._options = bodies, options
 
     def statistics(self) -> np.void:
         """How the tree is: boxes, bodies, nodes, leaves, depth, bytes, mean_perimeter, slack."""
@@ -100,7 +102,7 @@ class Index(_narc.Handle):
 
     def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, threads: int = 1, **options: Any) -> Rows:
         """What each mover hits first on its way, `motion` (n, 2) of float32 while it turns by `angle`: rows of narc.IMPACT.
-        `options` are those of narc_cast_options: target, tolerance, targets, front_only."""
+        `options` are those of narc_cast_options: target, tolerance, targets, front_only, parting."""
         out = np.zeros(count_of(movers), IMPACT)
         search, options = _search(options, threads)
         _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle}, search, options or None, out)
@@ -180,7 +182,7 @@ class Contacts(_narc.Handle):
                threads: int = 1, **options: Any) -> Step:
         """A step: finds what is near, asks again what has moved, and tells what began and ended. `options` are those of
         narc_step: second_margin, flat_angle, front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs, origin; and
-        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner."""
+        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner, world."""
         filters, options = split(options, "narc_pair_filter")
         step = _narc.update_contacts(self, shapes, bodies, {"margin": margin, "skin": skin, "recycling": recycling,
                                                             "filter": filters, "workers": threads, **options})

@@ -221,13 +221,14 @@ def support(arcs: ArrayLike, direction: ArrayLike) -> tuple[NDArray[np.float64],
     return out[0], int(arc)
 
 
-def flatten(arcs: ArrayLike, tolerance: float, closed: bool = True) -> NDArray[np.float64]:
-    """Points (n, 2) on the outline of a list of arcs, of ground if it is not closed, whose chords are within `tolerance`."""
+def flatten(arcs: ArrayLike, tolerance: float, closed: bool = True, *, body: np.void | None = None) -> NDArray[np.float64]:
+    """Points (n, 2) on the outline of a list of arcs, of ground if it is not closed, whose chords are within `tolerance`; where
+    `body` is, a row of narc.BODY."""
     given = _arcs(arcs)
     room = 64
     while True:
         out = np.zeros((room, 2))
-        count = _narc.flatten_arcs(given, int(closed), tolerance, out)
+        count = _narc.flatten_arcs(given, int(closed), body, tolerance, out)
         if count <= room:
             return out[:count]
         room = count

@@ -69,15 +69,23 @@ static PyObject *dtype_name;
 bool frame_know(PyObject *dtype, const narc_layout *layout) {
     if (!dtype_name)
         dtype_name = PyUnicode_InternFromString("dtype");
-    if (!dtype_name || !layout || known_count == MOST_KNOWN)
+    if (!dtype_name || !layout)
         return false;
+    int k = 0; /* a module that is loaded again has types of its own */
+    while (k < known_count && known[k].layout != layout)
+        k++;
+    if (k == MOST_KNOWN)
+        return false;
+    known_count += k == known_count;
+    PyObject *const old = known[k].dtype;
     Py_INCREF(dtype);
-    known[known_count].dtype = dtype;
-    known[known_count++].layout = layout;
+    known[k].dtype = dtype;
+    known[k].layout = layout;
+    Py_XDECREF(old);
     return true;
 }
 
-/* What an array's rows are, if their type is one that is known. */
+/* What an array's rows are, if their type is one that is known; as the array says. */
 static const narc_layout *find_known(PyObject *array) {
     PyObject *const dtype = PyObject_GetAttr(array, dtype_name);
     const narc_layout *layout = NULL;
@@ -123,7 +131,7 @@ static uint64_t read_whole(const char *at, size_t size, bool with_sign) {
     }
 }
 
-/* Whole numbers of another size, converted to a column's own. */
+/* Whole numbers of another size, converted to a column's own. NULL, with an error: Python's, or the frame's own. */
 static const void *convert(frame *f, const numbers *from, size_t size, const char *path) {
     const Py_ssize_t count = from->count < 0 ? 1 : from->count;
     char *const made = f->memory_count < MOST_BUFFERS ? PyMem_Malloc((size_t)count * size + 1) : NULL;
@@ -135,7 +143,11 @@ static const void *convert(frame *f, const numbers *from, size_t size, const cha
         const uint64_t value = read_whole(from->base + k * from->stride, from->item.size, with_sign);
         if ((with_sign && value >> 63) || (size == 4 && value > UINT32_MAX)) {
             const char *const format = with_sign ? "%s: item %zd is %lld" : "%s: item %zd is %llu";
-            return PyErr_Format(PyExc_IndexError, format, path, k, (unsigned long long)value);
+            f->error = (narc_error){.status = NARC_ERROR_INDEX,
+                                    .index = (size_t)k,
+                                    .value = with_sign ? (double)(int64_t)value : (double)value};
+            PyOS_snprintf(f->error.message, sizeof f->error.message, format, path, k, (unsigned long long)value);
+            return NULL;
         }
         const uint32_t small = (uint32_t)value;
         memcpy(made + (size_t)k * size, size == 4 ? (const void *)&small : (const void *)&value, size);
@@ -203,6 +215,14 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
     return true;
 }
 
+/* Python's numbers, and NumPy's. */
+static unsigned long long read_unsigned(PyObject *given) {
+    PyObject *const whole = PyNumber_Index(given);
+    const unsigned long long value = whole ? PyLong_AsUnsignedLongLong(whole) : 0;
+    Py_XDECREF(whole);
+    return value;
+}
+
 /* One number for all: as the column's own type. */
 static bool set_constant(frame *f, const char *type, void *column, PyObject *given, const char *path) {
     numbers one = {.count = -1, .item = {.order = '@', .size = 8, .code = 'd'}};
@@ -218,7 +238,7 @@ static bool set_constant(frame *f, const char *type, void *column, PyObject *giv
         } else
             memcpy(room, &value, sizeof value);
     } else {
-        const unsigned long long value = PyLong_AsUnsignedLongLong(given);
+        const unsigned long long value = read_unsigned(given);
         one.item.code = 'Q';
         memcpy(room, &value, sizeof value);
         if (is_member(type, "narc_byte_column")) {
@@ -268,6 +288,10 @@ bool frame_column(frame *f, const char *type, void *column, size_t *out_count, P
     if (!PyObject_CheckBuffer(given))
         return set_constant(f, type, column, given, f->argument);
     const Py_buffer *const view = frame_view(f, given, PyBUF_RECORDS_RO);
+    item one;
+    if (view && view->ndim == 0 && is_member(type, "narc_float_column") && find_item(view->format, NULL, &one) &&
+        one.code != 'f') /* a number as Python's own */
+        return set_constant(f, type, column, given, f->argument);
     if (!view || !take_column(f, type, column, view, 1, 0, group, f->argument))
         return false;
     *out_count = view->ndim ? (size_t)view->shape[0] : 1;
@@ -307,7 +331,7 @@ static bool set_number(void *place, const char *type, size_t size, PyObject *giv
     } else if (is_member(type, "double")) {
         *(double *)place = PyFloat_AsDouble(given);
     } else {
-        const unsigned long long value = PyLong_AsUnsignedLongLong(given);
+        const unsigned long long value = read_unsigned(given);
         if (size == 4 && value <= UINT32_MAX)
             *(uint32_t *)place = (uint32_t)value;
         else if (size == 8)
@@ -437,12 +461,14 @@ static bool fill_mapping(frame *f, const narc_layout *layout, char *structure, P
             return false;
         PyOS_snprintf(path, sizeof path, "%s.%s", f->argument, name);
         bool is_set = value == Py_None;
+        Py_INCREF(value); /* code of the value's own may change the mapping */
         if (m)
             is_set = set_member(f, layout, m, structure, value, group, path);
         else if (!find_two(layout, name, two))
-            return PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name) != NULL;
+            is_set = PyErr_Format(PyExc_TypeError, "%s: there is no %s", f->argument, name) != NULL;
         else if (!is_set)
             is_set = fill_two(f, two, structure, frame_view(f, value, PyBUF_RECORDS_RO), group, path);
+        Py_DECREF(value);
         if (!is_set)
             return false;
     }
@@ -485,6 +511,11 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
         const Py_buffer *const view = frame_view(f, given, rows ? PyBUF_STRIDED_RO : PyBUF_RECORDS_RO);
         if (!view)
             return false;
+        if (rows && (size_t)view->itemsize != rows->size) {
+            PyErr_Format(PyExc_TypeError, "%s: items of %zd bytes are no rows of %s", f->argument, view->itemsize,
+                         rows->name);
+            return false;
+        }
         if (view->ndim == 1 && (rows || (view->format && view->format[0] == 'T'))) {
             if (!fill_records(f, layout, structure, view, rows, group))
                 return false;
@@ -504,7 +535,7 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
 /* ------------------------------------------------------------------------------------------------ workers and rows */
 
 bool frame_workers(frame *f, PyObject *given, const narc_workers **out_workers) {
-    const unsigned long count = given == Py_None ? 1 : PyLong_AsUnsignedLong(given);
+    const unsigned long long count = given == Py_None ? 1 : read_unsigned(given);
     *out_workers = NULL;
     if (PyErr_Occurred() || count == 0 || count > MOST_THREADS) {
         PyErr_Clear();

@@ -2,6 +2,7 @@
  *
  * frame.h - one call from Python to the library: what its arguments are made into, and what is given back when it ends.
  *
+ * What returns false, or NULL, has set an error: Python's, or the frame's own where the library has one for it.
  * Nothing here knows a structure by heart: the library's table of layouts (narc_layouts.h) says what a structure has, so that
  * a new member can be given from Python at once.
  */

@@ -237,9 +237,10 @@ static bool read_argument(const char *text, argument *out) {
         return true;
     }
     static const char *const words[] = {"double", "size", "threads"};
+    static const type types[] = {DOUBLE, SIZE, THREADS};
     for (int k = 0; k < 3; k++)
         if (strcmp(kind, words[k]) == 0) {
-            out->type = DOUBLE + k;
+            out->type = types[k];
             return true;
         }
     out->layout = narc_find_layout(kind);
@@ -314,9 +315,12 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
     case DOUBLE:
         f->d[k] = PyFloat_AsDouble(given);
         return !PyErr_Occurred();
-    case SIZE:
-        f->n[k] = PyLong_AsSize_t(given);
+    case SIZE: {
+        PyObject *const whole = PyNumber_Index(given);
+        f->n[k] = whole ? PyLong_AsSize_t(whole) : 0;
+        Py_XDECREF(whole);
         return !PyErr_Occurred();
+    }
     default:
         return frame_workers(f, given, (const narc_workers **)&f->p[k]);
     }
@@ -437,7 +441,8 @@ static PyObject *invoke(PyObject *self, PyObject *const *given, Py_ssize_t count
             PyEval_RestoreThread(state);
             made = make_result(&f, s, status);
         }
-    }
+    } else if (!PyErr_Occurred())
+        raise_error(&f.error, f.error.status);
     give_handles_back(&f, s);
     frame_end(&f);
     return made;

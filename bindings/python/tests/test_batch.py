@@ -123,6 +123,23 @@ def test_one_value_is_that_of_all(random):
     assert plain[0].tobytes() == same[0].tobytes() and (plain[1] == same[1]).all()
 
 
+def test_numbers_of_numpy_are_numbers(scene):
+    shapes, bodies = scene.shapes, scene.bodies
+    assert (shapes.arcs(bodies["shape"][0]) == shapes.arcs(int(bodies["shape"][0]))).all()
+    assert shapes.uses(np.int64(0)) == shapes.uses(np.array(0)) == 1
+    assert (narc.pairs(shapes, bodies, threads=np.int32(2)) == narc.pairs(shapes, bodies)).all()
+    index = narc.Index(shapes, bodies)
+    assert index.nearest(bodies["xy"][:3], most=np.int64(2)).shape == (3, 2)
+    ray = np.float32([[9, 9]])
+    for half in (np.float64(0.5), np.float32(0.5), np.array(0.5)):
+        assert (index.rays((0, 0), ray, fraction=half) == index.rays((0, 0), ray, fraction=0.5)).all()
+    plain = {"xy": bodies["xy"], "sine": 0.0, "shape": int(scene.ball), "cosine": 1.0}
+    given = {**plain, "sine": np.float64(0), "shape": np.int64(scene.ball), "cosine": np.int32(1)}
+    assert (narc.boxes(shapes, given) == narc.boxes(shapes, plain)).all()
+    with pytest.raises(TypeError):
+        shapes.arcs(np.float64(1))
+
+
 def test_two_bodies_are_a_batch_of_one(scene):
     pairs = narc.pairs(scene.shapes, scene.bodies, margin=1.0)[:200]
     dense = narc.contacts(scene.shapes, scene.bodies, pairs, dense=True, margin=0.5)
@@ -179,8 +196,8 @@ REFUSED = [
     (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros(6, np.uint32)), ValueError, r"pairs: the shape is to be \(n, 2\)"),
     (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 2), ">u4")), TypeError, "pairs: .*another order of bytes"),
     (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 300]]), narc.OutOfRange, "pair 0: body b is 300"),
-    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, -1]]), IndexError, "pairs: item 0 is -1"),
-    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 2**32]]), IndexError, "pairs: item 0 is 4294967296"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, -1]]), narc.OutOfRange, "pairs: item 0 is -1"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 2**32]]), narc.OutOfRange, "pairs: item 0 is 4294967296"),
     (lambda s: narc.contacts(s.shapes, {"xy": np.zeros((3, 2)), "cosine": np.ones(3)}, [[0, 1]]), TypeError,
      "bodies.cosine: float32 is wanted, not float64"),
     (lambda s: narc.contacts(s.shapes, {"xy": np.zeros((3, 2)), "cosine": np.ones(4, "f4")}, [[0, 1]]), ValueError,
@@ -230,10 +247,34 @@ def test_read_only_outputs_are_refused(scene):
     narc.contacts(scene.shapes, scene.bodies, [[0, 1]])
 
 
+def test_types_and_values_that_lie_are_refused(scene):
+    class Liar(np.ndarray):
+        dtype = property(lambda self: narc.BODY)
+
+    with pytest.raises(TypeError, match="bodies: items of 1 bytes are no rows of narc_body"):
+        narc.validate(scene.shapes, np.zeros(64, np.uint8).view(Liar))
+
+    class Eraser:
+        def __float__(self):
+            bodies.clear()
+            raise ValueError
+
+        def __repr__(self):
+            return "gone"
+
+    for _ in range(20):
+        bodies = {"cosine": Eraser(), "xy": np.zeros((3, 2)), "sine": 0.0}
+        with pytest.raises(TypeError, match="bodies.cosine: a number or an array is wanted, not gone"):
+            narc.validate(scene.shapes, bodies)
+
+
 def test_errors_have_numbers(scene):
     with pytest.raises(narc.Error) as caught:
         narc.contacts(scene.shapes, scene.bodies, [[0, 1], [2, 900]])
     assert (caught.value.status, caught.value.index, caught.value.value) == ("NARC_ERROR_INDEX", 1, 900)
+    with pytest.raises(narc.OutOfRange) as caught:
+        narc.distances(scene.shapes, scene.bodies, np.zeros((3, 2)), np.array([1, 2, -5]))
+    assert (caught.value.status, caught.value.index, caught.value.value) == ("NARC_ERROR_INDEX", 2, -5)
     scene.bodies["cosine"][9] = 3
     with pytest.raises(narc.Error, match="body 9"):
         narc.validate(scene.shapes, scene.bodies)

@@ -47,6 +47,19 @@ def test_outlines_are_within_the_tolerance():
             assert 0 <= exact - area <= 35 * tolerance
 
 
+def test_outlines_of_bodies_and_chains(random):
+    arcs = narc.move([[0, 0, 2, 0, np.pi], [0, 0, 2, np.pi, 2 * np.pi]])
+    body = narc.bodies([[30, 40]], angle=1, scale=0.5)[0]
+    points = narc.flatten(arcs, 1e-4, body=body)
+    assert np.allclose(np.linalg.norm(points - [30, 40], axis=1), 1) and len(points) > 100
+    middle = (points + np.roll(points, -1, axis=0)) / 2
+    assert (np.linalg.norm(middle - [30, 40], axis=1) > 1 - 1.01e-4).all()
+    line = narc.flatten([[0, 0, 0, 0, 0], [3, 0, 0, 0, 0]], 1e-3, closed=False)
+    assert (line == [[0, 0], [3, 0]]).all()
+    with pytest.raises(narc.Error, match="tolerance"):
+        narc.flatten(arcs, 0)
+
+
 def test_hulls_hold_their_points():
     xy = np.random.default_rng(5).normal(size=(500, 2))
     shapes = narc.Shapes()
@@ -201,6 +214,20 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     assert len(index) == 50 and index.statistics()["bodies"] == 50
 
 
+def test_bodies_that_come_bring_their_worlds(random):
+    shapes, bodies = circle_scene(random)
+    world = np.arange(len(bodies), dtype=np.uint32) % 3
+    index = narc.Index(shapes, bodies[:100], world=world[:100])
+    with pytest.raises(ValueError, match="options.world has 100 items, where there are 400"):
+        index.update(bodies)
+    assert len(index) == 100 and (index.nearest(bodies["xy"][:9], world=0)["body"] % 3 == 0).all()
+    index.update(bodies, np.zeros(0, np.uint32), world=world)
+    near = index.nearest(bodies["xy"], world=world)
+    assert (near["count"] == 1).all() and (near["body"] % 3 == world).all() and near["body"].max() > 300
+    index.update()
+    assert (index.nearest(bodies["xy"], world=world) == near).all()
+
+
 def test_casts_hit_when_circles_meet():
     shapes = narc.Shapes()
     ball = shapes.circle(1.0)
@@ -267,6 +294,12 @@ def test_memory_comes_back(scene):
 
     before = ask(300)
     assert ask(1500) - before < 1500  # kilobytes: less than one for each
+
+
+def test_modules_are_loaded_again():
+    code = "import importlib, narc\nfor _ in range(9): importlib.reload(narc._tables)\n" \
+           "narc.validate(narc.Shapes(), narc._tables.np.zeros(0, narc._tables.BODY))"
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_the_module_tells_of_itself():
