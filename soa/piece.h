@@ -89,8 +89,8 @@ static inline bool narc_is_shallow(const narc_shape_header *body, double scale, 
 bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, double separation, bool front_only);
 
 /* How far the points and centres of a body may move against a piece before there may be a contact below the margin. What is
- * not above 0 says nothing; so of two pieces, or of none. `x`, `y`: of both the same direction, whichever it is. `size`: the distance of the positions and
- * both extents. */
+ * not above 0 says nothing; so of two pieces, or of none. `x`, `y`: of both the same direction, whichever it is. `size`:
+ * the distance of the positions and both extents. Centres lie within the extent, too, if perhaps not within the outline. */
 double narc_find_free_way(const narc_contact_side *piece, const narc_contact_side *body, double margin, double size);
 
 #endif

@@ -62,8 +62,7 @@ INLINE char *find_place(const struct call *call, int32_t pair) {
 }
 
 /* Notes that pairs have a row, in the lanes `keep`, and finds their places; elsewhere the spare one: what lanes write in
- * vain stays in one line of the cache. One pair
- * by itself is not asked for without a row. */
+ * vain stays in one line of the cache. One pair by itself is not asked for without a row. */
 INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
     struct rows *rows = call->rows;
     if (BLOCK == 1) {

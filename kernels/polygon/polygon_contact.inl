@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * polygon_contact.inl - how two sharp polygons touch: the deciding formula (normal_fan.inl), of which only that part is
- * computed that can hold its answer.
+ * polygon_contact.inl - how two polygons touch, sharp, or in one lane each with corners of one radius: the deciding
+ * formula (normal_fan.inl), of which only that part is computed that can hold its answer.
  *
  * Let F be the junction with the largest gap, the normal of an edge of one shape, and c the corner of the other that is
  * closest to it (polygon_edges.inl). F is to lie within c's sector for certain, so that in the intervals of the fan
