@@ -258,7 +258,6 @@ typedef struct narc_pair_filter {
     narc_word_column category, mask;
     narc_index_column owner;
     narc_index_column world;
-    void *reserved[2]; /* NULL */
 } narc_pair_filter;
 
 /* What finding pairs needs: memory, which grows to what the largest step wants and stays, so that after some steps nothing is

@@ -78,7 +78,7 @@ typedef struct narc_index_options {
     const narc_workers *workers;
     const narc_point *origin;
     narc_index_column world;
-    void *reserved[2]; /* NULL */
+    void *reserved[1]; /* NULL */
 } narc_index_options;
 
 /* Makes the index one of these boxes; box k is that of body k, as narc_compute_boxes() gives them. An empty box is
@@ -144,7 +144,7 @@ typedef struct narc_index_query {
     const narc_workers *workers;
     const narc_owners *owners;
     narc_index_column world;
-    void *reserved[3]; /* NULL */
+    void *reserved[1]; /* NULL */
 } narc_index_query;
 
 /* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).

@@ -152,8 +152,10 @@ static inline size_t narc_count_nodes(const narc_index *index) {
 /* The box around all. Empty boxes change nothing. */
 static inline narc_box narc_find_index_box(const narc_index *index) {
     narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    if (index->level_count == 0)
+        return box;
     const narc_index_node *const root = index->nodes + narc_count_nodes(index) - 1;
-    for (int k = 0; index->level_count > 0 && k < NARC_NODE_SLOTS; k++) {
+    for (int k = 0; k < NARC_NODE_SLOTS; k++) {
         box.min_x = root->min_x[k] < box.min_x ? root->min_x[k] : box.min_x;
         box.min_y = root->min_y[k] < box.min_y ? root->min_y[k] : box.min_y;
         box.max_x = root->max_x[k] > box.max_x ? root->max_x[k] : box.max_x;

@@ -410,8 +410,6 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
                             uint32_t *out_b, ptrdiff_t stride, size_t capacity, size_t *out_count, narc_error *error) {
     size_t found = 0;
     narc_status status = check_arguments(broad, boxes, count, out_a, out_b, stride, capacity, out_count, error);
-    if (status == NARC_OK && filter)
-        status = narc_check_reserved(filter->reserved, 2, "filter", error);
     if (status == NARC_OK)
         status = narc_sweep_boxes(broad, boxes, count, filter, workers, &found, error);
     if (status != NARC_OK)

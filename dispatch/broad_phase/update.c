@@ -507,8 +507,6 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     const size_t count = step->bodies->count, last_count = broad->lists[broad->last].body_count;
     const update u = {broad, count, step, error};
     narc_status status = narc_check_count(count, UINT32_MAX - 1, "bodies", error);
-    if (status == NARC_OK && step->filter)
-        status = narc_check_reserved(step->filter->reserved, 2, "filter", error);
     if (status == NARC_OK && step->pairs)
         status = check_own_pairs(&u);
     if (status == NARC_OK && narc_reserve_bodies(broad, count > last_count ? count : last_count) != NARC_OK)

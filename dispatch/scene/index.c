@@ -182,7 +182,7 @@ narc_status narc_check_making(const narc_index *index, const narc_box *boxes, si
     narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
     if (status == NARC_OK)
         status = narc_check_origin(options->origin, "options", error);
-    return status == NARC_OK ? narc_check_reserved(options->reserved, 2, "options", error) : status;
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 1, "options", error) : status;
 }
 
 narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_options *options,

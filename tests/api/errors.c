@@ -527,7 +527,6 @@ TEST(test_steps) {
     struct row_of_discs d;
     set_up_discs(&d);
 #define PAIRS_OF(...) (&(const narc_pairs){__VA_ARGS__})
-    const narc_pair_filter reserved = {.reserved = {NULL, &d}};
     const struct {
         narc_step step;
         narc_status status;
@@ -535,7 +534,6 @@ TEST(test_steps) {
     } cases[] =
     { {{.skin = -1}, NARC_ERROR_ARGUMENT, "step.skin is -1, less than 0"},
       {{.skin = INFINITY}, NARC_ERROR_NOT_FINITE, "step.skin is inf"},
-      {{.filter = &reserved}, NARC_ERROR_ARGUMENT, "filter.reserved[1]"},
       {{.id = NARC_ARRAY(ids)}, NARC_ERROR_ARGUMENT, "body 4: id 3 is also that of a body before it"},
       {{.pairs = PAIRS_OF(.count = 2)}, NARC_ERROR_ARGUMENT, "step.pairs.a is NULL"},
       {{.pairs = PAIRS_OF(.count = 2, .a = NARC_ARRAY(a))}, NARC_ERROR_ARGUMENT, "step.pairs.b is NULL"},

@@ -111,8 +111,7 @@ static void check_pointers(void) {
     LAYOUT(narc_pairs, 96,
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
-    LAYOUT(narc_pair_filter, 96,
-           AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(world, 64) && AT(reserved, 80));
+    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(owner, 48) && AT(world, 64));
     LAYOUT(narc_contacts_settings, 64,
            AT(rows, 0) && AT(user_size, 8) && AT(row_offset, 16) && AT(allocator, 24) && AT(reserved, 32));
     LAYOUT(narc_step, 216,
@@ -137,23 +136,23 @@ static void check_pointers(void) {
     LAYOUT(narc_box_options, 104,
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
                AT(out_skipped, 64) && AT(origin, 72) && AT(reserved, 80));
-    LAYOUT(narc_index_options, 72,
+    LAYOUT(narc_index_options, 64,
            AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(origin, 32) && AT(world, 40) && AT(reserved, 56));
     LAYOUT(narc_index_statistics, 64,
            AT(boxes, 0) && AT(bodies, 8) && AT(nodes, 16) && AT(leaves, 24) && AT(depth, 32) && AT(bytes, 40) &&
                AT(mean_perimeter, 48) && AT(slack, 56));
     LAYOUT(narc_owners, 64, AT(owner, 0) && AT(ignored, 16) && AT(reserved, 32));
-    LAYOUT(narc_index_query, 88,
+    LAYOUT(narc_index_query, 72,
            AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(owners, 40) && AT(world, 48) && AT(reserved, 64));
     LAYOUT(narc_rays, 120,
            AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(motion_x, 56) && AT(motion_y, 72) && AT(fraction, 88) &&
                AT(reserved, 104));
-    LAYOUT(narc_ray_options, 144,
-           AT(search, 0) && AT(inside, 88) && AT(any, 92) && AT(most, 96) && AT(out_skipped, 104) &&
-               AT(out_order, 112) && AT(reserved, 120));
+    LAYOUT(narc_ray_options, 128,
+           AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(out_order, 96) &&
+               AT(reserved, 104));
     LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
-    LAYOUT(narc_nearest_options, 136,
-           AT(search, 0) && AT(distance, 88) && AT(inside, 92) && AT(most, 96) && AT(reserved, 104));
+    LAYOUT(narc_nearest_options, 120,
+           AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));
     LAYOUT(narc_method_options, 56,
            AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(simplexes, 24) &&
                AT(reserved, 32));

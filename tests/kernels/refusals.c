@@ -99,7 +99,7 @@ TEST(refuses_rays) {
                  out.hits, 2 * ITEMS))
     WRONG_OPTIONS(ARGUMENT, "options.inside", .inside = (narc_inside)3);
     WRONG_OPTIONS(ARGUMENT, "options.reserved[0]", .reserved = {&out});
-    WRONG_OPTIONS(ARGUMENT, "options.search.reserved[2]", .search.reserved = {NULL, NULL, &out});
+    WRONG_OPTIONS(ARGUMENT, "options.search.reserved[0]", .search.reserved = {&out});
     WRONG_OPTIONS(CAPACITY, "3 rows", .most = 3);
     WRONG_OPTIONS(CAPACITY, "room for 20", .most = SIZE_MAX);
 #define WRONG_BODIES(change, words)                                                                                    \
@@ -233,8 +233,8 @@ TEST(refuses_points) {
 TEST(refuses_indices_and_regions) {
     const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};
     const narc_allocator half = {.release = ledger_allocator(NULL).release};
-    const narc_index_options taken = {.reserved = {NULL, &out}};
-    const narc_index_query query = {.reserved = {NULL, NULL, &out}};
+    const narc_index_options taken = {.reserved = {&out}};
+    const narc_index_query query = {.reserved = {&out}};
     narc_pairs pairs = {.count = 7};
     narc_index *index = NULL;
     const narc_index_column none = {0};
@@ -249,20 +249,20 @@ TEST(refuses_indices_and_regions) {
     REFUSED(ARGUMENT, "index is NULL", narc_build_index(NULL, boxes, 2, NULL, &error));
     REFUSED(ARGUMENT, "boxes is NULL", narc_build_index(index, NULL, 2, NULL, &error));
     REFUSED(ARGUMENT, "boxes in one index", narc_build_index(index, boxes, (size_t)1 << 31 | 1, NULL, &error));
-    REFUSED(ARGUMENT, "options.reserved[1]", narc_build_index(index, boxes, 2, &taken, &error));
+    REFUSED(ARGUMENT, "options.reserved[0]", narc_build_index(index, boxes, 2, &taken, &error));
     REFUSED(ARGUMENT, "index is NULL", narc_update_index(NULL, boxes, 2, NULL, 0, NULL, &error));
     REFUSED(ARGUMENT, "boxes is NULL", narc_update_index(index, NULL, 2, NULL, 0, NULL, &error));
     REFUSED(ARGUMENT, "changed is NULL", narc_update_index(index, boxes, 2, &none, 1, NULL, &error));
     REFUSED(INDEX, "changed[1] is 2", narc_update_index(index, boxes, 2, &changed, 2, NULL, &error));
     assert_int_equal(error.index, 1);
-    REFUSED(ARGUMENT, "options.reserved[1]", narc_update_index(index, boxes, 2, NULL, 0, &taken, &error));
+    REFUSED(ARGUMENT, "options.reserved[0]", narc_update_index(index, boxes, 2, NULL, 0, &taken, &error));
     REFUSED(ARGUMENT, "index is NULL", narc_describe_index(NULL, &statistics, &error));
     REFUSED(ARGUMENT, "out_statistics is NULL", narc_describe_index(index, NULL, &error));
     REFUSED(ARGUMENT, "index is NULL", narc_query_index(NULL, boxes, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "boxes is NULL", narc_query_index(index, NULL, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "out_pairs is NULL", narc_query_index(index, boxes, 1, NULL, NULL, &error));
     REFUSED(ARGUMENT, "queries in one call", narc_query_index(index, boxes, UINT32_MAX, NULL, &pairs, &error));
-    REFUSED(ARGUMENT, "query.reserved[2]", narc_query_index(index, boxes, 1, &query, &pairs, &error));
+    REFUSED(ARGUMENT, "query.reserved[0]", narc_query_index(index, boxes, 1, &query, &pairs, &error));
     assert_true(statistics.slack == 9 && pairs.count == 7);
     expect_ok(narc_query_index(index, NULL, 0, NULL, &pairs, &error), &error);
     assert_int_equal(pairs.count, 0);
