@@ -131,8 +131,10 @@ TEST(an_index_far_away_has_the_same_answers) {
             impacts += here.impact[k].count == NARC_CAST_HIT;
         assert_true(hits > RAYS / 4 && impacts > BODIES / 8);
         free(rays);
-        room.scene = world.scene;
-        destroy_room(&room);
+        narc_destroy_index(room.index);
+        free(room.boxes);
+        free(room.category);
+        destroy_world(&world); /* with the room's bodies */
     }
 }
 
