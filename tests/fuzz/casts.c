@@ -85,11 +85,15 @@ static void check_things(const struct question *q, size_t k, const struct answer
     if (near[1].count)
         assert_true(q->owner[near[0].body] == UINT32_MAX || q->owner[near[0].body] != q->owner[near[1].body]);
     const narc_distance *const part = &answer->nearest[2 * k];
-    if (near->separation < 0) { /* a thing is at least as deep as its parts, up to the error of both */
+    if (near->separation < 0) { /* a thing is at least as deep as its parts, but for what connects parts */
         const struct reference_body body = scene_reference(&q->scene, part->body);
-        const double far = hypot(q->rays[k].x - body.x, q->rays[k].y - body.y);
-        assert_true((double)near->separation <=
-                    (double)part->separation + 2 * NARC_ERROR_BOUND * (far + reference_extent(&body)));
+        double most = hypot(q->rays[k].x - body.x, q->rays[k].y - body.y) + reference_extent(&body);
+        for (uint32_t b = 0; b < BODIES; b++)
+            if (q->owner[b] == q->owner[part->body] && q->boxes[b].min_x <= q->boxes[b].max_x) {
+                const struct reference_body other = scene_reference(&q->scene, b);
+                most = fmax(most, reference_extent(&other));
+            }
+        assert_true((double)near->separation <= (double)part->separation + 8 * NARC_ERROR_BOUND * most);
     } else
         assert_memory_equal(near, part, sizeof *near);
     if (q->rays_asked.inside == NARC_INSIDE_STOPS)
