@@ -164,7 +164,7 @@ TEST(rows_of_ground_are_those_of_the_plain_calls) {
 TEST(pairs_with_ground_are_asked_before_they_touch) {
     struct test_random random = test_random_named("creeping over ground");
     size_t asked = 0, pairs = 0, began = 0;
-    for (size_t trial = 0; trial < test_trials(40); trial++) {
+    for (size_t trial = 0; trial < 4 + test_trials(36); trial++) {
         struct step_world *const w = make_step_world((struct test_random){random_bits(&random)}, true);
         narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
         w->has_filter = w->has_motion = false;
