@@ -13,12 +13,12 @@ include(CheckCSourceCompiles)
 set(NARC_KERNEL_SOURCES)
 foreach(file sat/overlap sat/search sat/rows sat/pair sat/contact sat/manifold sat/separation sat/follow sat/recycle box/box_walk broad/boxes broad/sweep
     pose parts scene/rays scene/ray_pairs scene/regions scene/points
-    scene/casts scene/piece_casts scene/fit table)
+    scene/casts scene/one_cast scene/piece_casts scene/fit table)
   list(APPEND NARC_KERNEL_SOURCES "${PROJECT_SOURCE_DIR}/kernels/${file}.c")
 endforeach()
 
 # One pair at a time is hardly faster with -O3, and its text is to stay in the first cache.
-set_source_files_properties("${PROJECT_SOURCE_DIR}/kernels/sat/pair.c" PROPERTIES
+set_source_files_properties("${PROJECT_SOURCE_DIR}/kernels/sat/pair.c" "${PROJECT_SOURCE_DIR}/kernels/scene/one_cast.c" PROPERTIES
   COMPILE_OPTIONS "$<$<CONFIG:Release,RelWithDebInfo>:-O2>")
 
 # narc_add_isa_objects(TARGET NAME ISA SOURCE ...): symbols have the name, instructions are those of the set.

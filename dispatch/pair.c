@@ -13,38 +13,11 @@
 
 /* ------------------------------------------------------------------------------------------------ a few of a batch */
 
-/* The bodies of the pair that a batch asks of at `place`, moved together: B's place seen from A is as kernels have it
- * (base/bodies.inl), as a difference of floats, rounded from double, is that in single precision. */
-static void gather_pair(const narc_batch *batch, size_t number, narc_body *out_a, narc_body *out_b) {
-    const narc_bodies *const of_a = batch->a, *const of_b = batch->b;
-    const narc_pairs *const pairs = batch->pairs;
-    const size_t a = pairs->a.base ? narc_index_at(pairs->a, number) : number;
-    const size_t b = pairs->b.base ? narc_index_at(pairs->b, number) : number;
-    double x = narc_position_at(of_b->x, b) - narc_position_at(of_a->x, a);
-    double y = narc_position_at(of_b->y, b) - narc_position_at(of_a->y, a);
-    if (pairs->shift_x.base || pairs->shift_y.base) {
-        x += (double)narc_float_or(pairs->shift_x, number, 0);
-        y += (double)narc_float_or(pairs->shift_y, number, 0);
-    }
-    *out_a = (narc_body){0,
-                         0,
-                         narc_float_at(of_a->cosine, a),
-                         narc_float_at(of_a->sine, a),
-                         narc_float_or(of_a->scale, a, 1),
-                         narc_index_at(of_a->shape, a)};
-    *out_b = (narc_body){x,
-                         y,
-                         narc_float_at(of_b->cosine, b),
-                         narc_float_at(of_b->sine, b),
-                         narc_float_or(of_b->scale, b, 1),
-                         narc_index_at(of_b->shape, b)};
-}
-
 /* The kernel's answer for the pair of a batch at `place`. */
 static int ask_few(const narc_kernel_table *kernels, const narc_batch *batch, uint32_t number, bool manifold,
                    void *out_row) {
     narc_body a, b;
-    gather_pair(batch, number, &a, &b);
+    narc_gather_pair(batch, number, &a, &b);
     const float margin = narc_float_or(batch->query->margins, number, batch->query->margin);
     const narc_one_pair asked = {batch, &a, &b, out_row, margin, number, manifold};
     return kernels->pair(&asked);

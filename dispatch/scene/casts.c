@@ -12,10 +12,47 @@
 /* Pairs in a part. */
 enum { PART = 1024 };
 
+#if !NARC_SMALL
+/* A cast by itself. Returns 1 if it has no answer. */
+static size_t cast_alone(const narc_cast_batch *casts, size_t place) {
+    const narc_batch *const batch = casts->batch;
+    const size_t number = narc_pair_at(batch, place);
+    narc_one_cast one;
+    narc_gather_pair(batch, number, &one.bodies[0], &one.bodies[1]);
+    const narc_shape_header *const headers = batch->shapes->headers;
+    for (int side = 0; side < 2; side++) {
+        const narc_motions *const given = &casts->motions[side];
+        const size_t body = narc_body_at(batch->pairs, side, number);
+        one.motions[side][0] = narc_float_or(given->x, body, 0);
+        one.motions[side][1] = narc_float_or(given->y, body, 0);
+        one.motions[side][2] = narc_float_or(given->angle, body, 0);
+        one.body = (uint32_t)body;
+    }
+    const size_t row = casts->nearest ? narc_body_at(batch->pairs, 0, number) : number;
+    one.shapes = batch->shapes;
+    one.target = narc_float_or(casts->targets, row, casts->target);
+    one.tolerance = casts->tolerance;
+    one.pair = (uint32_t)number;
+    one.nearest = casts->nearest;
+    one.out_row = &casts->out[row];
+    const bool pieces = batch->shapes->piece_count > 0 &&
+                        (narc_is_piece(&headers[one.bodies[0].shape]) || narc_is_piece(&headers[one.bodies[1].shape]));
+    const int skipped = pieces || casts->parting > 0 ? -1 : casts->kernels->cast(&one);
+    return skipped < 0 ? NARC_KERNELS_FOR(1, casts->kernels)->casts(casts, place, place + 1) : (size_t)skipped;
+}
+#endif
+
 void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
-    const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, job->batch.kernels);
-    const size_t skipped = kernels->casts(&job->batch, first, end);
-    atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
+    size_t skipped = 0;
+#if !NARC_SMALL
+    if (end - first <= NARC_FEW)
+        while (first < end)
+            skipped += cast_alone(&job->batch, first++);
+    else
+#endif
+        skipped = job->batch.kernels->casts(&job->batch, first, end);
+    if (skipped > 0)
+        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
 static narc_status check_number(float number, const char *name, narc_error *error) {

@@ -16,7 +16,11 @@
 
 /* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
  * So many begin at once, so that whoever looks for the nearest has them in the same order on every instruction set. */
+#ifdef NARC_ONE_PAIR
+enum { CAST_SLOTS = 1, CAST_GROUP = 1 };
+#else
 enum { CAST_SLOTS = 48, CAST_GROUP = 16 };
+#endif
 
 /* What a step of a cast may come to, beside NARC_CAST_...: it has no answer; it goes on. */
 enum { CAST_BROKEN = 3, CAST_GOES_ON = 4 };

@@ -5,8 +5,10 @@
 #ifndef NARC_SCENE_CAST_LANES_INL
 #define NARC_SCENE_CAST_LANES_INL
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/shape.inl"
 #include "broken.h"
@@ -145,6 +147,33 @@ INLINE void select_steps(vm m, struct step *steps, const struct step *others) {
     v_store(steps->time, v_select(m, v_load(steps->time), v_load(others->time)));
     v_store(steps->back, v_select(m, v_load(steps->back), v_load(others->back)));
     v_store(steps->rounds, v_select(m, v_load(steps->rounds), v_load(others->rounds)));
+}
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+_Static_assert(sizeof(narc_impact) - offsetof(narc_impact, separation) ==
+                   sizeof(narc_contact) - offsetof(narc_contact, separation),
+               "from there on rows are alike");
+
+/* What a cast has come to, beside what touches then. */
+struct impact {
+    uint32_t pair, body;
+    float time;
+    int outcome;
+};
+
+/* Writes it to its row; of `nearest` not where the mover hits another body before, or one with a lower number then. */
+INLINE void write_impact(const struct impact *impact, const narc_contact *contact, bool nearest, narc_impact *row) {
+    if (!nearest)
+        row->pair = impact->pair;
+    else if (row->count != NARC_CAST_MISS &&
+             (row->fraction < impact->time || (row->fraction == impact->time && row->body < impact->body)))
+        return;
+    row->body = impact->body;
+    row->feature = contact->feature;
+    row->count = (uint16_t)impact->outcome;
+    row->fraction = impact->time;
+    memcpy(&row->separation, &contact->separation, sizeof *contact - offsetof(narc_contact, separation));
 }
 
 #endif

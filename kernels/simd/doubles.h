@@ -10,7 +10,7 @@
 
 #include "simd/simd.h"
 
-#if V_WIDTH == 1
+#if V_WIDTH == 1 && !defined(NARC_SIMD_ONE_H)
 enum { D_WIDTH = 1 };
 typedef double vd;
 typedef int64_t vl; /* a predicate: 0 or -1 in each lane, or a mask register's bits */
@@ -35,8 +35,12 @@ INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
 #elif defined(__wasm_simd128__)
 #include <wasm_simd128.h>
 #endif
-enum { D_WIDTH = V_WIDTH / 2 };
-typedef double vd VECTOR_OF(8 * V_WIDTH / 2);
+#ifdef NARC_SIMD_ONE_H /* one lane of a register */
+enum { D_WIDTH = 1, D_BYTES = 16 };
+#else
+enum { D_WIDTH = V_WIDTH / 2, D_BYTES = 8 * V_WIDTH / 2 };
+#endif
+typedef double vd VECTOR_OF(D_BYTES);
 
 INLINE vd d_set(double a) { return a - (vd){0}; }
 /* Conversions by intrinsics: GCC 12 takes (double)(float)a for a, where it makes vectors of such lanes itself. */
@@ -54,7 +58,7 @@ INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); 
 INLINE vd d_of_floats(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a)); }
 #else
-typedef int64_t vl VECTOR_OF(8 * V_WIDTH / 2);
+typedef int64_t vl VECTOR_OF(D_BYTES);
 INLINE vl d_lt(vd a, vd b) { return (vl)(a < b); }
 INLINE vl d_le(vd a, vd b) { return (vl)(a <= b); }
 INLINE vd d_abs(vd a) { return (vd)((vl)a & INT64_MAX); }
@@ -74,12 +78,17 @@ INLINE void d_put_floats(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a));
 INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
-INLINE int d_any(vl m) { return _mm_movemask_pd((vd)m) != 0; }
+INLINE int d_any(vl m) { return (_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1)) != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
+#ifdef NARC_SIMD_ONE_H
+INLINE vd d_of_floats(const float *p) { return _mm_cvtss_sd(_mm_setzero_pd(), _mm_load_ss(p)); }
+INLINE void d_put_floats(float *p, vd a) { _mm_store_ss(p, _mm_cvtsd_ss(_mm_setzero_ps(), a)); }
+#else
 INLINE vd d_of_floats(const float *p) {
     return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
 INLINE void d_put_floats(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a))); }
+#endif
 #else
 INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
 INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
@@ -102,10 +111,10 @@ INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_
 #endif
 
 INLINE vd d_load(const double *p) {
-    vd a;
-    memcpy(&a, p, sizeof a);
+    vd a = d_set(0);
+    memcpy(&a, p, D_WIDTH * sizeof *p);
     return a;
 }
-INLINE void d_store(double *p, vd a) { memcpy(p, &a, sizeof a); }
+INLINE void d_store(double *p, vd a) { memcpy(p, &a, D_WIDTH * sizeof *p); }
 
 #endif

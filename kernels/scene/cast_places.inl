@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cast_places.inl - where the bodies of casts are at their times.
+ */
+#ifndef NARC_SCENE_CAST_PLACES_INL
+#define NARC_SCENE_CAST_PLACES_INL
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "elementary.h"
+#include "scene/cast_fields.inl"
+#include "scene/cast_lanes.inl"
+#include "simd/doubles.h"
+#include "simd/simd.h"
+
+/* Cosines and sines of angles, to some 1e-14: quarter turns and the series of the rest. They are rounded to floats. */
+INLINE dvec2 find_directions(vd angle) {
+    const vd whole = d_set(0x1.8p52); /* what is added to it is rounded to an integer */
+    const vd quarters = (angle * d_set(0.63661977236758134) + whole) - whole; /* 2 / pi */
+    const vd part = quarters - d_set(4) * ((quarters * d_set(0.25) + whole) - whole), size = d_abs(part);
+    const vd x = (angle - quarters * d_set(0x1.921fb544p+0)) - quarters * d_set(0x1.0b4611a626331p-34), z = x * x;
+    const vd one = d_set(1);
+    vd s = d_set(-1.0 / 39916800), c = d_set(1.0 / 479001600);
+    s = d_set(-1.0 / 6) + z * (d_set(1.0 / 120) + z * (d_set(-1.0 / 5040) + z * (d_set(1.0 / 362880) + z * s)));
+    c = d_set(1.0 / 24) + z * (d_set(-1.0 / 720) + z * (d_set(1.0 / 40320) + z * (d_set(-1.0 / 3628800) + z * c)));
+    s = x + x * z * s;
+    c = one - z * (d_set(0.5) - z * c);
+    const vl odd = d_le(size, one) & d_le(one, size), opposite = d_lt(one, size) | d_lt(part, d_set(0));
+    const dvec2 p = {d_select(odd, -s, c), d_select(odd, c, s)};
+    dvec2 direction = {d_select(opposite, -p.x, p.x), d_select(opposite, -p.y, p.y)};
+    const vl small = d_lt(d_abs(angle), d_set(0x1p20));
+    if (d_any(~small)) {
+        double angles[D_WIDTH], cosine[D_WIDTH], sine[D_WIDTH];
+        d_store(angles, angle);
+        for (int l = 0; l < D_WIDTH; l++)
+            narc_find_cosine(angles[l], &cosine[l], &sine[l]);
+        direction = (dvec2){d_select(small, direction.x, d_load(cosine)), d_select(small, direction.y, d_load(sine))};
+    }
+    return direction;
+}
+
+/* Which of casts k ... turn? */
+INLINE vm find_turning(const narc_casts *casts, size_t k) {
+    const vf angle_a = v_load(casts->side[0].angle + k), angle_b = v_load(casts->side[1].angle + k);
+    return v_lt(v_set(0), v_max(v_abs(angle_a), v_abs(angle_b)));
+}
+
+/* The rotations of casts k ... at their times; what does not turn keeps its own, to the bit. */
+INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
+    const struct narc_cast_side *const side = &casts->side[which];
+    float cosine[V_WIDTH], sine[V_WIDTH];
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
+        const size_t slot = k + (size_t)h;
+        const vd angle = d_of_floats(side->angle + slot), zero = d_set(0);
+        dvec2 direction = {d_set(1), zero};
+        if (d_any(d_lt(zero, d_abs(angle))))
+            direction = find_directions(d_of_floats(casts->time + slot) * angle);
+        const dvec2 turned = turn(direction, find_rotation(side->cosine + slot, side->sine + slot));
+        d_store(casts->turned_x[which] + slot, turned.x);
+        d_store(casts->turned_y[which] + slot, turned.y);
+        d_put_floats(cosine + h, turned.x);
+        d_put_floats(sine + h, turned.y);
+    }
+    const vm turns = v_lt(v_set(0), v_abs(v_load(side->angle + k)));
+    v_store(casts->cosine_now[which] + k, v_select(turns, v_load(cosine), v_load(side->cosine + k)));
+    v_store(casts->sine_now[which] + k, v_select(turns, v_load(sine), v_load(side->sine + k)));
+}
+
+/* Places the bodies of casts k ..., of which those in the lanes `live` are there. */
+INLINE void place_bodies_of(narc_casts *casts, size_t k, vm live) {
+    const bool any_turns = vm_any(vm_and(live, find_turning(casts, k)));
+    for (size_t h = k; h < k + V_WIDTH; h += D_WIDTH) {
+        const vd time = d_of_floats(casts->time + h);
+        d_put_floats(casts->x_now + h, d_load(casts->x + h) + time * d_load(casts->motion_x + h));
+        d_put_floats(casts->y_now + h, d_load(casts->y + h) + time * d_load(casts->motion_y + h));
+    }
+    for (int side = 0; side < 2; side++) {
+        v_store(casts->cosine_now[side] + k, v_load(casts->side[side].cosine + k));
+        v_store(casts->sine_now[side] + k, v_load(casts->side[side].sine + k));
+        if (any_turns)
+            turn_bodies(casts, side, k);
+    }
+}
+
+#endif

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * one_cast.c - the kernel of one time of impact by itself, with one lane: what casts.c does with many, in a straight line.
+ * The pair kernel (sat/pair.c) tells what touches; where that leaves a pair to others, so is the cast, and so are pieces of
+ * chains and what lets bodies go.
+ */
+#define NARC_ONE_PAIR
+#undef NARC_SIMD
+#ifdef __AVX__
+#define NARC_SIMD "simd/one.h"
+#else
+#define NARC_SIMD "simd/scalar.h"
+#endif
+
+#include "kernels.h"
+
+/* What becomes of a cast. */
+enum { UNANSWERED = -1, ANSWERED, SKIPPED };
+
+#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "base/vec2.inl"
+#include "narc_scene.h"
+#include "scene/cast_fields.inl"
+#include "scene/cast_lanes.inl"
+#include "scene/cast_lines.inl"
+#include "scene/cast_places.inl"
+#include "scene/cast_start.inl"
+#include "scene/cast_turns.inl"
+#include "simd/doubles.h"
+#include "simd/simd.h"
+
+/* Begins a cast: it goes on, has missed, or is broken. */
+INLINE int begin_cast(const narc_one_cast *asked, narc_casts *casts) {
+    struct loaded loaded;
+    float outcome[V_WIDTH];
+    loaded.turn = asked->motions[0][2] != 0 || asked->motions[1][2] != 0; /* a NaN does */
+    loaded.fine = vm_front(1);
+    for (int side = 0; side < 2; side++) {
+        const narc_body *const body = &asked->bodies[side];
+        struct narc_cast_side *const its = &casts->side[side];
+        its->shape[0] = body->shape;
+        its->cosine[0] = body->cosine;
+        its->sine[0] = body->sine;
+        its->scale[0] = body->scale;
+        its->angle[0] = asked->motions[side][2];
+        loaded.motion_x[side][0] = asked->motions[side][0];
+        loaded.motion_y[side][0] = asked->motions[side][1];
+        loaded.shift_x[0] = loaded.shift_y[0] = 0; /* it is in the way */
+        load_outline(asked->shapes, (const int32_t *)its->shape, loaded.turn, 0, its, &loaded.outline[side]);
+        loaded.fine = vm_and(loaded.fine, are_fine(its, 0, &loaded.outline[side]));
+    }
+    casts->x[0] = asked->bodies[1].x;
+    casts->y[0] = asked->bodies[1].y;
+    casts->target[0] = asked->target;
+    casts->back[0] = CAST_FREE;
+    casts->rounds[0] = 0;
+    begin_half(asked->tolerance, casts, 0, 0, &loaded, outcome);
+    return vm_any(loaded.fine) ? (int)outcome[0] : CAST_BROKEN;
+}
+
+/* What touches at the cast's time. */
+INLINE int ask_contact(const narc_one_cast *asked, const narc_casts *casts, narc_contact *out) {
+    static const narc_query all_rows = {.margin = INFINITY};
+    narc_batch batch; /* of which little is read */
+    batch.shapes = asked->shapes;
+    batch.query = &all_rows;
+    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
+    const narc_body at[2] = {{0, 0, casts->cosine_now[0][0], casts->sine_now[0][0], a->scale[0], a->shape[0]},
+                             {(double)casts->x_now[0], (double)casts->y_now[0], casts->cosine_now[1][0],
+                              casts->sine_now[1][0], b->scale[0], b->shape[0]}};
+    const narc_one_pair pair = {&batch, &at[0], &at[1], out, INFINITY, 0, false};
+    return NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(&pair);
+}
+
+INLINE int advance_cast(const narc_shapes *shapes, narc_casts *casts, const narc_contact *contact) {
+    const vm live = vm_front(1);
+    const struct touch touch = load_contacts(contact, live);
+    struct step step;
+    if (vm_any(find_turning(casts, 0)))
+        advance_turns(shapes, casts, &touch, 0, live, &step);
+    else
+        advance_lines(shapes, casts, &touch, 0, live, &step);
+    casts->time[0] = step.time[0];
+    casts->back[0] = step.back[0];
+    casts->rounds[0] = step.rounds[0];
+    return vm_any(touch.known) ? (int)step.outcome[0] : CAST_BROKEN;
+}
+
+int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+    narc_casts casts;
+    narc_contact contact;
+    int outcome = begin_cast(asked, &casts);
+    while (outcome == CAST_GOES_ON) {
+        place_bodies_of(&casts, 0, vm_front(1));
+        if (ask_contact(asked, &casts, &contact) <= 0)
+            return UNANSWERED;
+        outcome = advance_cast(asked->shapes, &casts, &contact);
+    }
+    if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED) {
+        const struct impact impact = {asked->pair, asked->body, casts.time[0], outcome};
+        write_impact(&impact, &contact, asked->nearest, asked->out_row);
+    } else if (!asked->nearest) {
+        *asked->out_row = (narc_impact){.pair = asked->pair};
+    }
+    return outcome == CAST_BROKEN ? SKIPPED : ANSWERED;
+}
+
+#else
+
+int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+    (void)asked;
+    return UNANSWERED;
+}
+
+#endif
