@@ -35,8 +35,10 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
 /* The kernel for so many pairs. */
 #if NARC_SMALL
 #define KERNEL_FOR(count, few, kernel) (kernel)
+#define ANSWERS_FEW(...)               false
 #else
 #define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
+#define ANSWERS_FEW                    narc_answer_few
 #endif
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -82,6 +84,8 @@ narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                narc_error *error) {
+    if (ANSWERS_FEW(shapes, bodies, pairs, query, false, out_rows, capacity, out_count))
+        return NARC_OK;
     narc_batch batch;
     const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);
     return status == NARC_OK ? narc_answer_contacts(&batch, out_rows, capacity, out_count, error) : status;
@@ -103,6 +107,8 @@ narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, si
 narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                 const narc_query *query, narc_manifold *out_rows, size_t capacity, size_t *out_count,
                                 narc_error *error) {
+    if (ANSWERS_FEW(shapes, bodies, pairs, query, true, out_rows, capacity, out_count))
+        return NARC_OK;
     narc_batch batch;
     const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);
     return status == NARC_OK ? narc_answer_manifolds(&batch, out_rows, capacity, out_count, error) : status;

@@ -68,35 +68,13 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
                              size_t *out_count, narc_error *error);
 
-/* The bodies of the pair that a batch has with a number, moved together, so that A is at the origin: B's place seen from A is as kernels have it
- * (base/bodies.inl), as a difference of floats, rounded from double, is that in single precision. */
-static inline void narc_gather_pair(const narc_batch *batch, size_t number, narc_body *out_a, narc_body *out_b) {
-    const narc_bodies *const of_a = batch->a, *const of_b = batch->b;
-    const narc_pairs *const pairs = batch->pairs;
-    const size_t a = pairs->a.base ? narc_index_at(pairs->a, number) : number;
-    const size_t b = pairs->b.base ? narc_index_at(pairs->b, number) : number;
-    double x = narc_position_at(of_b->x, b) - narc_position_at(of_a->x, a);
-    double y = narc_position_at(of_b->y, b) - narc_position_at(of_a->y, a);
-    if (pairs->shift_x.base || pairs->shift_y.base) {
-        x += (double)narc_float_or(pairs->shift_x, number, 0);
-        y += (double)narc_float_or(pairs->shift_y, number, 0);
-    }
-    *out_a = (narc_body){0,
-                         0,
-                         narc_float_at(of_a->cosine, a),
-                         narc_float_at(of_a->sine, a),
-                         narc_float_or(of_a->scale, a, 1),
-                         narc_index_at(of_a->shape, a)};
-    *out_b = (narc_body){x,
-                         y,
-                         narc_float_at(of_b->cosine, b),
-                         narc_float_at(of_b->sine, b),
-                         narc_float_or(of_b->scale, b, 1),
-                         narc_index_at(of_b->shape, b)};
-}
-
 /* Row kernels for a few pairs, of which each is asked by itself: NARC_FEW at most. */
 narc_row_kernel narc_find_few_contacts, narc_find_few_manifolds, narc_find_few_separations;
+
+/* The rows of a call that has a few pairs, and a query that asks for nothing else than a margin: false if it is another call,
+ * or something is wrong, or the pair kernel leaves a pair. Then a batch is to be begun. */
+bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                     const narc_query *query, bool manifold, void *out_rows, size_t capacity, size_t *out_count);
 
 /* The rows of narc_find_contacts() and narc_find_manifolds() of a batch that was begun. */
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,

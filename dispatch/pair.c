@@ -3,6 +3,7 @@
  * pair.c - pairs by themselves: batches of a few, and the calls of narc.h for two bodies alone. The pair kernel answers
  * nearly all, and the others what it leaves.
  */
+#include "pair.h"
 #include "column.h"
 #include "compiler.h"
 #include "dispatch.h"
@@ -11,16 +12,27 @@
 #include <math.h>
 #include <string.h>
 
+static const narc_query defaults;
+
 /* ------------------------------------------------------------------------------------------------ a few of a batch */
 
-/* The kernel's answer for the pair of a batch at `place`. */
-static int ask_few(const narc_kernel_table *kernels, const narc_batch *batch, uint32_t number, bool manifold,
+/* The kernel's answer for the pair `number` of a batch, or of a call whose pairs bring their `own` bodies; UNASKED if it
+ * names what does not exist. */
+enum { UNASKED = -2 };
+INLINE int ask_few(const narc_kernel_table *kernels, const narc_batch *batch, uint32_t number, bool own, bool manifold,
                    void *out_row) {
-    narc_body a, b;
-    narc_gather_pair(batch, number, &a, &b);
+    narc_gathered pair;
+    if (!narc_gather_pair(batch->shapes, batch->a, batch->b, batch->pairs, own, number, &pair))
+        return UNASKED;
     const float margin = narc_float_or(batch->query->margins, number, batch->query->margin);
-    const narc_one_pair asked = {batch, &a, &b, out_row, margin, number, manifold};
+    const narc_one_pair asked = {batch, &pair.a, &pair.b, out_row, margin, number, manifold};
     return kernels->pair(&asked);
+}
+
+/* What a dense row is where there is none. */
+static void clear_row(uint32_t number, size_t size, void *row) {
+    memset(row, 0, size);
+    memcpy(row, &number, sizeof number);
 }
 
 static size_t find_few(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
@@ -35,18 +47,50 @@ static size_t find_few(const narc_batch *batch, size_t first, size_t count, size
     for (size_t place = first; place < first + count; place++) {
         const uint32_t number = (uint32_t)narc_pair_at(batch, place);
         char *const row = out->base + (ptrdiff_t)(dense ? number : found) * out->stride;
-        const int rows = ask_few(kernels, batch, number, manifold, row);
+        const int rows = ask_few(kernels, batch, number, false, manifold, row);
         if (rows < 0) {
             narc_rows to = *out;
             to.base = dense ? out->base : row;
             found += kernel(batch, place, 1, skipped, &to);
         } else if (rows == 0 && dense) {
-            memset(row, 0, batch->row_size);
-            memcpy(row, &number, sizeof number);
+            clear_row(number, batch->row_size, row);
         }
         found += rows > 0;
     }
     return found;
+}
+
+bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                     const narc_query *query, bool manifold, void *out_rows, size_t capacity, size_t *out_count) {
+    narc_batch batch; /* an initialiser would clear all of it */
+    const narc_query *const q = batch.query = query ? query : &defaults;
+    narc_status status = NARC_OK;
+    if (!narc_are_few(shapes, bodies, pairs) || !out_rows || !out_count || capacity < pairs->count ||
+        q->selection.base || q->selection.stride || q->selection_count || q->first || q->count || q->row_stride ||
+        (query && narc_check_asking(query, NULL) != NARC_OK))
+        return false;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    const size_t row_size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
+    const bool own = narc_have_own_bodies(pairs);
+    size_t found = 0;
+    batch.shapes = shapes;
+    batch.a = bodies;
+    batch.b = pairs->other_bodies ? pairs->other_bodies : bodies;
+    batch.pairs = pairs;
+    batch.flat_sine = manifold ? narc_find_flat_sine(q->flat_angle) : -1;
+    for (uint32_t k = 0; kernels && k < pairs->count; k++) {
+        char *const row = (char *)out_rows + (q->dense ? k : found) * row_size;
+        const int rows = ask_few(kernels, &batch, k, own, manifold, row);
+        if (rows < 0)
+            return false;
+        if (rows == 0 && q->dense)
+            clear_row(k, row_size, row);
+        found += rows > 0;
+    }
+    if (q->out_skipped)
+        *q->out_skipped = 0;
+    *out_count = found;
+    return kernels != NULL;
 }
 
 size_t narc_find_few_contacts(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -62,7 +106,7 @@ size_t narc_find_few_separations(const narc_batch *batch, size_t first, size_t c
     for (size_t place = first; place < first + count; place++) {
         const uint32_t number = (uint32_t)narc_pair_at(batch, place);
         narc_contact row;
-        const int rows = ask_few(kernels, batch, number, false, &row);
+        const int rows = ask_few(kernels, batch, number, false, false, &row);
         const float separation = rows > 0 ? row.separation : INFINITY;
         if (rows < 0)
             found += NARC_KERNELS_FOR(1, kernels)->separation(batch, place, 1, skipped, out);
@@ -79,8 +123,6 @@ size_t narc_find_few_manifolds(const narc_batch *batch, size_t first, size_t cou
 }
 
 /* ------------------------------------------------------------------------------------------------ two bodies */
-
-static const narc_query defaults;
 
 /* Through a batch, which says what is wrong. What is of many pairs in a query does not count; there is a row in any case. */
 NOINLINE narc_status ask_batch(const narc_one_pair *asked, narc_error *error) {

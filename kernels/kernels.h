@@ -220,7 +220,7 @@ typedef struct narc_cast_batch {
  * shift. Motions are x, y, and the angle. The row is that of `pair`, or of its mover (`nearest`), who may hit `body`. */
 typedef struct narc_one_cast {
     const narc_shapes *shapes;
-    narc_body bodies[2];
+    const narc_body *bodies[2];
     float motions[2][3];
     float target, tolerance;
     uint32_t pair, body;

@@ -8,57 +8,118 @@
 #include "casts.h"
 #include "column.h"
 #include "error.h"
+#include "pair.h"
 
 /* Pairs in a part. */
 enum { PART = 1024 };
-
-#if !NARC_SMALL
-/* A cast by itself. Returns 1 if it has no answer. */
-static size_t cast_alone(const narc_cast_batch *casts, size_t place) {
-    const narc_batch *const batch = casts->batch;
-    const size_t number = narc_pair_at(batch, place);
-    narc_one_cast one;
-    narc_gather_pair(batch, number, &one.bodies[0], &one.bodies[1]);
-    const narc_shape_header *const headers = batch->shapes->headers;
-    for (int side = 0; side < 2; side++) {
-        const narc_motions *const given = &casts->motions[side];
-        const size_t body = narc_body_at(batch->pairs, side, number);
-        one.motions[side][0] = narc_float_or(given->x, body, 0);
-        one.motions[side][1] = narc_float_or(given->y, body, 0);
-        one.motions[side][2] = narc_float_or(given->angle, body, 0);
-        one.body = (uint32_t)body;
-    }
-    const size_t row = casts->nearest ? narc_body_at(batch->pairs, 0, number) : number;
-    one.shapes = batch->shapes;
-    one.target = narc_float_or(casts->targets, row, casts->target);
-    one.tolerance = casts->tolerance;
-    one.pair = (uint32_t)number;
-    one.nearest = casts->nearest;
-    one.out_row = &casts->out[row];
-    const bool pieces = batch->shapes->piece_count > 0 &&
-                        (narc_is_piece(&headers[one.bodies[0].shape]) || narc_is_piece(&headers[one.bodies[1].shape]));
-    const int skipped = pieces || casts->parting > 0 ? -1 : casts->kernels->cast(&one);
-    return skipped < 0 ? NARC_KERNELS_FOR(1, casts->kernels)->casts(casts, place, place + 1) : (size_t)skipped;
-}
-#endif
-
-void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
-    size_t skipped = 0;
-#if !NARC_SMALL
-    if (end - first <= NARC_FEW)
-        while (first < end)
-            skipped += cast_alone(&job->batch, first++);
-    else
-#endif
-        skipped = job->batch.kernels->casts(&job->batch, first, end);
-    if (skipped > 0)
-        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
-}
 
 static narc_status check_number(float number, const char *name, narc_error *error) {
     return isfinite(number)
                ? NARC_OK
                : narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)number, "options.%s is %g", name, (double)number);
+}
+
+static narc_status check_options(const narc_cast_options *options, narc_error *error) {
+    narc_status status = check_number(options->target, "target", error);
+    if (status == NARC_OK)
+        status = narc_check_length(options->tolerance, "options", "tolerance", error);
+    if (status == NARC_OK)
+        status = narc_check_length(options->parting, "options", "parting", error);
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 1, "options", error) : status;
+}
+
+#if !NARC_SMALL
+/* Pair `number` of a batch by itself, or of a call whose pairs bring their `own` bodies: 1 if it has no answer, below 0 if it is
+ * the other kernels', or names what does not exist. */
+static int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
+    const narc_batch *const batch = casts->batch;
+    const narc_shapes *const shapes = batch->shapes;
+    narc_one_cast one;
+    narc_gathered pair;
+    if (!narc_gather_pair(shapes, batch->a, batch->b, batch->pairs, own, number, &pair) || casts->parting > 0)
+        return -1;
+    if (shapes->piece_count > 0 &&
+        (narc_is_piece(&shapes->headers[pair.a.shape]) || narc_is_piece(&shapes->headers[pair.b.shape])))
+        return -1;
+    size_t body[2]; /* the caller's numbers */
+    for (int side = 0; side < 2; side++) {
+        const narc_motions *const given = &casts->motions[side];
+        body[side] = narc_body_at(batch->pairs, side, number);
+        one.motions[side][0] = narc_float_or(given->x, body[side], 0);
+        one.motions[side][1] = narc_float_or(given->y, body[side], 0);
+        one.motions[side][2] = narc_float_or(given->angle, body[side], 0);
+    }
+    const size_t row = casts->nearest ? body[0] : number;
+    one.shapes = shapes;
+    one.bodies[0] = &pair.a;
+    one.bodies[1] = &pair.b;
+    one.target = narc_float_or(casts->targets, row, casts->target);
+    one.tolerance = casts->tolerance;
+    one.pair = (uint32_t)number;
+    one.body = (uint32_t)body[1];
+    one.nearest = casts->nearest;
+    one.out_row = &casts->out[row];
+    return casts->kernels->cast(&one);
+}
+
+/* A call that has a few pairs, and options that are as most are: false if it is another, or something is wrong, or the kernel
+ * of one cast leaves a pair. Then a batch is to be begun. */
+static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
+                     const narc_pairs *pairs, const narc_motions *other_motions, const narc_cast_options *options,
+                     narc_impact *out_rows, size_t capacity) {
+    static const narc_motions none;
+    narc_batch batch; /* initialisers would clear all of it */
+    narc_cast_batch casts;
+    narc_status status = NARC_OK;
+    if (!narc_are_few(shapes, bodies, pairs) || !out_rows || capacity < pairs->count || options->targets.base ||
+        (other_motions && !pairs->other_bodies) || check_options(options, NULL) != NARC_OK)
+        return false;
+    const narc_motions *const both[2] = {motions ? motions : &none, other_motions ? other_motions : &none};
+    casts.kernels = narc_kernels(&status, NULL);
+    if (!casts.kernels || both[0]->reserved[0] || both[0]->reserved[1] || both[1]->reserved[0] || both[1]->reserved[1])
+        return false;
+    batch.shapes = shapes;
+    batch.a = bodies;
+    batch.b = pairs->other_bodies ? pairs->other_bodies : bodies;
+    batch.pairs = pairs;
+    casts.batch = &batch;
+    casts.motions[0] = *both[0];
+    casts.motions[1] = pairs->other_bodies ? *both[1] : *both[0];
+    casts.target = options->target;
+    casts.targets.base = NULL;
+    casts.tolerance = options->tolerance;
+    casts.parting = options->parting;
+    casts.nearest = false;
+    casts.out = out_rows;
+    size_t skipped = 0;
+    for (size_t k = 0; k < pairs->count; k++) {
+        const int broken = cast_alone(&casts, k, narc_have_own_bodies(pairs));
+        if (broken < 0)
+            return false;
+        skipped += (size_t)broken;
+    }
+    if (options->out_skipped)
+        *options->out_skipped = skipped;
+    return true;
+}
+#endif
+
+void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
+    const narc_cast_batch *const casts = &job->batch;
+    const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, casts->kernels);
+    size_t skipped = 0;
+    bool few = false;
+#if !NARC_SMALL
+    few = end - first <= NARC_FEW;
+    for (size_t place = first; few && place < end; place++) {
+        const int broken = cast_alone(casts, narc_pair_at(casts->batch, place), false);
+        skipped += broken < 0 ? kernels->casts(casts, place, place + 1) : (size_t)broken;
+    }
+#endif
+    if (!few)
+        skipped = kernels->casts(casts, first, end);
+    if (skipped > 0)
+        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
 narc_status narc_check_targets(const narc_cast_job *job, size_t count, narc_error *error) {
@@ -74,13 +135,7 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
                              const narc_cast_options *options, narc_cast_job *out_job, narc_error *error) {
     static const narc_motions none = {.x = {0}};
     const narc_motions *const both[2] = {motions ? motions : &none, other_motions ? other_motions : &none};
-    narc_status status = check_number(options->target, "target", error);
-    if (status == NARC_OK)
-        status = narc_check_length(options->tolerance, "options", "tolerance", error);
-    if (status == NARC_OK)
-        status = narc_check_length(options->parting, "options", "parting", error);
-    if (status == NARC_OK)
-        status = narc_check_reserved(options->reserved, 1, "options", error);
+    narc_status status = check_options(options, error);
     if (status == NARC_OK)
         status = narc_check_reserved(both[0]->reserved, 2, "motions", error);
     if (status == NARC_OK)
@@ -111,6 +166,10 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
     narc_query query;
     narc_batch batch;
     narc_cast_job job;
+#if !NARC_SMALL
+    if (cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity))
+        return NARC_OK;
+#endif
     narc_status status = narc_check_casts(motions, other_motions, o, &job, error);
     if (o->workers)
         query = (narc_query){.workers = o->workers};

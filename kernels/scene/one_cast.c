@@ -40,7 +40,7 @@ INLINE int begin_cast(const narc_one_cast *asked, narc_casts *casts) {
     loaded.turn = asked->motions[0][2] != 0 || asked->motions[1][2] != 0; /* a NaN does */
     loaded.fine = vm_front(1);
     for (int side = 0; side < 2; side++) {
-        const narc_body *const body = &asked->bodies[side];
+        const narc_body *const body = asked->bodies[side];
         struct narc_cast_side *const its = &casts->side[side];
         its->shape[0] = body->shape;
         its->cosine[0] = body->cosine;
@@ -53,8 +53,8 @@ INLINE int begin_cast(const narc_one_cast *asked, narc_casts *casts) {
         load_outline(asked->shapes, (const int32_t *)its->shape, loaded.turn, 0, its, &loaded.outline[side]);
         loaded.fine = vm_and(loaded.fine, are_fine(its, 0, &loaded.outline[side]));
     }
-    casts->x[0] = asked->bodies[1].x;
-    casts->y[0] = asked->bodies[1].y;
+    casts->x[0] = asked->bodies[1]->x;
+    casts->y[0] = asked->bodies[1]->y;
     casts->target[0] = asked->target;
     casts->back[0] = CAST_FREE;
     casts->rounds[0] = 0;
