@@ -33,13 +33,15 @@ INLINE vl find_touch(const narc_casts *casts, const struct touch *touch, size_t 
     const vd duration = (find_dot(u, u) - goal * goal) / (d_sqrt(d_abs(height)) - find_dot(u, motion));
     vl found = d_lt(radii, d_set(INFINITY)) & d_lt(zero, goal) & d_le(zero, height);
     for (int side = 0; side < 2; side++) {
+        const vl round = d_of_lanes(parts[side].round, h);
+        if (!d_any(~round))
+            continue;
         const dvec2 then = {u.x + duration * motion.x, u.y + duration * motion.y}, back = {-then.x, -then.y};
         const dvec2 normal = turn_back(find_rotation(casts->side[side].cosine + slot, casts->side[side].sine + slot),
                                        side == 0 ? then : back);
         const dvec2 start = get_dvec2(arcs[side].start_x + h, arcs[side].start_y + h),
                     end = get_dvec2(arcs[side].end_x + h, arcs[side].end_y + h);
-        found &= d_of_lanes(parts[side].round, h) |
-                 (d_le(zero, find_cross(start, normal)) & d_le(zero, find_cross(normal, end)));
+        found &= round | (d_le(zero, find_cross(start, normal)) & d_le(zero, find_cross(normal, end)));
     }
     *out_duration = duration;
     return found;

@@ -67,19 +67,12 @@ INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
     v_store(casts->sine_now[which] + k, v_select(turns, v_load(sine), v_load(side->sine + k)));
 }
 
-/* Places the bodies of casts k ..., of which those in the lanes `live` are there. */
-INLINE void place_bodies_of(narc_casts *casts, size_t k, vm live) {
-    const bool any_turns = vm_any(vm_and(live, find_turning(casts, k)));
+/* The positions of casts k ... at their times. */
+INLINE void move_bodies(narc_casts *casts, size_t k) {
     for (size_t h = k; h < k + V_WIDTH; h += D_WIDTH) {
         const vd time = d_of_floats(casts->time + h);
         d_put_floats(casts->x_now + h, d_load(casts->x + h) + time * d_load(casts->motion_x + h));
         d_put_floats(casts->y_now + h, d_load(casts->y + h) + time * d_load(casts->motion_y + h));
-    }
-    for (int side = 0; side < 2; side++) {
-        v_store(casts->cosine_now[side] + k, v_load(casts->side[side].cosine + k));
-        v_store(casts->sine_now[side] + k, v_load(casts->side[side].sine + k));
-        if (any_turns)
-            turn_bodies(casts, side, k);
     }
 }
 

@@ -262,8 +262,17 @@ NOINLINE void begin_casts(struct cast_call *call, size_t first, size_t count, na
 
 /* Places all bodies at their casts' times. */
 NOINLINE void place_casts(narc_casts *casts) {
-    for (size_t k = 0; k < casts->count; k += V_WIDTH)
-        place_bodies_of(casts, k, vm_front((int)(casts->count - k)));
+    for (size_t k = 0; k < casts->count; k += V_WIDTH) {
+        const vm live = vm_front((int)(casts->count - k));
+        const bool any_turns = vm_any(vm_and(live, find_turning(casts, k)));
+        move_bodies(casts, k);
+        for (int side = 0; side < 2; side++) {
+            v_store(casts->cosine_now[side] + k, v_load(casts->side[side].cosine + k));
+            v_store(casts->sine_now[side] + k, v_load(casts->side[side].sine + k));
+            if (any_turns)
+                turn_bodies(casts, side, k);
+        }
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------ all */

@@ -62,25 +62,12 @@ INLINE int begin_cast(const narc_one_cast *asked, narc_casts *casts) {
     return vm_any(loaded.fine) ? (int)outcome[0] : CAST_BROKEN;
 }
 
-/* What touches at the cast's time. */
-INLINE int ask_contact(const narc_one_cast *asked, const narc_casts *casts, narc_contact *out) {
-    static const narc_query all_rows = {.margin = INFINITY};
-    narc_batch batch; /* of which little is read */
-    batch.shapes = asked->shapes;
-    batch.query = &all_rows;
-    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
-    const narc_body at[2] = {{0, 0, casts->cosine_now[0][0], casts->sine_now[0][0], a->scale[0], a->shape[0]},
-                             {(double)casts->x_now[0], (double)casts->y_now[0], casts->cosine_now[1][0],
-                              casts->sine_now[1][0], b->scale[0], b->shape[0]}};
-    const narc_one_pair pair = {&batch, &at[0], &at[1], out, INFINITY, 0, false};
-    return NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(&pair);
-}
-
-INLINE int advance_cast(const narc_shapes *shapes, narc_casts *casts, const narc_contact *contact) {
+/* Takes what touches at the cast's time, and finds where to look next. */
+INLINE int advance_cast(const narc_shapes *shapes, narc_casts *casts, const narc_contact *contact, bool turns) {
     const vm live = vm_front(1);
     const struct touch touch = load_contacts(contact, live);
     struct step step;
-    if (vm_any(find_turning(casts, 0)))
+    if (turns)
         advance_turns(shapes, casts, &touch, 0, live, &step);
     else
         advance_lines(shapes, casts, &touch, 0, live, &step);
@@ -90,15 +77,31 @@ INLINE int advance_cast(const narc_shapes *shapes, narc_casts *casts, const narc
     return vm_any(touch.known) ? (int)step.outcome[0] : CAST_BROKEN;
 }
 
+static const narc_query all_rows = {.margin = INFINITY};
+
 int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
     narc_casts casts;
     narc_contact contact;
+    narc_batch batch; /* of which little is read */
+    batch.shapes = asked->shapes;
+    batch.query = &all_rows;
+    narc_body a = *asked->bodies[0], b = *asked->bodies[1]; /* at the cast's time */
+    const narc_one_pair pair = {&batch, &a, &b, &contact, INFINITY, 0, false};
     int outcome = begin_cast(asked, &casts);
+    const bool turns = vm_any(find_turning(&casts, 0));
     while (outcome == CAST_GOES_ON) {
-        place_bodies_of(&casts, 0, vm_front(1));
-        if (ask_contact(asked, &casts, &contact) <= 0)
+        move_bodies(&casts, 0);
+        b.x = (double)casts.x_now[0];
+        b.y = (double)casts.y_now[0];
+        for (int side = 0; turns && side < 2; side++) {
+            narc_body *const body = side == 0 ? &a : &b;
+            turn_bodies(&casts, side, 0);
+            body->cosine = casts.cosine_now[side][0];
+            body->sine = casts.sine_now[side][0];
+        }
+        if (NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(&pair) <= 0)
             return UNANSWERED;
-        outcome = advance_cast(asked->shapes, &casts, &contact);
+        outcome = advance_cast(asked->shapes, &casts, &contact, turns);
     }
     if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED) {
         const struct impact impact = {asked->pair, asked->body, casts.time[0], outcome};

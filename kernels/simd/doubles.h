@@ -110,11 +110,16 @@ INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_
 #endif
 #endif
 
+#ifdef NARC_SIMD_ONE_H
+INLINE vd d_load(const double *p) { return d_set(*p); }
+INLINE void d_store(double *p, vd a) { *p = a[0]; }
+#else
 INLINE vd d_load(const double *p) {
-    vd a = d_set(0);
-    memcpy(&a, p, D_WIDTH * sizeof *p);
+    vd a;
+    memcpy(&a, p, sizeof a);
     return a;
 }
-INLINE void d_store(double *p, vd a) { memcpy(p, &a, D_WIDTH * sizeof *p); }
+INLINE void d_store(double *p, vd a) { memcpy(p, &a, sizeof a); }
+#endif
 
 #endif
