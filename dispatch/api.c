@@ -33,11 +33,7 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
 }
 
 /* The kernel for so many pairs. */
-#if NARC_SMALL
-#define KERNEL_FOR(count, few, kernel) (kernel)
-#else
 #define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
-#endif
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, uint64_t *out_bits, narc_error *error) {
@@ -47,7 +43,6 @@ narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bod
     return status == NARC_OK ? narc_answer_overlaps(kernels->overlap, &batch, out_bits, error) : status;
 }
 
-#if !NARC_SMALL
 narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                   const narc_query *query, float *out_separations, narc_error *error) {
     narc_batch batch;
@@ -65,7 +60,6 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
     return narc_answer_rows(KERNEL_FOR(batch.count, narc_find_few_separations, kernels->separation), &batch,
                             out_separations, out_separations ? SIZE_MAX : 0, &found, error);
 }
-#endif
 
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                  narc_error *error) {

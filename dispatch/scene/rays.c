@@ -129,7 +129,6 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
     return NARC_OK;
 }
 
-#if !NARC_SMALL
 static void cast_pairs_part(void *argument, size_t part, size_t first, size_t end) {
     struct ray_job *const job = argument;
     (void)part;
@@ -171,4 +170,3 @@ narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bo
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;
 }
-#endif
