@@ -22,7 +22,7 @@
 /* What becomes of a pair. */
 enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 
-#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
+#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON) || defined(__wasm_simd128__) || NARC_SMALL)
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"

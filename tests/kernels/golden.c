@@ -88,7 +88,6 @@ static uint64_t hash_manifolds(const struct scene *scene, int reaches) {
     return hash;
 }
 
-#ifndef NARC_SMALL /* which has no separations by themselves, no chains, and nothing that asks of one body each */
 /* Rays from each body's position at another body, and which points of a lattice around each are within it. */
 static uint64_t hash_alone(const struct scene *scene, int inside) {
     enum { GRID = 9, POINTS = BODIES * GRID * GRID };
@@ -153,7 +152,6 @@ static uint64_t hash_separations(const struct scene *scene, int way) {
     }
     return hash;
 }
-#endif
 
 /* Overlaps, contacts and manifolds. */
 static uint64_t hash_query(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -327,7 +325,6 @@ static uint64_t hash_rays(const struct scene *scene, int inside) {
     return hash;
 }
 
-#ifndef NARC_SMALL
 /* Pairs of boxes in worlds, and what an index finds of each one's world after bodies have changed places. */
 static uint64_t hash_worlds(const struct scene *scene, int way) {
     enum { WORLDS = 3 };
@@ -368,7 +365,6 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     narc_destroy_index(index);
     return hash;
 }
-#endif
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. Boxes of those are
  * rounded outwards to floats. */
@@ -382,24 +378,18 @@ TEST(test_scenes) {
         {"answers", hash_answers, 0, {0x9467dc252df3f63fu, 0x9467dc252df3f63fu}},
         {"manifolds", hash_manifolds, 0, {0x1fe97f326534654au, 0x1fe97f326534654au}},
         {"reaches", hash_manifolds, 1, {0xb20aca8e704ae916u, 0xb20aca8e704ae916u}},
-#ifndef NARC_SMALL
         {"separations", hash_separations, 0, {0xe84fda589ddcfdb3u, 0xe84fda589ddcfdb3u}},
-#endif
         {"straight casts", hash_casts, 0, {0x2634ea780a76a17au, 0x2634ea780a76a17au}},
         {"turning casts", hash_casts, 1, {0x8b787b23ced4e944u, 0x8b787b23ced4e944u}},
         {"casts that let go", hash_casts, 2, {0x92129cf6bff7fc37u, 0x92129cf6bff7fc37u}},
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
-#ifndef NARC_SMALL
         {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
-#endif
         {"points and things", hash_points, 1, {0x9cfc56f9d9095a29u, 0x9219f23e0c618f85u}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},
-#ifndef NARC_SMALL
         {"alone", hash_alone, NARC_INSIDE_LEAVES, {0x9008dfea5b72d305u, 0x9008dfea5b72d305u}},
-#endif
     };
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_golden_scene((narc_precision)precision);
