@@ -30,6 +30,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
   python     the Python package: a wheel and pictures of its examples in out/python/, installed into the environment
              build/python and tested
+  web        the package for JavaScript, in out/web/, and its page: built, tested in node and in Chromium. web --serve shows the
+             page on 127.0.0.1
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -64,6 +66,7 @@ wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-d
 windows_packages="$run_packages gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev wine64"
 python_packages="$library_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
     python3-hypothesis python3-shapely python3-matplotlib mypy"
+web_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs chromium"
 dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
 
 missing_of() {
@@ -551,6 +554,40 @@ make_wheel() {
     ls -l out/python
 }
 
+# TypeScript and what drives Chromium come from npm, for this build and its tests alone.
+web() {
+    require_packages $web_packages
+    command -v npm >/dev/null || require_packages npm
+    build wasm32 narc_module narc_small narc_layouts narc_page
+    say "build/web"
+    npm install --prefix build/web-tools --no-audit --no-fund --no-save typescript@5 puppeteer-core@24 ||
+        fail "npm has no typescript or puppeteer-core"
+    rm -rf build/web out/web
+    mkdir -p build/web out/web
+    cp -r bindings/web/src bindings/web/tests bindings/web/page bindings/web/tsconfig.json build/web
+    node --no-warnings cmake/wasi.mjs build/wasm32/narc_layouts.wasm | node bindings/web/src/layouts.mjs >build/web/src/layouts.ts ||
+        fail "making the table of layouts failed"
+    tsc="node build/web-tools/node_modules/typescript/bin/tsc"
+    $tsc -p build/web || fail "compiling bindings/web failed"
+    version=$(sed -n 's/^export const version = "\(.*\)";/\1/p' build/web/src/layouts.ts)
+    sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
+    cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
+    (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
+    cp -r build/web/page build/wasm32/page.wasm out/web
+    mv out/web/page.wasm out/web/page/page.wasm
+    if [ "${1:-}" = --serve ]; then
+        node bindings/web/tests/serve.mjs out/web/page
+        return
+    fi
+    say "its tests"
+    $tsc -p build/web/tests || fail "the types are not as they should be"
+    node --expose-gc --test build/web/tests/module.test.mjs || fail "tests failed in build/web"
+    NODE_PATH=build/web-tools/node_modules node bindings/web/tests/page.mjs out/web/page build/web-tools out/web ||
+        fail "the page is not as it should be"
+    say "written"
+    ls -l out/web
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -569,6 +606,7 @@ soak) soak "${2:-}" ;;
 coverage) coverage ;;
 python) make_wheel ;;
 docs) reference ;;
+web) web "${2:-}" ;;
 bench)
     shift
     bench "$@"

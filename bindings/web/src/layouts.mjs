@@ -18,8 +18,8 @@ const numbers = { float: "number", double: "number", uint8_t: "number", uint16_t
 const optionsName = (name) => typeName(name).replace(/(Options)?$/, "Options");
 const isEnumeration = (type) => layouts[type] && layouts[type].members.length === 0;
 
-// What the core is handed by this package alone: memory, threads, where answers go.
-const own = /^(workers|allocator|reserved|out_)/;
+// What the core is handed by this package alone: memory, threads, where answers go, lengths of lists.
+const own = /^(workers|allocator|reserved|out_.*|.+_count)$/;
 
 // With all that is within them, or that options point to.
 function closure(names, pointers) {

@@ -55,6 +55,8 @@ export class Memory {
     readonly #error: number;
     /** A place of 8 bytes, for what a call gives back. */
     readonly out: number;
+    /** How many bodies an index has that is asked: as many owners. */
+    things = 0;
     #chunk = 0;
     #chunkSize = 0;
     #used = 0;
@@ -207,10 +209,17 @@ export class Memory {
             throw new TypeError(`options: an object is wanted, not ${describe(values)}`);
         for (const name in values) {
             const value = (values as Record<string, unknown>)[name], member = layout.members[name];
-            if (!member || /^(workers|allocator|out[A-Z])/.test(name))
+            if (!member || /^(workers|allocator|out[A-Z].*|.+Count)$/.test(name))
                 throw new TypeError(`${name}: ${layout.name} has no such member`);
-            if (value !== undefined)
-                this.#member(pointer + member.offset, name, member, value, count);
+            if (value === undefined)
+                continue;
+            const own = layout.members[`${name}Count`]; // a list of its own length
+            let items = layout === layouts.Owners && name === "owner" ? this.things : count;
+            if (own) {
+                items = value instanceof Column ? value.count : (value as Items).length;
+                this.view.setUint32(pointer + own.offset, items, true);
+            }
+            this.#member(pointer + member.offset, name, member, value, items);
         }
     }
 
@@ -228,6 +237,8 @@ export class Memory {
             this.#column(pointer, name, type, value, count);
         else if (type === "const narc_bodies *")
             this.view.setUint32(pointer, this.bodies(value as Bodies), true);
+        else if (type === "const narc_pairs *")
+            this.view.setUint32(pointer, this.columns(layouts.Pairs, value as object), true);
         else if (type.endsWith(" *"))
             this.view.setUint32(pointer, this.options(layoutOf(type.slice(6, -2)), value as object, count), true);
         else

@@ -161,7 +161,7 @@ export class Narc {
                 throw new RangeError(`pairs: ${length} numbers, two for each pair are wanted`);
             return length / 2;
         }
-        if (typeof pairs !== "object" || pairs === null || ArrayBuffer.isView(pairs))
+        if (typeof pairs !== "object" || pairs === null || Array.isArray(pairs) || ArrayBuffer.isView(pairs))
             throw new TypeError("pairs: Uint32Array, Numbers or columns are wanted");
         return countOf(pairs);
     }
@@ -172,10 +172,9 @@ export class Narc {
         const pointer = memory.clear(layouts.Pairs.size), { a, b } = layouts.Pairs.members;
         const at = pairs instanceof Numbers ? pairs.pointer : memory.copy(pairs);
         memory.u32[pointer >> 2] = this.#pairCount(pairs);
-        for (const [member, place] of [[a, at], [b, at + 4]] as const) {
-            memory.u32[(pointer + member.offset) >> 2] = place;
-            memory.u32[(pointer + member.offset + 4) >> 2] = 8;
-        }
+        memory.u32[(pointer + a.offset) >> 2] = at;
+        memory.u32[(pointer + b.offset) >> 2] = at + 4;
+        memory.u32[(pointer + a.offset + 4) >> 2] = memory.u32[(pointer + b.offset + 4) >> 2] = 8;
         return pointer;
     }
     /** How many pairs, rays or points of the last call had no answer: a broken body, or one too far away. */
@@ -185,9 +184,8 @@ export class Narc {
 
     #rows<Row>(name: string, out: Rows<Row>, shapes: Shapes, bodies: Bodies, pairs: PairList, options: QueryOptions | undefined): Rows<Row> {
         const { memory } = this, count = this.#pairCount(pairs), dense = Boolean(options?.dense);
-        const wanted = dense ? count : options?.selectionCount ?? count;
         out.count = 0;
-        out.reserve(wanted);
+        out.reserve(count);
         for (;;) {
             memory.begin();
             const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
@@ -203,12 +201,8 @@ export class Narc {
     }
     #query(options: QueryOptions | undefined, count: number): number {
         const { memory } = this, query = memory.clear(layouts.Query.size);
-        if (options !== undefined) {
-            const { selection } = options;
+        if (options !== undefined)
             memory.write(query, layouts.Query, options, count);
-            if (selection !== undefined && options.selectionCount === undefined)
-                throw new TypeError("selectionCount: how many pairs are selected is wanted");
-        }
         memory.u32[(query + layouts.Query.members.outSkipped.offset) >> 2] = memory.out + 4;
         memory.u32[(memory.out >> 2) + 1] = 0;
         return query;

@@ -74,6 +74,7 @@ export class Index extends Owned {
         rows.count = 0;
         rows.reserve(wanted);
         memory.begin();
+        memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), asked = memory.columns(layouts.Rays, rays);
         memory.call("narc_cast_rays", this.pointer, this.#shapes.pointer, given, asked, memory.searching(layouts.RayOptions, options, count), rows.pointer, rows.capacity);
         rows.count = wanted;
@@ -86,6 +87,7 @@ export class Index extends Owned {
         rows.count = 0;
         rows.reserve(wanted);
         memory.begin();
+        memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), asked = memory.columns(layouts.Points, points);
         memory.call("narc_find_nearest", this.pointer, this.#shapes.pointer, given, asked, memory.searching(layouts.NearestOptions, options, count), rows.pointer, rows.capacity);
         rows.count = wanted;
@@ -97,6 +99,7 @@ export class Index extends Owned {
         rows.count = 0;
         rows.reserve(count);
         memory.begin();
+        memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), moving = memory.bodies(movers), moved = memory.options(layouts.Motions, motions, count);
         memory.call("narc_cast_shapes", this.pointer, this.#shapes.pointer, given, moving, moved, memory.options(layouts.IndexQuery, search, count),
             memory.options(layouts.CastOptions, options, count), rows.pointer, rows.capacity);
@@ -112,6 +115,7 @@ export class Index extends Owned {
         if (boxes.length % 4 !== 0)
             throw new RangeError(`boxes: ${boxes.length} numbers, four for each box are wanted`);
         memory.begin();
+        memory.things = countOf(this.#bodies);
         const given = memory.copy(boxes), pairs = memory.clear(layouts.Pairs.size);
         memory.call("narc_query_index", this.pointer, given, count, memory.options(layouts.IndexQuery, search, count), pairs);
         const { a, b } = layouts.Pairs.members, found = memory.u32[pairs >> 2]!, out = new Uint32Array(2 * found);
