@@ -18,7 +18,8 @@ __wasi_errno_t __wasi_fd_close(__wasi_fd_t fd) {
     return __WASI_ERRNO_BADF;
 }
 
-__wasi_errno_t __wasi_fd_seek(__wasi_fd_t fd, __wasi_filedelta_t offset, __wasi_whence_t whence, __wasi_filesize_t *at) {
+__wasi_errno_t __wasi_fd_seek(__wasi_fd_t fd, __wasi_filedelta_t offset, __wasi_whence_t whence,
+                              __wasi_filesize_t *at) {
     (void)fd, (void)offset, (void)whence, (void)at;
     return __WASI_ERRNO_BADF;
 }

@@ -173,7 +173,7 @@ test("nothing leaks, and a step makes garbage for no body", { timeout: 60000 }, 
             sum += rows.at(k).normalX;
         stay.update(shapes, bodies, told);
         for (let k = 0; k < stay.touchingCount; k++)
-            sum += stay.manifold(stay.touching(k)).radiusA;
+            sum += stay.manifold(stay.touching(k)).normalY;
     };
     for (let k = 0; k < 900; k++)
         step();
