@@ -573,8 +573,8 @@ web() {
     sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
     cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
     (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
-    cp -r build/web/page build/wasm32/page.wasm out/web
-    mv out/web/page.wasm out/web/page/page.wasm
+    mkdir out/web/page
+    cp build/web/page/index.html build/web/page/page.css build/web/page/page.js build/wasm32/page.wasm out/web/page
     if [ "${1:-}" = --serve ]; then
         node bindings/web/tests/serve.mjs out/web/page
         return
@@ -582,8 +582,12 @@ web() {
     say "its tests"
     $tsc -p build/web/tests || fail "the types are not as they should be"
     node --expose-gc --test build/web/tests/module.test.mjs || fail "tests failed in build/web"
-    NODE_PATH=build/web-tools/node_modules node bindings/web/tests/page.mjs out/web/page build/web-tools out/web ||
-        fail "the page is not as it should be"
+    cmake -B build/native -DCMAKE_BUILD_TYPE=Release -DNARC_BUILD_FILES=OFF -DNARC_BUILD_FIT=OFF -DNARC_BUILD_METHODS=OFF \
+        -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF || fail "configuring build/native failed"
+    cmake --build build/native --target narc_static || fail "building build/native failed"
+    cc -O2 -ffp-contract=off -Iinclude -Iexamples examples/world*.c examples/scenes.c -o build/native/world build/native/libnarc.a \
+        -lsleef -fopenmp -lm || fail "building build/native/world failed"
+    node bindings/web/tests/page.mjs out/web/page build/web-tools out/web build/native/world || fail "the page is not as it should be"
     say "written"
     ls -l out/web
 }

@@ -250,7 +250,7 @@ NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *
  *   out_rows   room for `capacity` rows, at least rays->count
  * Rows are those of narc_cast_rays() with an index of that body alone, to the last bit, whatever the bodies' boxes.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
- * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. Not in narc_small.wasm. */
+ * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. */
 NARC_API narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
                                          const narc_index_column *body, const narc_ray_options *options,
                                          narc_ray_hit *out_rows, size_t capacity, narc_error *error);
@@ -410,7 +410,7 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
  *   workers    threads to use; NULL: the calling one
  *   out_bits   NARC_BIT_WORDS(points->count) words
  * The bit is set exactly if the separation that narc_find_distances() tells is below 0, so a point on the outline is not
- * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. Not in narc_small.wasm. */
+ * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. */
 NARC_API narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                       const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
                                       narc_error *error);

@@ -2,10 +2,10 @@
 // The page: scenes of the example engine in page.wasm, drawn by arcs, moved by the pointer.
 const $ = (id) => document.getElementById(id);
 const canvas = $("canvas"), context = canvas.getContext("2d");
-const TITLES = { well: "A thousand bodies", heap: "Heap", pile: "Pile", stack: "Stack of 30", pyramid: "Pyramid", rounded: "Rounded", bullets: "Bullets",
-    rain: "Rain", car: "Car on arcs", looping: "Looping", bowl: "Bowl", dominoes: "Dominoes", platforms: "Platforms" };
-const ORDER = ["well", "looping", "car", "bullets", "dominoes", "platforms", "rain", "pyramid", "stack"];
-const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5;
+const TITLES = { well: "A thousand bodies", looping: "Looping", car: "Car on arcs", bullets: "Bullets", dominoes: "Dominoes", platforms: "Platforms",
+    rain: "Rain", pyramid: "Pyramid", stack: "Stack of 30" };
+const ORDER = Object.keys(TITLES);
+const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5, GROUND = 0.2;
 
 let core, scenes, current, seed = 1, paths, extents, view, memory = {};
 let owed = 0, last = 0, held = false, stroke = null, shown = null;
@@ -32,7 +32,8 @@ function pathOf(shape, open) {
     const count = core.arcs(shape), { f64 } = views(), path = new Path2D(), list = core.arc_list() / 8;
     let extent = 0;
     for (let k = 0; k < count; k++) {
-        const [x, y, radius, start, end] = f64.subarray(list + ARC * k, list + ARC * k + ARC);
+        const [x, y, given, start, end] = f64.subarray(list + ARC * k, list + ARC * k + ARC);
+        const radius = given - (open ? GROUND / 2 : 0); // a band below the surface
         extent = Math.max(extent, Math.hypot(x, y) + Math.abs(radius));
         if (radius < 0) // concave: its points lie on the other side of the circle
             path.arc(x, y, -radius, start + Math.PI, end + Math.PI, end < start);
@@ -61,7 +62,7 @@ function arcsOf(shape) {
 let colors = {};
 function readColors() {
     const style = getComputedStyle(document.documentElement), get = (name) => style.getPropertyValue(name).trim();
-    colors = { fills: [0, 1, 2, 3, 4, 5].map((k) => get(`--c${k}`)), ink: get("--ink"), ground: get("--ground"), accent: get("--accent"), line: get("--line"), quiet: get("--quiet") };
+    colors = { fills: [0, 1, 2, 3, 4, 5].map((k) => get(`--c${k}`)), ink: get("--ink"), ground: get("--ground"), face: get("--face"), accent: get("--accent"), line: get("--line"), quiet: get("--quiet") };
 }
 
 /** What of the world is seen: all of it, as the scene begins. */
@@ -116,7 +117,7 @@ function draw() {
         place(at);
         if (flags & 4) {
             context.strokeStyle = colors.ground;
-            context.lineWidth = 0.18;
+            context.lineWidth = GROUND;
             context.stroke(path);
         } else if (flags & 8)
             continue;
@@ -124,6 +125,9 @@ function draw() {
             context.fillStyle = flags & 2 ? colors.ground : colors.fills[shape % colors.fills.length];
             context.globalAlpha = sleeping && flags & 1 ? 0.3 : 1;
             context.fill(path);
+            context.strokeStyle = colors.face;
+            context.lineWidth = view.ratio / s;
+            context.stroke(path);
         }
     }
     context.globalAlpha = 1;
@@ -158,8 +162,7 @@ function drawLine(points, color, width) {
 
 const lit = {};
 function drawArcs(count, base, place) {
-    const { f32, u32 } = views();
-    void f32;
+    const { u32 } = views();
     for (let k = 0; k < count; k++) {
         const at = base + BODY * k, shape = u32[at + 4];
         if (u32[at + 5] & 12)

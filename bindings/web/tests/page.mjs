@@ -150,7 +150,7 @@ try {
         assert(to.y > from.y + 0.5, `${from.y} ${to.y}`);
         await tab.touchscreen.touchEnd();
         assert(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-        await tab.setViewport({ width: 1000, height: 500 });
+        await tab.setViewport({ width: 1000, height: 500, hasTouch: true, isMobile: true });
         await wait(200);
         const [wide, ratio] = await tab.evaluate(() => [document.getElementById("canvas").width, page.view().ratio]);
         assert(Math.abs(wide / ratio - 1000) < 60, `${wide}`);
