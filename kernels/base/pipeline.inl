@@ -33,15 +33,19 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
 
+/* Settles pairs of a kind, of those with pieces in the lanes `open`, and returns the others. */
+typedef vm settling(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS]);
+
 /* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
 typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
-    detour *take;   /* if call->boxes: what comes before all else */
-    triage *settle; /* what is answered as it is set up; all others go to stage `first` */
-    dropping *drop; /* if call->concave: what of them goes no further; or NULL */
-    int fields;     /* what travels from there on */
+    detour *take;     /* if call->boxes: what comes before all else */
+    triage *settle;   /* what is answered as it is set up; all others go to stage `first` */
+    settling *beside; /* if call->concave: what of them is answered at once, */
+    dropping *drop;   /* and what goes no further; or NULL */
+    int fields;       /* what travels from there on */
     stage *const *stages;
     int first;
     int edged; /* where pairs with edges may begin instead, or 0 */
@@ -234,8 +238,11 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             vm open = course->settle(call, block + (size_t)k, &circles, item);
-            if (NARC_PIECES && !LIKELY(!call->pieces))
+            if (NARC_PIECES && !LIKELY(!call->pieces)) {
+                if (course->beside && call->concave && vm_any(open))
+                    open = course->beside(call, queues, open, circles.margin, item);
                 open = drop_some(call, course->drop, &indices, k, open, item, &met);
+            }
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||
