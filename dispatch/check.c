@@ -290,7 +290,7 @@ size_t narc_find_bad_pair(const narc_batch *batch) {
     atomic_init(&search.bad, first + count);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
-    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 8 <= count) {
+    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 4 <= count) {
         narc_run_parts(batch->query->workers, search.parts, look_at_columns, &search);
         if (atomic_load(&search.fine))
             return first + count;
