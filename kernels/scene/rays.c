@@ -256,21 +256,20 @@ INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, fl
     return slots & ((1u << NARC_NODE_SLOTS) - 1);
 }
 
-/* Of each set of slots and each flips: bit k becomes bit k ^ flips. */
-#define FLIP_1(set, flips) ((flips)&1 ? ((set)&0x55) << 1 | ((set)&0xaa) >> 1 : (set))
-#define FLIP_2(set, flips) ((flips)&2 ? ((set)&0x33) << 2 | ((set)&0xcc) >> 2 : (set))
-#define FLIP_4(set, flips) ((flips)&4 ? ((set)&0x0f) << 4 | ((set)&0xf0) >> 4 : (set))
-#define FLIP(set, flips)   FLIP_4(FLIP_2(FLIP_1(set, flips), flips), flips)
-#define FLIP_8(set, f)                                                                                                 \
-    FLIP(set, f), FLIP(set + 1, f), FLIP(set + 2, f), FLIP(set + 3, f), FLIP(set + 4, f), FLIP(set + 5, f),            \
-        FLIP(set + 6, f), FLIP(set + 7, f)
-#define FLIP_64(set, f)                                                                                                \
-    FLIP_8(set, f), FLIP_8(set + 8, f), FLIP_8(set + 16, f), FLIP_8(set + 24, f), FLIP_8(set + 32, f),                 \
-        FLIP_8(set + 40, f), FLIP_8(set + 48, f), FLIP_8(set + 56, f)
-#define FLIP_ALL(f)                                                                                                    \
-    { FLIP_64(0, f), FLIP_64(64, f), FLIP_64(128, f), FLIP_64(192, f) }
-static const uint8_t flipped[8][256] = {FLIP_ALL(0), FLIP_ALL(1), FLIP_ALL(2), FLIP_ALL(3),
-                                        FLIP_ALL(4), FLIP_ALL(5), FLIP_ALL(6), FLIP_ALL(7)};
+/* Of each set of slots and each flips: bit k becomes bit k ^ flips. Sets of more slots are those of fewer, without a slot
+ * and with it. */
+#define FLIP(k, f)       | 1 << ((k) ^ (f))
+#define SETS_2(set, f)   set, set FLIP(0, f)
+#define SETS_4(set, f)   SETS_2(set, f), SETS_2(set FLIP(1, f), f)
+#define SETS_8(set, f)   SETS_4(set, f), SETS_4(set FLIP(2, f), f)
+#define SETS_16(set, f)  SETS_8(set, f), SETS_8(set FLIP(3, f), f)
+#define SETS_32(set, f)  SETS_16(set, f), SETS_16(set FLIP(4, f), f)
+#define SETS_64(set, f)  SETS_32(set, f), SETS_32(set FLIP(5, f), f)
+#define SETS_128(set, f) SETS_64(set, f), SETS_64(set FLIP(6, f), f)
+#define ALL_SETS(f)                                                                                                    \
+    { SETS_128(0, f), SETS_128(0 FLIP(7, f), f) }
+static const uint8_t flipped[8][256] = {ALL_SETS(0), ALL_SETS(1), ALL_SETS(2), ALL_SETS(3),
+                                        ALL_SETS(4), ALL_SETS(5), ALL_SETS(6), ALL_SETS(7)};
 
 INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
     return a->fraction < b->fraction || (a->fraction == b->fraction && a->body < b->body);
