@@ -145,20 +145,23 @@ INLINE void fetch_range(const struct call *call, const struct sources *given, bo
     }
 }
 
-/* What pairs read that come after the block that begins with number `block`: of one block the records of pieces, of the
- * next one the headers, of a third one the bodies; before the first block for that, too. */
-NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t block) {
-    const size_t pieces = block > 0 ? block + BLOCK : 0, headers = block > 0 ? block + 2 * BLOCK : 0;
+/* What pairs read that come one block, two and three after a vector of them, the first of which is number `first`: the records
+ * of pieces, the headers, the bodies; before the first one all up to there. A vector at a time, as the memory takes few
+ * requests at once. */
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t first) {
+    const size_t bodies = first + 3 * BLOCK, headers = first + 2 * BLOCK, pieces = first + BLOCK;
     HAS_EFFECT;
-    fetch_range(call, given, of_b, block > 0 ? block + 3 * BLOCK : 0, block + 4 * BLOCK, FETCH_BODIES);
-    fetch_range(call, given, of_b, headers, block + 3 * BLOCK, FETCH_HEADERS);
-    fetch_range(call, given, of_b, pieces, block + 2 * BLOCK, FETCH_PIECES);
+    fetch_range(call, given, of_b, first > 0 ? bodies : 0, bodies + V_WIDTH, FETCH_BODIES);
+    fetch_range(call, given, of_b, first > 0 ? headers : 0, headers + V_WIDTH, FETCH_HEADERS);
+    fetch_range(call, given, of_b, first > 0 ? pieces : 0, pieces + V_WIDTH, FETCH_PIECES);
 }
 
 /* Where the pairs of a call have pieces, and what became of them. */
 struct pieces_met {
-    bool many;          /* are there MANY_RECORDS? */
-    bool of_a, of_b;    /* has a pair of the last block one? Of the first block: the first pair */
+    bool many;       /* are there MANY_RECORDS? */
+    bool of_a, of_b; /* has a pair of the last block one? Of the first block: the first pair */
+    bool fetches;    /* so they are asked for ahead: of B, or of A */
+    bool fetches_b;
     int tried, dropped; /* so many may have been dropped, and were */
 };
 
@@ -178,10 +181,9 @@ INLINE struct pieces_met meet_pieces(const struct call *call, const struct sourc
 }
 
 /* Before a block of a call with pieces. */
-INLINE void begin_block_of_pieces(const struct call *call, const struct sources *given, struct pieces_met *met,
-                                  size_t block) {
-    if (met->many && (met->of_a || met->of_b))
-        fetch_ahead(call, given, met->of_b, block);
+INLINE void begin_block_of_pieces(struct pieces_met *met) {
+    met->fetches = met->many && (met->of_a || met->of_b);
+    met->fetches_b = met->of_b;
     met->of_a = met->of_b = false;
 }
 
@@ -211,7 +213,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                                                                : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
-    struct pieces_met met = {false, false, false, 0, 0};
+    struct pieces_met met = {.many = false};
     if (NARC_PIECES && !LIKELY(!call->pieces) && call->count > 0)
         met = meet_pieces(call, &given);
     for (int s = 0; s < course->end; s++)
@@ -220,13 +222,15 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_pairs(&given, call->first + block, n, layout != POSE_DOUBLE_ROWS, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
-            begin_block_of_pieces(call, &given, &met, block);
+            begin_block_of_pieces(&met);
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
+            if (NARC_PIECES && !LIKELY(!met.fetches))
+                fetch_ahead(call, &given, met.fetches_b, block + (size_t)k);
             const struct placement placement = place_pairs(call, &given, &indices, k, layout, true);
             vm asked = vm_front(n - k);
             if (course->take && !LIKELY(!call->boxes)) {
