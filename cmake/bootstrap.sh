@@ -64,7 +64,7 @@ study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
 windows_packages="$run_packages gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev wine64"
-python_packages="$library_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
+python_packages="$library_packages $fit_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
     python3-hypothesis python3-shapely python3-matplotlib mypy"
 web_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs chromium"
 dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
@@ -543,11 +543,11 @@ make_wheel() {
     $pip wheel --no-index --no-build-isolation --no-deps -w out/python bindings/python || fail "building the wheel failed"
     $pip install --no-index --no-deps --force-reinstall out/python/narc-*-cp311-abi3-*.whl || fail "installing the wheel failed"
     say "its tests"
-    env -i build/python/bin/python -m narc || fail "the package does not run by itself"
+    env -i PATH=/nowhere build/python/bin/python -m narc || fail "the package does not run without a compiler"
     build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
     (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
     say "examples"
-    for example in lidar packing worlds; do
+    for example in drawing lidar packing worlds; do
         build/python/bin/python bindings/python/examples/$example.py out/python/$example.png || fail "$example.py failed"
     done
     say "written"

@@ -267,6 +267,26 @@ static bool has_several(const struct contacts *rows) {
     return false;
 }
 
+/* A chain of a family that makes entries, with room for bodies that each have a pair with every entry. */
+static struct ground_bodies *begin_family(struct test_random *random, enum chain_family family, size_t bodies) {
+    narc_shapes *probe = empty_store();
+    struct chain chain;
+    narc_chain_entry entries[ENTRIES];
+    size_t count;
+    while (chain = make_chain(random, family),
+           chain.count < 3 ||
+               narc_add_chain(probe, chain.arcs, chain.count, &(narc_chain_options){.closed = chain.closed}, entries,
+                              ENTRIES, &count, NULL) != NARC_OK)
+        free(chain.arcs);
+    narc_destroy_shapes(probe);
+    struct ground_bodies *g = begin_chain(0, 0, 0);
+    free(g->walk.arcs);
+    g->walk.arcs = chain.arcs;
+    g->walk.count = chain.count;
+    place_chain(g, &(narc_chain_options){.closed = chain.closed, .first_run = 7}, bodies, ENTRIES * bodies);
+    return g;
+}
+
 /* Hills, bowls, and what is thinner than bodies, so that what faces away is not reached. */
 TEST(test_forms) {
     static const enum chain_family families[] = {CHAIN_BOWLS, CHAIN_MIXED, CHAIN_HILLS, CHAIN_ARCH, CHAIN_SHEET};
@@ -275,27 +295,49 @@ TEST(test_forms) {
     bool several = false;
     const size_t rounds = test_trials(20);
     for (size_t round = 0; round < rounds || !several; round++) {
-        narc_shapes *probe = empty_store();
-        struct chain chain;
-        narc_chain_entry entries[ENTRIES];
-        size_t count;
-        while (chain = make_chain(&random, families[round % FAMILIES]),
-               chain.count < 3 ||
-                   narc_add_chain(probe, chain.arcs, chain.count, &(narc_chain_options){.closed = chain.closed},
-                                  entries, ENTRIES, &count, NULL) != NARC_OK)
-            free(chain.arcs);
-        narc_destroy_shapes(probe);
-        struct ground_bodies *g = begin_chain(0, 0, 0);
-        free(g->walk.arcs);
-        g->walk.arcs = chain.arcs;
-        g->walk.count = chain.count;
-        place_chain(g, &(narc_chain_options){.closed = chain.closed, .first_run = 7}, MOVERS, (size_t)ENTRIES * MOVERS);
+        struct ground_bodies *g = begin_family(&random, families[round % FAMILIES], MOVERS);
         add_movers(&random, g, MOVERS);
         struct contacts right = ask(g, &(narc_query){.margin = margin});
         several |= has_several(&right);
         check_forms(g, &right);
         check_formula(g, &right);
         check_exchanged(g, &right);
+        free(right.rows);
+        end_chain(g);
+    }
+}
+
+/* Circles above and below where arcs and edges meet, and a little beside: on their own origin, and off it. */
+TEST(test_circles_at_junctions) {
+    static const enum chain_family families[] = {CHAIN_HILLS, CHAIN_MIXED, CHAIN_BOWLS, CHAIN_ARCH, CHAIN_SHEET};
+    enum { CIRCLES = 200, FAMILIES = sizeof families / sizeof *families };
+    struct test_random random = test_random_named("circles at junctions");
+    const size_t rounds = test_trials(40);
+    for (size_t round = 0; round < rounds; round++) {
+        struct ground_bodies *g = begin_family(&random, families[round % FAMILIES], CIRCLES);
+        for (uint32_t k = 0; k < CIRCLES; k++) {
+            const narc_arc *near = &g->chain.arcs[random_below(&random, g->chain.count)];
+            const double angle = random_below(&random, 2) ? near->start : near->end, c = cos(angle), s = sin(angle);
+            const double off = random_below(&random, 2) ? random_between(&random, -2, 2) : 0;
+            const struct shape shape = {.count = 1, .arcs = {{off, off / 2, 1, -PI, PI}}};
+            const double scale = random_log_between(&random, 0.01, 1);
+            const double beside = random_log_between(&random, 1e-9, 0.1) * (random_below(&random, 2) ? 1 : -1);
+            const double above =
+                random_below(&random, 3)
+                    ? scale * (1 + random_log_between(&random, 1e-7, 0.1) * (random_below(&random, 2) ? 1 : -1))
+                    : beside * random_between(&random, -8, 8);
+            struct body body = turned_body(random_between(&random, -PI, PI), scale);
+            const double x = near->center_x + (near->radius + above) * c - beside * s,
+                         y = near->center_y + (near->radius + above) * s + beside * c;
+            body.x = x - scale * off * ((double)body.cosine - (double)body.sine / 2);
+            body.y = y - scale * off * ((double)body.sine + (double)body.cosine / 2);
+            body.shape = scene_add_shape(&g->scene, &shape);
+            const uint32_t circle = scene_add_body(&g->scene, body);
+            for (uint32_t e = 0; e < g->entry_count; e++)
+                scene_add_pair(&g->scene, (e + k) % 2 ? e : circle, (e + k) % 2 ? circle : e);
+        }
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        check_formula(g, &right);
         free(right.rows);
         end_chain(g);
     }

@@ -15,31 +15,10 @@
 #include <narc_contacts.h>
 #include <narc_scene.h>
 
+#include "errors.h"
 #include "threads.h"
 
-static PyObject *error_class, *index_error_class, *warning_class;
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-static PyObject *raise_error(const narc_error *error, narc_status status) {
-    if (status == NARC_ERROR_MEMORY)
-        return PyErr_NoMemory();
-    PyObject *const of = status == NARC_ERROR_INDEX ? index_error_class : error_class;
-    PyObject *const raised =
-        PyObject_CallFunction(of, "s", error->message[0] ? error->message : narc_status_name(status));
-    PyObject *const values[] = {PyUnicode_FromString(narc_status_name(status)), PyLong_FromSize_t(error->index),
-                                PyFloat_FromDouble(error->value)};
-    static const char *const names[] = {"status", "index", "value"};
-    bool ok = raised != NULL;
-    for (int k = 0; k < 3; k++) {
-        ok = ok && values[k] && PyObject_SetAttrString(raised, names[k], values[k]) == 0;
-        Py_XDECREF(values[k]);
-    }
-    if (ok)
-        PyErr_SetObject(of, raised);
-    Py_XDECREF(raised);
-    return NULL;
-}
+static PyObject *warning_class;
 
 /* ------------------------------------------------------------------------------------------------ objects */
 
@@ -319,6 +298,8 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         PyObject *const whole = PyNumber_Index(given);
         f->n[k] = whole ? PyLong_AsSize_t(whole) : 0;
         Py_XDECREF(whole);
+        if (whole && PyErr_Occurred())
+            PyErr_Format(index_error_class, "%s is %R, which no number of one is", a->name, given);
         return !PyErr_Occurred();
     }
     default:
@@ -394,13 +375,21 @@ static PyObject *copy_step(const narc_step_result *r) {
     return made;
 }
 
+/* The warning, at the line outside this package; false if it is an exception there. */
+static bool warn_of_skipped(size_t skipped) {
+    PyObject *const tables = PyImport_ImportModule("narc._tables");
+    PyObject *const told = tables ? PyObject_CallMethod(tables, "warn_of_skipped", "n", (Py_ssize_t)skipped) : NULL;
+    Py_XDECREF(told);
+    Py_XDECREF(tables);
+    return told != NULL;
+}
+
 static PyObject *make_result(const frame *f, const signature *s, narc_status status) {
     if (status != NARC_OK && status != NARC_ERROR_CAPACITY)
         return raise_error(&f->error, status);
     if (status == NARC_ERROR_CAPACITY && f->count == 0)
         return raise_error(&f->error, status);
-    if (f->skipped > 0 &&
-        PyErr_WarnFormat(warning_class, 2, "%zu of what was asked has no answer: a broken body or number", f->skipped))
+    if (f->skipped > 0 && !warn_of_skipped(f->skipped))
         return NULL;
     switch (s->call->result) {
     case PAIRS:
