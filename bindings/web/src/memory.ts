@@ -415,20 +415,28 @@ export class Cursor {
 type CursorClass = new (memory: Memory) => Cursor;
 const cursors = new Map<Layout, CursorClass>();
 
-const GET: Record<string, (view: DataView, place: number) => number | bigint> = {
-    float: (view, place) => view.getFloat32(place, true),
-    double: (view, place) => view.getFloat64(place, true),
-    uint8_t: (view, place) => view.getUint8(place),
-    uint16_t: (view, place) => view.getUint16(place, true),
-    uint64_t: (view, place) => view.getBigUint64(place, true),
+/** For each type the property of a member. Each has functions of its own, which the engine then compiles into their callers,
+ * so that no number is boxed. */
+const PROPERTIES: Record<string, (offset: number) => PropertyDescriptor & ThisType<Cursor>> = {
+    float: (offset) => ({
+        get() { return this.memory.view.getFloat32(this.place + offset, true); },
+        set(value: number) { this.memory.view.setFloat32(this.place + offset, value, true); } }),
+    double: (offset) => ({
+        get() { return this.memory.view.getFloat64(this.place + offset, true); },
+        set(value: number) { this.memory.view.setFloat64(this.place + offset, value, true); } }),
+    uint8_t: (offset) => ({
+        get() { return this.memory.view.getUint8(this.place + offset); },
+        set(value: number) { this.memory.view.setUint8(this.place + offset, value); } }),
+    uint16_t: (offset) => ({
+        get() { return this.memory.view.getUint16(this.place + offset, true); },
+        set(value: number) { this.memory.view.setUint16(this.place + offset, value, true); } }),
+    uint64_t: (offset) => ({
+        get() { return this.memory.view.getBigUint64(this.place + offset, true); },
+        set(value: bigint) { this.memory.view.setBigUint64(this.place + offset, value, true); } }),
 };
-const SET: Record<string, (view: DataView, place: number, value: never) => void> = {
-    float: (view, place, value) => view.setFloat32(place, value, true),
-    double: (view, place, value) => view.setFloat64(place, value, true),
-    uint8_t: (view, place, value) => view.setUint8(place, value),
-    uint16_t: (view, place, value) => view.setUint16(place, value, true),
-    uint64_t: (view, place, value) => view.setBigUint64(place, value, true),
-};
+const UINT32 = (offset: number): PropertyDescriptor & ThisType<Cursor> => ({
+    get() { return this.memory.view.getUint32(this.place + offset, true); },
+    set(value: number) { this.memory.view.setUint32(this.place + offset, value, true); } });
 
 /** A class with a property for each member of the layout; an array is a method that takes a number. */
 export function cursorOf(layout: Layout): CursorClass {
@@ -452,13 +460,13 @@ export function cursorOf(layout: Layout): CursorClass {
                 Object.defineProperty(Row.prototype, name, { get(this: Cursor) { return at.call(this, 0); } });
             continue;
         }
-        const get = GET[type] ?? ((view: DataView, place: number) => view.getUint32(place, true));
-        const set = SET[type] ?? ((view: DataView, place: number, value: number) => view.setUint32(place, value, true));
-        Object.defineProperty(Row.prototype, name, count > 1
-            ? { value(this: Cursor, index: number) { return get(this.memory.view, this.place + offset + item * whole(index, name, end)); } }
-            : { enumerable: true,
-                get(this: Cursor) { return get(this.memory.view, this.place + offset); },
-                set(this: Cursor, value: never) { set(this.memory.view, this.place + offset, value); } });
+        const property = PROPERTIES[type] ?? UINT32;
+        if (count === 1) {
+            Object.defineProperty(Row.prototype, name, { ...property(offset), enumerable: true });
+            continue;
+        }
+        const items = Array.from({ length: count }, (_, index) => property(offset + item * index).get!);
+        Object.defineProperty(Row.prototype, name, { value(this: Cursor, index: number): unknown { return items[whole(index, name, end)]!.call(this); } });
     }
     cursors.set(layout, Row);
     return Row;
