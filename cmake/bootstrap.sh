@@ -457,7 +457,7 @@ check_style() {
     # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
     # here.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' 'bindings/*.c' \
-        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' |
+        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' ':!bindings/web' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
     git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
 }

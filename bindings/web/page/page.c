@@ -4,6 +4,8 @@
  */
 #include <string.h>
 
+#include <narc_broad_phase.h>
+
 #include "scenes.h"
 
 #define EXPORT(type, name, parameters)                                                                                 \
@@ -32,6 +34,7 @@ static narc_arc arcs[NARC_MAX_ARCS];
 static narc_point outline[POINTS];
 static uint64_t held; /* the id of the body in hand, 0: none */
 static vec hand, hold;
+static narc_index *tree;
 
 /* Scenes by number, "" behind the last. */
 EXPORT(const char *, scene_name, (unsigned number)) { return scenes[number].name ? scenes[number].name : ""; }
@@ -109,6 +112,42 @@ EXPORT(unsigned, touch, (void)) {
     return count;
 }
 EXPORT(page_point *, points, (void)) { return points; }
+
+/* Where the rays of a scanner end, all around from a point: RAYS points, normals 0 where nothing is hit. Each ray is as long as
+ * the reach. */
+EXPORT(unsigned, scan, (float x, float y, float reach)) {
+    enum { RAYS = 1080 };
+    static float motion_x[RAYS], motion_y[RAYS];
+    static narc_box boxes[ROOM];
+    static narc_ray_hit hits[RAYS];
+    const double turn = 2 * 3.14159265358979 / RAYS;
+    narc_bodies bodies = {.count = w.body_count + w.ground_count,
+                          .x = NARC_POSITION_COLUMN(w.bodies, position.x),
+                          .y = NARC_POSITION_COLUMN(w.bodies, position.y),
+                          .cosine = NARC_COLUMN(w.bodies, cosine),
+                          .sine = NARC_COLUMN(w.bodies, sine),
+                          .shape = NARC_COLUMN(w.bodies, shape)};
+    for (int k = 0; k < RAYS; k++) {
+        motion_x[k] = reach * (float)cos(turn * k);
+        motion_y[k] = reach * (float)sin(turn * k);
+    }
+    const narc_rays rays = {.count = RAYS,
+                            .x = {&x, 0, NARC_FLOAT32},
+                            .y = {&y, 0, NARC_FLOAT32},
+                            .motion_x = NARC_ARRAY(motion_x),
+                            .motion_y = NARC_ARRAY(motion_y)};
+    if (bodies.count > ROOM || (!tree && narc_create_index(NULL, &tree)) ||
+        narc_compute_boxes(w.store, &bodies, NULL, boxes, NULL) ||
+        narc_build_index(tree, boxes, bodies.count, NULL, NULL) ||
+        narc_cast_rays(tree, w.store, &bodies, &rays, NULL, hits, RAYS, NULL))
+        return 0;
+    for (int k = 0; k < RAYS; k++) {
+        const float fraction = hits[k].count ? hits[k].fraction : 1;
+        points[k] =
+            (page_point){x + fraction * motion_x[k], y + fraction * motion_y[k], hits[k].normal_x, hits[k].normal_y};
+    }
+    return RAYS;
+}
 
 /* The arcs of a shape; of ground those of its front alone. */
 EXPORT(unsigned, arcs, (unsigned shape)) {

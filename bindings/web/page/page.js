@@ -9,7 +9,8 @@ const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5, GROUND = 0.2;
 
 let core, scenes, current, seed = 1, paths, extents, view, memory = {};
 let owed = 0, last = 0, held = false, stroke = null, shown = null;
-let times = { step: 0, draw: 0 };
+let pointer = null;
+const times = { step: 0, draw: 0, rays: 0 };
 const on = (id) => $(id).getAttribute("aria-pressed") === "true";
 
 function text(pointer) {
@@ -136,6 +137,8 @@ function draw() {
     if (on("boxes"))
         drawBoxes(count, base);
     context.setTransform(s, 0, 0, -s, view.x, view.y);
+    if (on("rays"))
+        drawRays();
     if (on("contacts"))
         drawContacts();
     if (stroke)
@@ -201,6 +204,28 @@ function drawBoxes(count, base) {
     context.stroke();
 }
 
+/** A scanner at the pointer, or in the middle: what it sees, and where its rays end. */
+function drawRays() {
+    const [x0, y0, x1, y1] = view.box, [x, y] = pointer ?? [(x0 + x1) / 2, y0 + 0.75 * (y1 - y0)];
+    const begin = performance.now(), count = core.scan(x, y, x1 - x0), { f32 } = views(), base = core.points() / 4;
+    times.rays += 0.1 * (performance.now() - begin - times.rays);
+    context.beginPath();
+    for (let k = 0; k < count; k++)
+        context.lineTo(f32[base + POINT * k], f32[base + POINT * k + 1]);
+    context.closePath();
+    context.fillStyle = context.strokeStyle = colors.accent;
+    context.globalAlpha = 0.22;
+    context.fill();
+    context.globalAlpha = 1;
+    context.beginPath();
+    const dot = 3 * view.ratio / view.scale;
+    for (let k = 0; k < count; k++)
+        if (f32[base + POINT * k + 2] || f32[base + POINT * k + 3])
+            context.rect(f32[base + POINT * k] - dot / 2, f32[base + POINT * k + 1] - dot / 2, dot, dot);
+    context.rect(x - 2 * dot, y - 2 * dot, 4 * dot, 4 * dot);
+    context.fill();
+}
+
 function drawContacts() {
     const count = core.touch(), { f32 } = views(), base = core.points() / 4, length = 14 / view.scale, dot = 3 / view.scale;
     context.strokeStyle = context.fillStyle = colors.accent;
@@ -240,7 +265,7 @@ function tick(now) {
     }
     draw();
     $("numbers").textContent = `${core.body_count().toLocaleString("en")} bodies, ${core.moving_count()} awake · ${core.pair_count().toLocaleString("en")} pairs · ` +
-        `step ${times.step.toFixed(1)} ms, drawing ${times.draw.toFixed(1)} ms · one thread of WebAssembly`;
+        `step ${times.step.toFixed(1)} ms, drawing ${times.draw.toFixed(1)} ms${on("rays") ? `, 1,080 rays and their tree ${times.rays.toFixed(2)} ms` : ""} · one thread of WebAssembly`;
     requestAnimationFrame(tick);
 }
 
@@ -258,7 +283,7 @@ function start(name, from = seed) {
     seed = from;
     paths = [];
     extents = [];
-    stroke = shown = null;
+    stroke = shown = pointer = null;
     held = false;
     owed = 0;
     if (core.start(number, seed) !== 0)
@@ -321,7 +346,7 @@ function listen() {
             held = core.grab(x, y, 12 * view.ratio / view.scale) !== 0;
     });
     canvas.addEventListener("pointermove", (event) => {
-        const [x, y] = toWorld(event);
+        const [x, y] = pointer = toWorld(event);
         if (stroke)
             stroke.push([x, y]);
         else if (held)
@@ -336,7 +361,7 @@ function listen() {
     };
     canvas.addEventListener("pointerup", end);
     canvas.addEventListener("pointercancel", end);
-    const toggles = ["pause", "slow", "draw", "contacts", "arcs", "boxes", "sleep"];
+    const toggles = ["pause", "slow", "draw", "contacts", "arcs", "boxes", "sleep", "rays"];
     for (const id of toggles)
         $(id).addEventListener("click", () => setPressed(id, !on(id)));
     $("single").addEventListener("click", () => {
@@ -345,7 +370,7 @@ function listen() {
     });
     $("again").addEventListener("click", () => start(current, seed % 1e6 + 1));
     $("more").addEventListener("click", more);
-    const keys = { " ": "pause", ".": "single", s: "slow", r: "again", d: "draw", m: "more", c: "contacts", a: "arcs", b: "boxes", z: "sleep" };
+    const keys = { " ": "pause", ".": "single", s: "slow", r: "again", d: "draw", m: "more", c: "contacts", a: "arcs", b: "boxes", z: "sleep", l: "rays" };
     addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select") || (event.key === " " && event.target.closest("button")))
             return;

@@ -129,7 +129,7 @@ try {
         assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), names[1]);
         await tab.keyboard.press("8");
         await steps(tab, 60);
-        for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["z", "sleep"], ["s", "slow"]]) {
+        for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["z", "sleep"], ["l", "rays"], ["s", "slow"]]) {
             await tab.keyboard.press(key);
             assert.equal(await pressed(tab, id), "true", id);
         }
@@ -137,6 +137,23 @@ try {
         await tab.screenshot({ path: join(out, "overlays.png") });
         const unlabelled = await tab.$$eval("button, select, [tabindex]", (all) => all.filter((one) => !one.textContent.trim() && !one.getAttribute("aria-label")).length);
         assert.equal(unlabelled, 0);
+        await tab.close();
+    });
+    await test("rays end where bodies are", async () => {
+        const tab = await open("#scene=well&seed=1", { calm: true });
+        await steps(tab, 500);
+        await tab.keyboard.press("l");
+        const { x, y, width, height } = await (await tab.$("#canvas")).boundingBox();
+        await tab.mouse.move(x + width / 2, y + height * 0.3);
+        await wait(200);
+        await tab.screenshot({ path: join(out, "rays.png") });
+        const hits = await tab.evaluate(() => {
+            const count = page.core.scan(0, 30, 60), f32 = new Float32Array(page.core.memory.buffer), base = page.core.points() / 4;
+            return Array.from({ length: count }, (_, k) => [f32[base + 4 * k], f32[base + 4 * k + 1], f32[base + 4 * k + 2]]);
+        });
+        assert.equal(hits.length, 1080);
+        assert(Math.abs(hits[0][0] - 20) < 1e-4 && hits[0][2] === -1, `${hits[0]}`); // the wall on the right
+        assert(hits[810][1] > 0 && hits[810][1] < 30); // straight down: what lies on top
         await tab.close();
     });
     await test("a phone: touch, 360 pixels wide, dark", async () => {
