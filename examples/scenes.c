@@ -306,6 +306,31 @@ static void build_well(world *w, uint64_t seed) {
     }
 }
 
+/* An n-arc of eight arcs, and a polygon of its junctions, on two equal slopes. */
+static void build_wheels(world *w, uint64_t seed) {
+    enum { CORNERS = 8 };
+    const double slope = 0.12, size = 1, length = 30, along = length - 2 - (double)random_between(&seed, 0, 0.1f);
+    narc_point corners[CORNERS];
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count = 0;
+    for (int k = 0; k < CORNERS; k++)
+        corners[k] = (narc_point){size * cos(pi / 4 * k), size * sin(pi / 4 * k)};
+    for (int k = 0; k < 2; k++) {
+        track t = {.x = 14, .y = 6 * (double)(1 - k), .normal = pi / 2 - slope};
+        const double x = t.x - along * cos(slope) + size * sin(slope), y = t.y + along * sin(slope) + size * cos(slope);
+        put_arc(&t, 0, 0);
+        put_edge(&t, length);
+        put_arc(&t, 0, 0);
+        add_ground(w, &t);
+        if (k == 0)
+            narc_build_ring(corners, CORNERS, arcs, &count, &w->error);
+        else
+            narc_build_polygon(corners, CORNERS, 0, arcs, &count, &w->error);
+        add_body(w, make_body(add_shape(w, arcs, count), (float)x, (float)y, 0));
+        w->bodies[w->body_count - 1].velocity.x = 1;
+    }
+}
+
 /* A ball rolls down a hill and into dominoes, which stand on a slope. */
 static void build_dominoes(world *w, uint64_t seed) {
     const double slope = 0.12, apart = 0.55;
@@ -379,6 +404,7 @@ const scene scenes[] = {
     {"heap", "200 bodies of 30 shapes fall into a box", 15, 256, build_heap, NULL},
     {"pile", "600 bodies", 20, 1024, build_pile, NULL},
     {"well", "1,000 bodies fall into a half circle", 20, 2048, build_well, NULL},
+    {"wheels", "an n-arc of eight arcs and a polygon of eight corners roll", 6, 64, build_wheels, NULL},
     {"bullets", "120 m/s against a thin wall", 3, 16, build_bullets, NULL},
     {"rain", "bodies come, pile up on a table, fall off, and go", 60, 256, build_rain, act_rain},
     {"car", "drives over hills", 6, 128, build_car, act_car},

@@ -2,7 +2,7 @@
 // The page: scenes of the example engine in page.wasm, drawn by arcs, moved by the pointer.
 const $ = (id) => document.getElementById(id);
 const canvas = $("canvas"), context = canvas.getContext("2d");
-const TITLES = { well: "A thousand bodies", looping: "Looping", car: "Car on arcs", bullets: "Bullets", dominoes: "Dominoes", platforms: "Platforms",
+const TITLES = { well: "A thousand bodies", wheels: "Who is smooth?", looping: "Looping", car: "Car on arcs", bullets: "Bullets", dominoes: "Dominoes", platforms: "Platforms",
     rain: "Rain", pyramid: "Pyramid", stack: "Stack of 30" };
 const ORDER = Object.keys(TITLES);
 const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5, GROUND = 0.2;
@@ -374,7 +374,7 @@ function listen() {
     addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select") || (event.key === " " && event.target.closest("button")))
             return;
-        const number = Number(event.key), turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+        const number = event.key === "0" ? 10 : Number(event.key), turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
         if (number >= 1 && number <= ORDER.length)
             start(ORDER[number - 1], 1);
         else if (turn && event.target.closest("#tabs")) {
@@ -417,7 +417,7 @@ async function main() {
         scenes.push(text(core.scene_name(k)));
     ORDER.forEach((name, k) => {
         const tab = document.createElement("button");
-        Object.assign(tab, { textContent: TITLES[name], title: String(k + 1) });
+        Object.assign(tab, { textContent: TITLES[name], title: String((k + 1) % 10) });
         tab.setAttribute("role", "tab");
         tab.setAttribute("aria-controls", "stage");
         tab.dataset.scene = name;

@@ -68,7 +68,7 @@ try {
     });
     await test("after 600 steps the state has the native bits", async () => {
         const tab = await open("", { calm: true });
-        for (const name of ["well", "looping", "car", "bullets", "dominoes", "platforms", "rain", "stack"]) {
+        for (const name of ["well", "wheels", "looping", "car", "bullets", "dominoes", "platforms", "rain", "stack"]) {
             await tab.evaluate((scene) => page.start(scene, 1), name);
             await steps(tab, 600);
             const native = /state ([0-9a-f]+)/.exec(execFileSync(world, [name, "--seconds", "10"], { encoding: "utf8" }))[1];
@@ -116,7 +116,7 @@ try {
     await test("all tabs and overlays by keyboard", async () => {
         const tab = await open("", { calm: true }), names = await tab.$$eval("#tabs button", (all) => all.map((button) => button.dataset.scene));
         for (const [k, name] of names.entries()) {
-            await tab.keyboard.press(String(k + 1));
+            await tab.keyboard.press(String((k + 1) % 10));
             assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), name);
             assert.match(await tab.evaluate(() => location.hash), new RegExp(`scene=${name}&seed=1`));
             await steps(tab, 120);
@@ -127,7 +127,7 @@ try {
         await tab.focus("#tabs [aria-selected=true]");
         await tab.keyboard.press("ArrowRight");
         assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), names[1]);
-        await tab.keyboard.press("8");
+        await tab.keyboard.press("9"); // the pyramid
         await steps(tab, 60);
         for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["z", "sleep"], ["l", "rays"], ["s", "slow"]]) {
             await tab.keyboard.press(key);
@@ -137,6 +137,19 @@ try {
         await tab.screenshot({ path: join(out, "overlays.png") });
         const unlabelled = await tab.$$eval("button, select, [tabindex]", (all) => all.filter((one) => !one.textContent.trim() && !one.getAttribute("aria-label")).length);
         assert.equal(unlabelled, 0);
+        await tab.close();
+    });
+    await test("arcs roll further than corners", async () => {
+        const tab = await open("#scene=wheels&seed=1", { calm: true });
+        await steps(tab, 300);
+        await wait(100);
+        await tab.screenshot({ path: join(out, "wheels.png") });
+        const [smooth, cornered] = await tab.evaluate(() => {
+            page.core.draw();
+            const f32 = new Float32Array(page.core.memory.buffer), base = page.core.drawn() / 4;
+            return [f32[base], f32[base + 6]];
+        });
+        assert(smooth > cornered + 3, `${smooth} ${cornered}`);
         await tab.close();
     });
     await test("rays end where bodies are", async () => {
