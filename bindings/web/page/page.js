@@ -289,7 +289,7 @@ function start(name, from = seed) {
     if (core.start(number, seed) !== 0)
         say(`The scene cannot be built: ${text(core.error())}`);
     else
-        say(`${TITLES[name]}: ${text(core.scene_purpose(number))}.`);
+        say(text(core.scene_purpose(number)).replace(/^./, (first) => first.toUpperCase()));
     frame();
     for (const tab of $("tabs").children) {
         const selected = tab.dataset.scene === name;
