@@ -43,28 +43,46 @@ void walker_clip(const walker_plane *planes, size_t count, double *x, double *y)
         }
 }
 
+/* One more plane: of two along the same normal the nearer one counts, and of more than there is room for the nearest. */
+static void add_plane(walker_plane *planes, size_t *count, walker_plane plane) {
+    size_t at = 0;
+    for (size_t k = 0; k < *count; k++) {
+        const walker_plane *const p = &planes[k];
+        if (fabs(p->x * plane.y - p->y * plane.x) < 1e-6 && p->x * plane.x + p->y * plane.y > 0) {
+            planes[k] = plane.room < p->room ? plane : *p;
+            return;
+        }
+        at = p->room > planes[at].room ? k : at;
+    }
+    if (*count < MOST_PLANES)
+        planes[(*count)++] = plane;
+    else if (plane.room < planes[at].room)
+        planes[at] = plane;
+}
+
 /* The planes of all that is nearer than a skin and as much again. */
 static narc_status find_planes(const walker *w, const walker_scene *scene, walker_plane *out, size_t *out_count,
                                narc_error *error) {
-    const narc_box_options around = {.margin = 2 * w->skin};
-    narc_contact rows[MOST_PLANES];
+    const narc_box_options around = {.margin = 2 * w->skin, .origin = scene->origin};
     narc_bodies own;
     narc_box box;
     narc_pairs pairs;
-    size_t found = 0;
     narc_view_bodies(&w->body, 1, &own);
     narc_status status = narc_compute_boxes(scene->shapes, &own, &around, &box, error);
     if (status == NARC_OK)
         status = narc_query_index(scene->index, &box, 1, &scene->search, &pairs, error);
-    if (status != NARC_OK)
-        return status;
+    *out_count = 0;
     pairs.other_bodies = scene->bodies;
-    status = narc_find_contacts(scene->shapes, &own, &pairs, &(narc_query){.margin = 2 * w->skin}, rows, MOST_PLANES,
-                                &found, error);
-    for (size_t k = 0; k < found && k < MOST_PLANES; k++)
-        out[k] = (walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
-                                (double)rows[k].separation - (double)w->skin};
-    *out_count = found;
+    for (size_t pair = 0; status == NARC_OK && pair < pairs.count; pair++) {
+        const narc_query one = {.margin = 2 * w->skin, .first = pair, .count = 1};
+        narc_contact rows[NARC_MAX_ARCS]; /* several beside a concave arc */
+        size_t found = 0;
+        status = narc_find_contacts(scene->shapes, &own, &pairs, &one, rows, NARC_MAX_ARCS, &found, error);
+        for (size_t k = 0; status == NARC_OK && k < found; k++)
+            add_plane(out, out_count,
+                      (walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
+                                     (double)rows[k].separation - (double)w->skin});
+    }
     return status;
 }
 
