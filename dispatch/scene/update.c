@@ -15,6 +15,7 @@
 #include "leaves.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct updating {
     narc_making making;
@@ -273,6 +274,14 @@ static void fit_touched(updating *u, unsigned level, size_t node) {
     narc_fit_nodes(&u->making, level, node, node + 1);
 }
 
+/* Fits all nodes, a level after the other: cheaper than to look for them where most have changed. */
+static void fit_all(updating *u) {
+    narc_index *const index = u->index;
+    for (unsigned level = 1; level < index->level_count; level++)
+        narc_fit_nodes(&u->making, level, 0, index->node_count[level]);
+    memset(index->touched, 0, narc_count_nodes(index));
+}
+
 /* ------------------------------------------------------------------------------------------------ the call */
 
 /* All bodies, in the order of leaves; then those that are in none. */
@@ -346,7 +355,9 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     }
     narc_index_node above;
     const unsigned top = index->level_count - 1;
-    if (top > 0 && index->touched[index->first_node[top]] != 0)
+    if (top > 0 && all)
+        fit_all(&u);
+    else if (top > 0 && index->touched[index->first_node[top]] != 0)
         fit_touched(&u, top, 0);
     kernels->nodes(index, index->level_count, 0, 1, &above);
     return NARC_OK;
