@@ -9,7 +9,8 @@
 
 #include <narc_broad_phase.h>
 
-enum { MOST_PLANES = 16, MOST_SLIDES = 6 };
+/* Pairs that are asked at a time, and their rows: pairs with concave arcs have more than one. */
+enum { MOST_PLANES = 16, MOST_SLIDES = 6, FEW = 16, MOST_ROWS = 256 };
 
 static bool is_free(const walker_plane *planes, size_t count, double x, double y) {
     bool free = true;
@@ -43,27 +44,21 @@ void walker_clip(const walker_plane *planes, size_t count, double *x, double *y)
         }
 }
 
-/* One more plane: of two along the same normal the nearer one counts, and of more than there is room for the nearest. */
-static void add_plane(walker_plane *planes, size_t *count, walker_plane plane) {
-    size_t at = 0;
-    for (size_t k = 0; k < *count; k++) {
-        const walker_plane *const p = &planes[k];
-        if (fabs(p->x * plane.y - p->y * plane.x) < 1e-6 && p->x * plane.x + p->y * plane.y > 0) {
-            planes[k] = plane.room < p->room ? plane : *p;
-            return;
-        }
-        at = p->room > planes[at].room ? k : at;
-    }
-    if (*count < MOST_PLANES)
-        planes[(*count)++] = plane;
-    else if (plane.room < planes[at].room)
-        planes[at] = plane;
+/* Keeps those with least room. */
+static void add_plane(walker_plane plane, walker_plane *planes, size_t *count) {
+    size_t k = *count < MOST_PLANES ? (*count)++ : MOST_PLANES;
+    for (; k > 0 && planes[k - 1].room > plane.room; k--)
+        if (k < MOST_PLANES)
+            planes[k] = planes[k - 1];
+    if (k < MOST_PLANES)
+        planes[k] = plane;
 }
 
-/* The planes of all that is nearer than a skin and as much again. */
+/* The planes of what is nearer than a skin and as much again. However many pairs there are, few are asked at a time. */
 static narc_status find_planes(const walker *w, const walker_scene *scene, walker_plane *out, size_t *out_count,
                                narc_error *error) {
     const narc_box_options around = {.margin = 2 * w->skin, .origin = scene->origin};
+    narc_contact rows[MOST_ROWS];
     narc_bodies own;
     narc_box box;
     narc_pairs pairs;
@@ -72,16 +67,16 @@ static narc_status find_planes(const walker *w, const walker_scene *scene, walke
     if (status == NARC_OK)
         status = narc_query_index(scene->index, &box, 1, &scene->search, &pairs, error);
     *out_count = 0;
-    pairs.other_bodies = scene->bodies;
-    for (size_t pair = 0; status == NARC_OK && pair < pairs.count; pair++) {
-        const narc_query one = {.margin = 2 * w->skin, .first = pair, .count = 1};
-        narc_contact rows[NARC_MAX_ARCS]; /* several beside a concave arc */
+    for (size_t first = 0; status == NARC_OK && first < pairs.count; first += FEW) {
+        const size_t count = pairs.count - first < FEW ? pairs.count - first : FEW;
+        const narc_query query = {.margin = 2 * w->skin, .first = first, .count = count};
         size_t found = 0;
-        status = narc_find_contacts(scene->shapes, &own, &pairs, &one, rows, NARC_MAX_ARCS, &found, error);
+        pairs.other_bodies = scene->bodies;
+        status = narc_find_contacts(scene->shapes, &own, &pairs, &query, rows, MOST_ROWS, &found, error);
         for (size_t k = 0; status == NARC_OK && k < found; k++)
-            add_plane(out, out_count,
-                      (walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
-                                     (double)rows[k].separation - (double)w->skin});
+            add_plane((walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
+                                     (double)rows[k].separation - (double)w->skin},
+                      out, out_count);
     }
     return status;
 }

@@ -18,7 +18,7 @@ typedef struct walker_scene {
     narc_index *index; /* of the bodies */
     const narc_bodies *bodies;
     narc_index_query search;  /* whom it may meet; {0}: all */
-    const narc_point *origin; /* of the index (narc_index_options); NULL: (0, 0) */
+    const narc_point *origin; /* of the index's boxes, as in narc_box_options; NULL: (0, 0) */
 } walker_scene;
 
 typedef struct walker {
