@@ -188,9 +188,9 @@ typedef enum narc_inside {
  *   most          hits that each ray has room for, nearest first; 0: 1, the closest. Row i of ray k is row
  *                 k * most + i; the rows behind its last hit have count 0
  *   out_skipped   how many rays have no answer; NULL: nobody asks
- *   out_order     rays->count numbers. Rays whose starts are in no order are asked in one, neighbours after each other:
- *                 their numbers in this order are written here. Rows are the same. NULL: rays are asked in the order that
- *                 they come in, as is best for few, and where neighbours follow each other anyway */
+ *   out_order     rays->count numbers. Rays whose starts are in no order are asked in one, world by world, neighbours
+ *                 after each other: their numbers in this order are written here. Rows are the same. NULL: rays are asked
+ *                 in the order that they come in, as is best for few, and where neighbours follow each other anyway */
 typedef struct narc_ray_options {
     narc_index_query search;
     narc_inside inside;

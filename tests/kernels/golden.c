@@ -21,6 +21,8 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
 static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0xd2f7a23d8eddfd23u,
                                          0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
+/* Hulls, their polylines. */
+static const uint64_t golden_outlines[] = {0x063a84d40a282487u, 0x8b695e716cf6b629u};
 #endif
 #ifdef NARC_TEST_POSES
 /* Without SLEEF, and of SLEEF 3.5.1. */
@@ -529,6 +531,36 @@ TEST(test_ground) {
     free(a);
     free(b);
     destroy_scene(&scene);
+}
+#endif
+
+#ifndef NARC_SMALL
+/* Of clouds of points of a lattice, with a skin and without. */
+TEST(test_outlines) {
+    enum { CLOUDS = 200, POINTS = 60, LINE = 4096 };
+    static narc_point line[LINE];
+    const narc_body body = {3, -5, 0.6f, 0.8f, 1.5f, 0};
+    struct test_random random = {3};
+    uint64_t hulls = TEST_HASH_START, lines = TEST_HASH_START;
+    size_t all = 0;
+    for (size_t k = 0; k < CLOUDS; k++) {
+        narc_point points[POINTS];
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t count, line_count;
+        for (size_t i = 0; i < POINTS; i++)
+            points[i] = (narc_point){(double)random_below(&random, 1 << 20) / 1024,
+                                     (double)random_below(&random, 1 << 20) / (double)(1024 << k % 8)};
+        assert_int_equal(narc_build_hull(points, POINTS, 0.25, (double)(k % 3), arcs, &count, NULL), NARC_OK);
+        for (size_t i = 0; i < count; i++)
+            hulls = test_hash_items(hulls, &arcs[i], 5, sizeof(double));
+        assert_int_equal(
+            narc_flatten_arcs(arcs, count, true, k % 2 ? &body : NULL, 0x1p-9, line, LINE, &line_count, NULL), NARC_OK);
+        lines = test_hash_items(lines, line, 2 * line_count, sizeof(double));
+        all += line_count;
+    }
+    printf("  %zu points of %d polylines\n", all, (int)CLOUDS);
+    check_hash("hulls", hulls, golden_outlines[0]);
+    check_hash("polylines", lines, golden_outlines[1]);
 }
 #endif
 

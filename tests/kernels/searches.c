@@ -486,9 +486,9 @@ TEST(rays_go_in_any_company) {
     destroy_room(&room);
 }
 
-/* With room for an order, each ray is asked once, and its rows are those that it has without. */
+/* With room for an order, each ray is asked once, world by world, and its rows are those that it has without. */
 TEST(rays_are_put_in_order) {
-    enum { COUNT = 700, MOST_RAYS = 3000, MOST = 3 };
+    enum { COUNT = 700, MOST_RAYS = 3000, MOST = 3, WORLDS = 8 };
     struct test_random random = test_random_named("order of rays");
     size_t moved = 0;
     for (size_t trial = 0; trial < test_trials(12); trial++) {
@@ -498,11 +498,14 @@ TEST(rays_are_put_in_order) {
         struct test_ray *const rays = make_rays(&random, &room, count, 40);
         uint32_t owner[COUNT];
         uint64_t *const mask = calloc(count + 1, sizeof *mask);
+        uint32_t *const world = calloc(count + 1, sizeof *world);
+        const bool few_worlds = trial % 2;
         uint32_t *const order = guard_allocate(count * sizeof *order);
         bool *const asked = calloc(count + 1, sizeof *asked);
         for (size_t k = 0; k < COUNT; k++)
             owner[k] = (uint32_t)k / 4;
         for (size_t k = 0; k < count; k++) {
+            world[k] = (uint32_t)random_below(&random, WORLDS) * (few_worlds ? 1 : UINT32_MAX / (WORLDS - 1));
             mask[k] = random_below(&random, 8) ? UINT64_MAX : random_below(&random, 4);
             if (random_below(&random, 30) == 0)
                 rays[k].motion_x = rays[k].motion_y = random_below(&random, 2) ? NAN : 0;
@@ -512,6 +515,7 @@ TEST(rays_are_put_in_order) {
         index_room(&room, trial % 3, trial % 5);
         const narc_owners owners = {.owner = NARC_ARRAY(owner)};
         const narc_ray_options ways[] = {{.any = 1},
+                                         {.search.world = NARC_ARRAY(world)},
                                          {.any = 1, .search.mask = NARC_ARRAY(mask)},
                                          {.most = MOST, .search.mask = NARC_ARRAY(mask)},
                                          {.most = MOST, .inside = NARC_INSIDE_LEAVES, .search.owners = &owners},
@@ -534,12 +538,15 @@ TEST(rays_are_put_in_order) {
                 assert_true(order[k] < count && !asked[order[k]]);
                 asked[order[k]] = true;
                 moved += order[k] != k;
+                if (k > 0 && chosen.search.world.base && few_worlds && count >= 2 * WORLDS)
+                    assert_true(world[order[k - 1]] <= world[order[k]]);
             }
             guard_release(right);
             guard_release(found);
         }
         free(rays);
         free(mask);
+        free(world);
         free(asked);
         guard_release(order);
         destroy_room(&room);

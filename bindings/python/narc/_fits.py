@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from ._shapes import Arcs, _arcs
 from ._tables import ARC
 
-_fit: Any
+_fit: Any = None
+_missing: ImportError | None = None
 try:
     from . import _fit
-except ImportError:  # a wheel that was built where the libraries of fits are not
-    _fit = None
+except ImportError as _error:  # of a wheel that was built where the libraries of fits are not, or is where they are not
+    _missing = _error
 
 Family = Literal["n-arc", "edges", "polygon", "paper"]
 Goal = Literal["area", "perimeter", "distance", "nearest", "difference"]
@@ -30,8 +31,8 @@ _READERS = ("svg", "png", "csv", "json")
 
 def _library() -> Any:
     if _fit is None:
-        raise ImportError("this narc was built without its fit library: build the wheel where FreeType, libpng, librsvg, CLP, "
-                          "NLopt and cJSON are (sh cmake/bootstrap.sh python installs them)")
+        raise ImportError(f"fits and shapes files need FreeType, libpng, librsvg, CLP, NLopt and cJSON, where narc is built and "
+                          f"where it runs (sh cmake/bootstrap.sh python installs them): {_missing}")
     return _fit
 
 

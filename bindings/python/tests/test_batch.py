@@ -322,7 +322,10 @@ def test_python_runs_meanwhile_and_shapes_are_guarded(random):
     seen, errors = [], []
 
     def ask():
-        seen.append(narc.separations(shapes, bodies, pairs).tobytes())
+        for _ in range(100):
+            seen.append(narc.separations(shapes, bodies, pairs).tobytes())
+            if errors:  # or this thread had been quicker than the other one began
+                break
 
     threads = [threading.Thread(target=ask) for _ in range(2)]
     for thread in threads:
@@ -332,7 +335,7 @@ def test_python_runs_meanwhile_and_shapes_are_guarded(random):
             shapes.circle(1 + len(errors))
         except RuntimeError as error:
             errors.append(str(error))
-    assert seen[0] == seen[1]
+    assert len(set(seen)) == 1
     assert errors and set(errors) == {"shapes is in use by another call"}
 
 

@@ -138,3 +138,9 @@ def test_control_c_ends_a_fit():
         narc.fit(circle(37) * (1, 0.4) + 0.1 * circle(37) ** 2, 20, starts=4000)
     timer.join()
     assert time.monotonic() - begin < 20 and narc.fit(L_SHAPE, 3).area > 9
+
+
+def test_without_the_libraries_it_is_said(monkeypatch):
+    monkeypatch.setattr(narc._fits, "_fit", None)
+    with pytest.raises(ImportError, match="FreeType, libpng"):
+        narc.fit(L_SHAPE)
