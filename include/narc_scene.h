@@ -137,7 +137,8 @@ typedef struct narc_owners {
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
  *   workers   threads to use; NULL: the calling one
  *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either
- *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all */
+ *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all, as
+ *             in an index without worlds */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;

@@ -7,6 +7,7 @@
  */
 #include "frame.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +27,8 @@ static PyObject *warning_class;
  * under way without Python's lock, is an error. */
 typedef struct handle {
     PyObject_HEAD void *pointer;
+    const narc_step_result *step; /* of contacts: the last one, if it can still be read */
+    size_t user_size;
     int kind, readers;
     bool is_changed;
 } handle;
@@ -41,12 +44,13 @@ static int find_kind(const char *name, size_t length) {
     return -1;
 }
 
-/* Handle(kind, rows): rows are those of contacts, NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS. */
+/* Handle(kind, rows, user_size): of contacts, NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and the caller's bytes of a slot. */
 static PyObject *handle_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
     const char *name;
     unsigned rows = 0;
+    Py_ssize_t user_size = 0;
     (void)keywords;
-    if (!PyArg_ParseTuple(arguments, "s|I:Handle", &name, &rows))
+    if (!PyArg_ParseTuple(arguments, "s|In:Handle", &name, &rows, &user_size))
         return NULL;
     const int kind = find_kind(name, strlen(name));
     if (kind < 0)
@@ -56,8 +60,9 @@ static PyObject *handle_new(PyTypeObject *type, PyObject *arguments, PyObject *k
     if (!self)
         return NULL;
     self->kind = kind;
+    self->user_size = (size_t)user_size;
     narc_error error = {0};
-    const narc_contacts_settings settings = {.rows = rows};
+    const narc_contacts_settings settings = {.rows = rows, .user_size = self->user_size};
     const narc_status status = kind == SHAPES  ? narc_create_shapes(NULL, (narc_shapes **)&self->pointer)
                                : kind == INDEX ? narc_create_index(NULL, (narc_index **)&self->pointer)
                                : kind == CONTACTS
@@ -146,12 +151,53 @@ static narc_status find_inside(const narc_arc *arcs, size_t count, const narc_po
     return MUST(count > 0 && count <= NARC_MAX_ARCS);
 }
 
-static narc_status update_contacts(void **p, const narc_step_result **out_step, narc_error *error) {
+static narc_status update_contacts(void **p, handle *contacts, const narc_step_result **out_step, narc_error *error) {
     narc_step step = {0};
     if (p[3])
         step = *(const narc_step *)p[3];
     step.bodies = p[2];
-    return narc_update_contacts(p[0], p[1], &step, out_step, error);
+    contacts->step = NULL;
+    const narc_status status = narc_update_contacts(p[0], p[1], &step, out_step, error);
+    contacts->step = status == NARC_OK ? *out_step : NULL;
+    return status;
+}
+
+static narc_status load_contacts(void **p, size_t size, handle *contacts, const narc_step_result **out_step,
+                                 narc_error *error) {
+    contacts->step = NULL;
+    const narc_status status = narc_load_contacts(p[0], p[1], p[2], size, out_step, error);
+    contacts->step = status == NARC_OK ? *out_step : NULL;
+    return status;
+}
+
+/* The caller's bytes of slots, read or written: user_size of each. */
+static narc_status copy_user(const handle *contacts, const uint32_t *slots, size_t count, char *rows, size_t size,
+                             bool writes, narc_error *error) {
+    const narc_step_result *const step = contacts->step;
+    const size_t bytes = contacts->user_size;
+    if (!step || size != count * bytes) {
+        snprintf(error->message, sizeof error->message,
+                 step ? "rows have %zu bytes, not %zu for each slot" : "there is no step whose slots have rows", size,
+                 bytes);
+        return NARC_ERROR_ARGUMENT;
+    }
+    for (size_t k = 0; k < count; k++)
+        if (slots[k] >= step->pairs.count) {
+            snprintf(error->message, sizeof error->message, "there is no slot %u", slots[k]);
+            error->index = k;
+            error->value = slots[k];
+            return NARC_ERROR_INDEX;
+        }
+    for (size_t k = 0; k < count && bytes; k++) {
+        char *const own = (char *)step->user + bytes * slots[k], *const row = rows + bytes * k;
+        memcpy(writes ? own : row, writes ? row : own, bytes);
+    }
+    return NARC_OK;
+}
+
+static narc_status forget(void *object) {
+    ((handle *)object)->step = NULL;
+    return NARC_OK;
 }
 
 #define CALL(name, arguments, result, expression)                                                                      \
