@@ -161,7 +161,8 @@ INLINE vm settle_circles_of(const struct call *call, struct queue *queues, enum 
         {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
     const struct ring ring_a = make_ring(get_item_bits(item, FIRST_RECORD_A), info_a),
                       ring_b = make_ring(get_item_bits(item, FIRST_RECORD_B), info_b);
-    struct run_beside run = {.ring = {pick_bits(of, is_a, ring_a.base, ring_b.base),
+    /* Other lanes have the first records of all, of which there are as many as a run has. */
+    struct run_beside run = {.ring = {vi_select(which, pick_bits(of, is_a, ring_a.base, ring_b.base), vi_set(0)),
                                       vi_select(which, pick_bits(of, is_a, ring_a.count, ring_b.count), vi_set(6))},
                              .first = vi_select(which, get_first_arc(pick_bits(of, is_a, info_a, info_b)), vi_set(0)),
                              .scale = pick(of, is_a, pose.scale_a, pose.scale_b)};

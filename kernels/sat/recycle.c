@@ -157,7 +157,7 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_pairs(&given, first + block, n, false, &indices);
-        if (FETCHES && item && block + BLOCK < count)
+        if (FETCHES && item && given.pairs.b.base && block + BLOCK < count)
             fetch_kept(batch, &given, first + block + BLOCK, count - block - BLOCK, item + block + BLOCK, kept);
         const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {

@@ -9,6 +9,7 @@
 
 #include "chains.h"
 #include "expect.h"
+#include "guard.h"
 #include "merge.h"
 #include "narc_broad_phase.h"
 #include "plain_kernels.h"
@@ -341,6 +342,33 @@ TEST(test_circles_at_junctions) {
         free(right.rows);
         end_chain(g);
     }
+}
+
+/* In a vector with a circle on a run there are pairs of others: nothing is read behind the last shape of all. */
+TEST(test_last_shape_beside_runs) {
+    enum { PAIRS = 64 };
+    const narc_arc hill[] = {{0, -2, 2, 0.8, 1.2}, {0, -2, 2, 1.2, 2}, {0, -2, 2, 2, 2.3}};
+    narc_shapes *shapes = NULL;
+    narc_chain_entry entry;
+    size_t count, found;
+    uint32_t last = 0;
+    assert_int_equal(narc_create_shapes(&guard_allocator, &shapes), NARC_OK);
+    assert_int_equal(narc_add_chain(shapes, hill, 3, NULL, &entry, 1, &count, NULL), NARC_OK);
+    for (int k = 0; shapes->record_count + 3 <= shapes->record_capacity || k == 0; k++) {
+        const narc_arc circle = {0, 0, 1 + 0.01 * k, -PI, PI};
+        assert_int_equal(narc_add_shape(shapes, &circle, 1, &last, NULL), NARC_OK);
+    }
+    const narc_body body[] = {{0, 1, 1, 0, 1, last}, {entry.x, entry.y, 1, 0, 1, entry.shape}, {0, 2, 1, 0, 1, last}};
+    uint32_t a[PAIRS] = {0}, b[PAIRS];
+    narc_contact contacts[PAIRS];
+    for (uint32_t k = 0; k < PAIRS; k++)
+        b[k] = 1 + k % 2;
+    narc_bodies bodies;
+    narc_view_bodies(body, 3, &bodies);
+    const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, NULL, contacts, PAIRS, &found, NULL), NARC_OK);
+    assert_int_equal(found, PAIRS);
+    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays and points */
