@@ -58,6 +58,12 @@ static const struct group groups[] = {
     {"nearest", "gons8", SCENES, "BEST BEST/by1"},
     {"nearest", "n8", SCENES, "BEST BEST/by1"},
     {"distance", "n8", SCENES, "BEST"},
+    {"named-ray", "gons8", "pile", BOTH " box2d"},
+    {"distance inside inside-one", "gons8", "pile", "BEST avx2 box2d"},
+    {"distance", "gons8", "pile", "BEST/by1 avx2/by1"},
+    {"hull-8", "points", "clouds", "BEST box2d"},
+    {"hull-200", "points", "clouds", "BEST"},
+    {"polyline", "n8 gons8", "pile", "BEST"},
     {FLIGHTS, "squares slabs gons8 n8", "flights", BOTH " box2d"},
     {"index-good index-fast", "gons8", SCENES, "BEST"},
     {"move-1 move-100 move-2000 move-near-2000", "gons8", SCENES, "BEST box2d"},
@@ -80,8 +86,8 @@ size_t batch_of(const struct row *row, size_t done) {
 /* ------------------------------------------------------------------------------------------------ rows */
 
 static const struct question *find_question(const char *query) {
-    static const struct question *const lists[] = {pair_questions, step_questions, scene_questions, impact_questions,
-                                                   ground_questions};
+    static const struct question *const lists[] = {pair_questions,   step_questions,   scene_questions,
+                                                   impact_questions, ground_questions, outline_questions};
     for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
         for (const struct question *question = lists[k]; question->name; question++)
             if (strcmp(question->name, query) == 0)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * queries.c - rays, regions and the nearest bodies, in batches and one by one; builds of an index.
+ * queries.c - rays, regions and the nearest bodies, in batches and one by one; rays, distances and points of one body
+ * each; builds of an index.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -13,21 +14,17 @@
 enum { FAN = 1080, RAYS = 10 * FAN, REGIONS = 10000, POINTS = 20000, MOST_FOUND = 200 /* of a region, in the mean */ };
 
 struct questions {
-    struct asked asked;
-    struct place {
-        float x, y;
-    } * points;
-    uint32_t *bodies; /* of points that are asked about one each */
+    struct asked asked; /* points are rays that go nowhere */
 
     /* Answers, as far as the question has them. */
     narc_ray_hit *hits;
     narc_distance *distances;
     float *floats; /* a peer's */
-    uint64_t *keys;
+    uint64_t *keys, *bits;
 };
 
-enum ray_kind { RAY_FAN, RAY_LONG, RAY_SHORT };
-enum nearest_kind { NEAREST, DISTANCE };
+enum ray_kind { RAY_FAN, RAY_LONG, RAY_SHORT, RAY_NAMED };
+enum point_kind { NEAREST, DISTANCE, INSIDE, INSIDE_ONE };
 
 /* Peers that are asked several questions about a scene have it once. */
 static void *share_peer(const struct row *row) {
@@ -66,10 +63,28 @@ static const struct ray *make_rays(double half, enum ray_kind kind, size_t count
     return rays;
 }
 
+/* Rays at a body each, which start 2 to 4 away and pass its position by up to 1. */
+static void make_named(struct questions *q, const struct scene *scene) {
+    struct ray *rays = allocate(q->asked.count, sizeof *rays);
+    uint32_t *named = allocate(q->asked.count, sizeof *named);
+    uint64_t random = 80;
+    for (size_t k = 0; k < q->asked.count; k++) {
+        named[k] = (uint32_t)(random_bits(&random) % scene->body_count);
+        const struct body *body = &scene->bodies[named[k]];
+        const double angle = random_between(&random, -pi, pi), x = cos(angle), y = sin(angle);
+        const double far = random_between(&random, 2, 4), by = random_between(&random, -1, 1);
+        rays[k] = (struct ray){body->x - (float)(far * x + by * y), body->y - (float)(far * y - by * x),
+                               (float)(2 * far * x), (float)(2 * far * y)};
+    }
+    q->asked.rays = rays;
+    q->asked.named = named;
+}
+
 /* So many rays in a call; of fans one each. */
 static void cast_rays(const struct row *row, size_t batch, narc_ray_hit *out) {
     const struct questions *q = row->state;
-    const narc_bodies bodies = bodies_of_scene(row->scene);
+    const struct scene *scene = row->scene;
+    const narc_bodies bodies = bodies_of_scene(scene);
     const narc_ray_options options = {.inside = NARC_INSIDE_IGNORES};
     for (size_t k = 0; k < q->asked.count; k += batch) {
         const struct ray *first = q->asked.rays + k;
@@ -78,9 +93,11 @@ static void cast_rays(const struct row *row, size_t batch, narc_ray_hit *out) {
                                 .y = NARC_POSITION_COLUMN(first, y),
                                 .motion_x = NARC_COLUMN(first, motion_x),
                                 .motion_y = NARC_COLUMN(first, motion_y)};
+        const narc_index_column named = {q->asked.named + (q->asked.named ? k : 0), sizeof *q->asked.named};
         narc_error error;
-        must(narc_cast_rays(row->scene->index, row->scene->shapes, &bodies, &rays, &options, out + k, rays.count,
-                            &error),
+        must(q->asked.named
+                 ? narc_cast_ray_pairs(scene->shapes, &bodies, &rays, &named, &options, out + k, rays.count, &error)
+                 : narc_cast_rays(scene->index, scene->shapes, &bodies, &rays, &options, out + k, rays.count, &error),
              &error);
     }
 }
@@ -98,7 +115,10 @@ static void prepare_rays(struct row *row) {
     struct questions *q = begin(row, RAYS);
     const size_t count = q->asked.count;
     narc_ray_hit *expected = allocate(count, sizeof *expected);
-    q->asked.rays = make_rays(row->scene->half, (enum ray_kind)row->question->what, count);
+    if (row->question->what == RAY_NAMED)
+        make_named(q, row->scene);
+    else
+        q->asked.rays = make_rays(row->scene->half, (enum ray_kind)row->question->what, count);
     q->hits = allocate(count, sizeof *q->hits);
     q->floats = allocate(count, sizeof *q->floats);
     cast_rays(row, RAYS, expected);
@@ -187,59 +207,83 @@ static void prepare_regions(struct row *row) {
     row->bench.wrong = found.count != expected.count || found.sum != expected.sum;
 }
 
-/* ------------------------------------------------------------------------------------------------ the nearest body */
+/* ------------------------------------------------------------------------------------------------ points */
 
-static narc_points points_from(const struct questions *q, size_t first, size_t count) {
-    const struct place *at = q->points + first;
-    return (narc_points){.count = count, .x = NARC_POSITION_COLUMN(at, x), .y = NARC_POSITION_COLUMN(at, y)};
-}
-
-static void find_nearest(const struct row *row, size_t batch, narc_distance *out) {
-    const struct questions *q = row->state;
+static void find_nearest(const struct row *row, const narc_points *points, narc_distance *out) {
     const narc_bodies bodies = bodies_of_scene(row->scene);
     const narc_nearest_options options = {.search.workers = &row->workers};
+    narc_error error;
+    must(
+        narc_find_nearest(row->scene->index, row->scene->shapes, &bodies, points, &options, out, points->count, &error),
+        &error);
+}
+
+/* So many points in a call. */
+static void ask_points(const struct row *row, enum point_kind what, size_t batch, narc_distance *out) {
+    const struct questions *q = row->state;
+    const narc_bodies bodies = bodies_of_scene(row->scene);
     for (size_t k = 0; k < q->asked.count; k += batch) {
-        const narc_points points = points_from(q, k, batch < q->asked.count - k ? batch : q->asked.count - k);
+        const struct ray *at = q->asked.rays + k;
+        const narc_index_column named = {q->asked.named + k, sizeof *q->asked.named};
+        const narc_points points = {.count = batch < q->asked.count - k ? batch : q->asked.count - k,
+                                    .x = NARC_POSITION_COLUMN(at, x),
+                                    .y = NARC_POSITION_COLUMN(at, y)};
         narc_error error;
-        must(narc_find_nearest(row->scene->index, row->scene->shapes, &bodies, &points, &options, out + k, points.count,
-                               &error),
-             &error);
+        if (what == NEAREST)
+            find_nearest(row, &points, out + k);
+        else if (what == DISTANCE)
+            must(narc_find_distances(row->scene->shapes, &bodies, &points, &named, &row->workers, out + k, &error),
+                 &error);
+        else
+            must(
+                narc_find_inside(row->scene->shapes, &bodies, &points, &named, &row->workers, q->bits + k / 64, &error),
+                &error);
     }
 }
 
-static void run_nearest(struct row *row) {
+static void run_points(struct row *row) {
     struct questions *q = row->state;
-    if (row->question->what == NEAREST) {
-        find_nearest(row, row->batch ? row->batch : q->asked.count, q->distances);
-    } else {
-        const narc_bodies bodies = bodies_of_scene(row->scene);
-        const narc_index_column named = NARC_ARRAY(q->bodies);
-        const narc_points points = points_from(q, 0, q->asked.count);
-        narc_error error;
-        must(narc_find_distances(row->scene->shapes, &bodies, &points, &named, NULL, q->distances, &error), &error);
-    }
+    if (row->peer)
+        row->peer->ask(row->peer_state, &q->asked, q->floats);
+    else
+        ask_points(row, (enum point_kind)row->question->what, row->batch ? row->batch : q->asked.count, q->distances);
 }
 
-static void prepare_nearest(struct row *row) {
+/* Anywhere, each of the body that is nearest; or around one. A peer's floats are distances, 0 within, or 1 within. */
+static void prepare_points(struct row *row) {
     struct questions *q = begin(row, POINTS);
+    const enum point_kind what = (enum point_kind)row->question->what;
     const size_t count = q->asked.count;
-    const double half = row->scene->half;
+    const struct body *one = what == INSIDE_ONE ? &row->scene->bodies[row->scene->body_count / 2] : NULL;
+    const double half = one ? 1 : row->scene->half;
     narc_distance *expected = allocate(count, sizeof *expected);
+    struct ray *points = allocate(count, sizeof *points);
+    uint32_t *named = allocate(count, sizeof *named);
     uint64_t random = 78;
-    q->points = allocate(count, sizeof *q->points);
     for (size_t k = 0; k < count; k++) {
-        q->points[k].x = (float)random_between(&random, -half, half);
-        q->points[k].y = (float)random_between(&random, -half, half);
+        points[k].x = (one ? one->x : 0) + (float)random_between(&random, -half, half);
+        points[k].y = (one ? one->y : 0) + (float)random_between(&random, -half, half);
+        named[k] = (uint32_t)(one ? row->scene->body_count / 2 : 0);
     }
-    q->bodies = allocate(count, sizeof *q->bodies);
+    q->asked.rays = points;
+    q->asked.named = named;
     q->distances = allocate(count, sizeof *q->distances);
-    find_nearest(row, count, expected);
-    for (size_t k = 0; k < count; k++)
-        q->bodies[k] = expected[k].body;
-    run_nearest(row);
+    q->bits = allocate(NARC_BIT_WORDS(count), sizeof *q->bits);
+    q->floats = allocate(count, sizeof *q->floats);
+    ask_points(row, one ? DISTANCE : NEAREST, count, expected);
+    for (size_t k = 0; k < count && !one; k++)
+        named[k] = expected[k].body;
+    run_points(row);
     for (size_t k = 0; k < count; k++) {
-        row->bench.hits += (expected[k].separation < 0) / (double)count;
-        row->bench.wrong += q->distances[k].separation != expected[k].separation;
+        const double separation = (double)expected[k].separation;
+        const bool within = separation < 0, asks_within = what >= INSIDE;
+        row->bench.hits += within / (double)count;
+        if (row->peer)
+            row->bench.wrong += fabs((double)q->floats[k] - (asks_within ? within : fmax(0, separation))) > 1e-3 &&
+                                !(asks_within && fabs(separation) < TOUCHING);
+        else
+            row->bench.wrong += asks_within ? (q->bits[k / 64] >> k % 64 & 1) != within
+                                            : q->distances[k].separation != expected[k].separation;
     }
     free(expected);
 }
@@ -317,8 +361,11 @@ const struct question scene_questions[] = {{"ray-fan", prepare_rays, run_rays, R
                                            {"ray-short", prepare_rays, run_rays, RAY_SHORT, false},
                                            {"region-48", prepare_regions, run_regions, 48, false},
                                            {"region-3", prepare_regions, run_regions, 3, false},
-                                           {"nearest", prepare_nearest, run_nearest, NEAREST, false},
-                                           {"distance", prepare_nearest, run_nearest, DISTANCE, false},
+                                           {"nearest", prepare_points, run_points, NEAREST, false},
+                                           {"named-ray", prepare_rays, run_rays, RAY_NAMED, false},
+                                           {"distance", prepare_points, run_points, DISTANCE, false},
+                                           {"inside", prepare_points, run_points, INSIDE, false},
+                                           {"inside-one", prepare_points, run_points, INSIDE_ONE, false},
                                            {"index-good", prepare_build, run_build, GOOD, false},
                                            {"index-fast", prepare_build, run_build, FAST, false},
                                            {"move-1", prepare_moves, run_moves, 1, false},

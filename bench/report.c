@@ -90,6 +90,17 @@ static const struct table tables[] = {
      "8 arcs = nearest/n8/$1/BEST;"
      "one by one = nearest/n8/$1/BEST/by1; of one that is named = distance/n8/$1/BEST",
      1},
+    {"ns a question of one 8-gon",
+     "does a ray hit it, and where? = named-ray; how far is a point? = distance; is a point within? = inside;"
+     "the same, all points of one = inside-one",
+     "",
+     "batch = $1/gons8/pile/BEST / 5; AVX2 = $1/gons8/pile/avx2 / 5; one by one = $1/gons8/pile/BEST/by1 / 5;"
+     "AVX2 = $1/gons8/pile/avx2/by1 / 5; Box2D = $1/gons8/pile/box2d",
+     1},
+    {"ns an outline",
+     "the hull of 8 points = hull-8/points/clouds; of 200 = hull-200/points/clouds; an 8-arc as a polyline = "
+     "polyline/n8/pile; an 8-gon = polyline/gons8/pile",
+     "", "narc = $1/BEST / 2; Box2D = $1/box2d", 1},
     {"ns a pair, times of impact | motion", "boxes 1 : 1 = squares; boxes 1 : 8 = slabs; 8-gons = gons8; 8 arcs = n8",
      "straight = straight; turning by up to 1 = turning; turning by up to 6 = turning-6",
      "batch = impact-$2/$1/flights/BEST / 5; AVX2 = impact-$2/$1/flights/avx2 / 5;"
@@ -101,6 +112,8 @@ static const struct table tables[] = {
     {"ns a box that moves in an index | so many", SCENES,
      "1, anywhere = 1; 100 = 100; 2,000 = 2000; 2,000, a little = near-2000",
      "narc = move-$2/gons8/$1/BEST; Box2D = move-$2/gons8/$1/box2d", 1},
+    {"ns a body", "30,000 boxes in worlds of 32: boxes, pairs and manifolds = boxes", "", "narc = worlds/$1/pile/BEST",
+     1},
     {"us a step of 30,000 boxes on ground", "of pieces of 1.1 m = hills; of 0.13 m = short-hills", "",
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",

@@ -39,9 +39,10 @@ struct row {
 /* Behind the last one comes one without a name. */
 extern const struct question pair_questions[];  /* overlaps, contacts, manifolds; bits of all peers */
 extern const struct question step_questions[];  /* from bodies to manifolds, and what an engine does besides */
-extern const struct question scene_questions[]; /* rays, regions, the nearest bodies, indices */
+extern const struct question scene_questions[]; /* rays, regions, points, indices */
 extern const struct question impact_questions[];
 extern const struct question ground_questions[];
+extern const struct question outline_questions[]; /* hulls, polylines */
 
 /* Makes and registers all rows. */
 void list_rows(const char *best_isa, unsigned threads);

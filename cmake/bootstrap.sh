@@ -30,6 +30,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
   python     the Python package: a wheel and pictures of its examples in out/python/, installed into the environment
              build/python and tested
+  web        the package for JavaScript, in out/web/, and its page: built, tested in node and in Chromium. web --serve shows the
+             page on 127.0.0.1
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -62,8 +64,9 @@ study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
 windows_packages="$run_packages gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev wine64"
-python_packages="$library_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
+python_packages="$library_packages $fit_packages python3-dev python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest \
     python3-hypothesis python3-shapely python3-matplotlib mypy"
+web_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs chromium"
 dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
 
 missing_of() {
@@ -454,7 +457,7 @@ check_style() {
     # apps/dem. The test of what is installed has builds of its own; what is for other systems and libraries is in none
     # here.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' 'bindings/*.c' \
-        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' |
+        ':!tests/package' ':!tests/fuzz' ':!*_windows.c' ':!*peers/box2d.c' ':!*/wasm_*.c' ':!bindings/web' |
         xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
     git ls-files 'apps/*.c' | xargs -P "$jobs" -n 8 clang-tidy --quiet -p build/dem || fail "clang-tidy has something to say"
 }
@@ -540,15 +543,53 @@ make_wheel() {
     $pip wheel --no-index --no-build-isolation --no-deps -w out/python bindings/python || fail "building the wheel failed"
     $pip install --no-index --no-deps --force-reinstall out/python/narc-*-cp311-abi3-*.whl || fail "installing the wheel failed"
     say "its tests"
-    env -i build/python/bin/python -m narc || fail "the package does not run by itself"
+    env -i PATH=/nowhere build/python/bin/python -m narc || fail "the package does not run without a compiler"
     build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
     (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
     say "examples"
-    for example in lidar packing worlds; do
+    for example in drawing lidar packing worlds; do
         build/python/bin/python bindings/python/examples/$example.py out/python/$example.png || fail "$example.py failed"
     done
     say "written"
     ls -l out/python
+}
+
+# TypeScript and what drives Chromium come from npm, for this build and its tests alone.
+web() {
+    require_packages $web_packages
+    command -v npm >/dev/null || require_packages npm
+    build wasm32 narc_module narc_small narc_layouts narc_page
+    say "build/web"
+    npm install --prefix build/web-tools --no-audit --no-fund --no-save typescript@5 puppeteer-core@24 ||
+        fail "npm has no typescript or puppeteer-core"
+    rm -rf build/web out/web
+    mkdir -p build/web out/web
+    cp -r bindings/web/src bindings/web/tests bindings/web/page bindings/web/tsconfig.json build/web
+    node --no-warnings cmake/wasi.mjs build/wasm32/narc_layouts.wasm | node bindings/web/src/layouts.mjs >build/web/src/layouts.ts ||
+        fail "making the table of layouts failed"
+    tsc="node build/web-tools/node_modules/typescript/bin/tsc"
+    $tsc -p build/web || fail "compiling bindings/web failed"
+    version=$(sed -n 's/^export const version = "\(.*\)";/\1/p' build/web/src/layouts.ts)
+    sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
+    cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
+    (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
+    mkdir out/web/page
+    cp build/web/page/index.html build/web/page/page.css build/web/page/page.js build/wasm32/page.wasm out/web/page
+    if [ "${1:-}" = --serve ]; then
+        node bindings/web/tests/serve.mjs out/web/page
+        return
+    fi
+    say "its tests"
+    $tsc -p build/web/tests || fail "the types are not as they should be"
+    node --expose-gc --test build/web/tests/module.test.mjs || fail "tests failed in build/web"
+    cmake -B build/native -DCMAKE_BUILD_TYPE=Release -DNARC_BUILD_FILES=OFF -DNARC_BUILD_FIT=OFF -DNARC_BUILD_METHODS=OFF \
+        -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF || fail "configuring build/native failed"
+    cmake --build build/native --target narc_static || fail "building build/native failed"
+    cc -O2 -ffp-contract=off -Iinclude -Iexamples examples/world*.c examples/scenes.c -o build/native/world build/native/libnarc.a \
+        -lsleef -fopenmp -lm || fail "building build/native/world failed"
+    node bindings/web/tests/page.mjs out/web/page build/web-tools out/web build/native/world || fail "the page is not as it should be"
+    say "written"
+    ls -l out/web
 }
 
 reference() {
@@ -569,6 +610,7 @@ soak) soak "${2:-}" ;;
 coverage) coverage ;;
 python) make_wheel ;;
 docs) reference ;;
+web) web "${2:-}" ;;
 bench)
     shift
     bench "$@"

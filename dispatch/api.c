@@ -33,13 +33,7 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
 }
 
 /* The kernel for so many pairs. */
-#if NARC_SMALL
-#define KERNEL_FOR(count, few, kernel) (kernel)
-#define ANSWERS_FEW(...)               false
-#else
 #define KERNEL_FOR(count, few, kernel) ((count) <= NARC_FEW ? (few) : (kernel))
-#define ANSWERS_FEW                    narc_answer_few
-#endif
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, uint64_t *out_bits, narc_error *error) {
@@ -49,7 +43,6 @@ narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bod
     return status == NARC_OK ? narc_answer_overlaps(kernels->overlap, &batch, out_bits, error) : status;
 }
 
-#if !NARC_SMALL
 narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                   const narc_query *query, float *out_separations, narc_error *error) {
     narc_batch batch;
@@ -67,7 +60,6 @@ narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *
     return narc_answer_rows(KERNEL_FOR(batch.count, narc_find_few_separations, kernels->separation), &batch,
                             out_separations, out_separations ? SIZE_MAX : 0, &found, error);
 }
-#endif
 
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                  narc_error *error) {
@@ -84,7 +76,7 @@ narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, narc_contact *out_rows, size_t capacity, size_t *out_count,
                                narc_error *error) {
-    if (ANSWERS_FEW(shapes, bodies, pairs, query, false, out_rows, capacity, out_count))
+    if (narc_answer_few(shapes, bodies, pairs, query, false, out_rows, capacity, out_count))
         return NARC_OK;
     narc_batch batch;
     const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);
@@ -107,7 +99,7 @@ narc_status narc_answer_manifolds(narc_batch *batch, narc_manifold *out_rows, si
 narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                 const narc_query *query, narc_manifold *out_rows, size_t capacity, size_t *out_count,
                                 narc_error *error) {
-    if (ANSWERS_FEW(shapes, bodies, pairs, query, true, out_rows, capacity, out_count))
+    if (narc_answer_few(shapes, bodies, pairs, query, true, out_rows, capacity, out_count))
         return NARC_OK;
     narc_batch batch;
     const narc_status status = narc_begin_batch(shapes, bodies, pairs, query, &batch, error);

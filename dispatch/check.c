@@ -253,9 +253,19 @@ static bool is_body_fine(const narc_shapes *shapes, narc_index_column column, co
     return body < bodies->count && narc_index_at(bodies->shape, body) < shapes->count;
 }
 
+/* Asks the cache for the shape of B of a pair that is looked at later. */
+static void fetch_shape(const narc_batch *batch, size_t place) {
+    const size_t pair = narc_pair_at(batch, place);
+    if (pair < batch->pairs->count)
+        FETCH(narc_at(batch->b->shape.base, batch->b->shape.stride, find_named(batch->pairs->b, pair)));
+}
+
 /* The first place from `place` on of a pair that is not fine, or `end`. */
 static size_t find_bad_place(const narc_batch *batch, size_t place, size_t end) {
+    enum { AHEAD = 16 };
     for (; place < end; place++) {
+        if (FETCHES && end - place > AHEAD)
+            fetch_shape(batch, place + AHEAD);
         const size_t pair = narc_pair_at(batch, place);
         if (pair >= batch->pairs->count || !is_body_fine(batch->shapes, batch->pairs->a, batch->a, pair) ||
             !is_body_fine(batch->shapes, batch->pairs->b, batch->b, pair))
@@ -290,7 +300,7 @@ size_t narc_find_bad_pair(const narc_batch *batch) {
     atomic_init(&search.bad, first + count);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
-    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 8 <= count) {
+    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 4 <= count) {
         narc_run_parts(batch->query->workers, search.parts, look_at_columns, &search);
         if (atomic_load(&search.fine))
             return first + count;

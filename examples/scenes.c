@@ -19,9 +19,13 @@ static float random_between(uint64_t *state, float low, float high) {
     return low + (high - low) * (float)(bits >> 40) * 0x1p-24f;
 }
 
+/* Rounded from doubles a rotation is the same with every C library, or nearly always. */
 static world_body make_body(uint32_t shape, float x, float y, float angle) {
-    return (world_body){
-        .position = {x, y}, .cosine = cosf(angle), .sine = sinf(angle), .shape = shape, .friction = 0.6f};
+    return (world_body){.position = {x, y},
+                        .cosine = (float)cos((double)angle),
+                        .sine = (float)sin((double)angle),
+                        .shape = shape,
+                        .friction = 0.6f};
 }
 
 /* What goes wrong stays in w->error, and build_scene() returns it. */
@@ -279,6 +283,54 @@ static void build_bowl(world *w, uint64_t seed) {
     add_body(w, box);
 }
 
+/* A well whose bottom is half of a circle, and a thousand bodies above it. */
+static void build_well(world *w, uint64_t seed) {
+    enum { COLUMNS = 25, BODIES = 1000 };
+    const double radius = 20, wall = 14;
+    track t = {.x = radius, .y = radius + wall, .normal = pi};
+    uint32_t shapes[KINDS * SIZES];
+    put_arc(&t, 0, 0);
+    put_edge(&t, wall);
+    put_arc(&t, -radius, -pi / 2);
+    put_arc(&t, -radius, -pi / 2);
+    put_edge(&t, wall);
+    put_arc(&t, 0, 0);
+    add_ground(w, &t);
+    for (int i = 0; i < KINDS * SIZES; i++)
+        shapes[i] = add_kind(w, i / SIZES, 0.7 + 0.3 * (i % SIZES));
+    for (int k = 0; k < BODIES; k++) {
+        const uint32_t kind = (uint32_t)random_between(&seed, 0, KINDS * SIZES);
+        const float x = 1.4f * ((float)(k % COLUMNS) - 0.5f * (float)(COLUMNS - 1)),
+                    y = 18 + 1.4f * (float)(k / COLUMNS);
+        add_body(w, make_body(shapes[kind], x, y, random_between(&seed, -3, 3)));
+    }
+}
+
+/* An n-arc of eight arcs, and a polygon of its junctions, on two equal slopes. */
+static void build_wheels(world *w, uint64_t seed) {
+    enum { CORNERS = 8 };
+    const double slope = 0.12, size = 1, length = 30, along = length - 2 - (double)random_between(&seed, 0, 0.1f);
+    narc_point corners[CORNERS];
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count = 0;
+    for (int k = 0; k < CORNERS; k++)
+        corners[k] = (narc_point){size * cos(pi / 4 * k), size * sin(pi / 4 * k)};
+    for (int k = 0; k < 2; k++) {
+        track t = {.x = 14, .y = 6 * (double)(1 - k), .normal = pi / 2 - slope};
+        const double x = t.x - along * cos(slope) + size * sin(slope), y = t.y + along * sin(slope) + size * cos(slope);
+        put_arc(&t, 0, 0);
+        put_edge(&t, length);
+        put_arc(&t, 0, 0);
+        add_ground(w, &t);
+        if (k == 0)
+            narc_build_ring(corners, CORNERS, arcs, &count, &w->error);
+        else
+            narc_build_polygon(corners, CORNERS, 0, arcs, &count, &w->error);
+        add_body(w, make_body(add_shape(w, arcs, count), (float)x, (float)y, 0));
+        w->bodies[w->body_count - 1].velocity.x = 1;
+    }
+}
+
 /* A ball rolls down a hill and into dominoes, which stand on a slope. */
 static void build_dominoes(world *w, uint64_t seed) {
     const double slope = 0.12, apart = 0.55;
@@ -351,6 +403,8 @@ const scene scenes[] = {
     {"rounded", "210 boxes with round corners", 30, 256, build_rounded_pyramid, NULL},
     {"heap", "200 bodies of 30 shapes fall into a box", 15, 256, build_heap, NULL},
     {"pile", "600 bodies", 20, 1024, build_pile, NULL},
+    {"well", "1,000 bodies fall into a half circle", 20, 2048, build_well, NULL},
+    {"wheels", "an n-arc of eight arcs and a polygon of eight corners roll", 6, 64, build_wheels, NULL},
     {"bullets", "120 m/s against a thin wall", 3, 16, build_bullets, NULL},
     {"rain", "bodies come, pile up on a table, fall off, and go", 60, 256, build_rain, act_rain},
     {"car", "drives over hills", 6, 128, build_car, act_car},

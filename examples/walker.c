@@ -9,7 +9,8 @@
 
 #include <narc_broad_phase.h>
 
-enum { MOST_PLANES = 16, MOST_SLIDES = 6 };
+/* Pairs that are asked at a time, and their rows: pairs with concave arcs have more than one. */
+enum { MOST_PLANES = 16, MOST_SLIDES = 6, FEW = 16, MOST_ROWS = 256 };
 
 static bool is_free(const walker_plane *planes, size_t count, double x, double y) {
     bool free = true;
@@ -43,28 +44,40 @@ void walker_clip(const walker_plane *planes, size_t count, double *x, double *y)
         }
 }
 
-/* The planes of all that is nearer than a skin and as much again. */
+/* Keeps those with least room. */
+static void add_plane(walker_plane plane, walker_plane *planes, size_t *count) {
+    size_t k = *count < MOST_PLANES ? (*count)++ : MOST_PLANES;
+    for (; k > 0 && planes[k - 1].room > plane.room; k--)
+        if (k < MOST_PLANES)
+            planes[k] = planes[k - 1];
+    if (k < MOST_PLANES)
+        planes[k] = plane;
+}
+
+/* The planes of what is nearer than a skin and as much again. However many pairs there are, few are asked at a time. */
 static narc_status find_planes(const walker *w, const walker_scene *scene, walker_plane *out, size_t *out_count,
                                narc_error *error) {
-    const narc_box_options around = {.margin = 2 * w->skin};
-    narc_contact rows[MOST_PLANES];
+    const narc_box_options around = {.margin = 2 * w->skin, .origin = scene->origin};
+    narc_contact rows[MOST_ROWS];
     narc_bodies own;
     narc_box box;
     narc_pairs pairs;
-    size_t found = 0;
     narc_view_bodies(&w->body, 1, &own);
     narc_status status = narc_compute_boxes(scene->shapes, &own, &around, &box, error);
     if (status == NARC_OK)
         status = narc_query_index(scene->index, &box, 1, &scene->search, &pairs, error);
-    if (status != NARC_OK)
-        return status;
-    pairs.other_bodies = scene->bodies;
-    status = narc_find_contacts(scene->shapes, &own, &pairs, &(narc_query){.margin = 2 * w->skin}, rows, MOST_PLANES,
-                                &found, error);
-    for (size_t k = 0; k < found && k < MOST_PLANES; k++)
-        out[k] = (walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
-                                (double)rows[k].separation - (double)w->skin};
-    *out_count = found;
+    *out_count = 0;
+    for (size_t first = 0; status == NARC_OK && first < pairs.count; first += FEW) {
+        const size_t count = pairs.count - first < FEW ? pairs.count - first : FEW;
+        const narc_query query = {.margin = 2 * w->skin, .first = first, .count = count};
+        size_t found = 0;
+        pairs.other_bodies = scene->bodies;
+        status = narc_find_contacts(scene->shapes, &own, &pairs, &query, rows, MOST_ROWS, &found, error);
+        for (size_t k = 0; status == NARC_OK && k < found; k++)
+            add_plane((walker_plane){(double)rows[k].normal_x, (double)rows[k].normal_y,
+                                     (double)rows[k].separation - (double)w->skin},
+                      out, out_count);
+    }
     return status;
 }
 

@@ -17,7 +17,8 @@ typedef struct walker_scene {
     const narc_shapes *shapes;
     narc_index *index; /* of the bodies */
     const narc_bodies *bodies;
-    narc_index_query search; /* whom it may meet; {0}: all */
+    narc_index_query search;  /* whom it may meet; {0}: all */
+    const narc_point *origin; /* of the index's boxes, as in narc_box_options; NULL: (0, 0) */
 } walker_scene;
 
 typedef struct walker {

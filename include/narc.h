@@ -106,7 +106,7 @@ NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bo
  *                    next; `dense` and what is of manifolds do nothing
  *   out_separations  room up to the last pair that is asked of (of a selection, up to the batch's last), overlapping none
  *                    of the inputs; floats of pairs that are not asked of are untouched
- * Errors as narc_find_overlaps(). Allocates nothing. Not in narc_small.wasm. */
+ * Errors as narc_find_overlaps(). Allocates nothing. */
 NARC_API narc_status narc_find_separations(const narc_shapes *shapes, const narc_bodies *bodies,
                                            const narc_pairs *pairs, const narc_query *query, float *out_separations,
                                            narc_error *error);
@@ -145,7 +145,7 @@ NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_b
  *   out_row   is written in any case: count 0 where they are not closer than the margin (see narc_query.dense)
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, a query out of range),
  * NARC_ERROR_NOT_FINITE (of a query), NARC_ERROR_INDEX (a shape that is not there), and those for NARC_ISA. Allocates
- * nothing. Not in narc_small.wasm. */
+ * nothing. */
 NARC_API narc_status narc_find_contact(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
                                        const narc_query *query, narc_contact *out_row, narc_error *error);
 NARC_API narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
@@ -190,8 +190,7 @@ typedef struct narc_refinement {
  * What is not finite is a row with separation +INFINITY and all else 0.
  * Errors, all found before anything is written: as narc_find_contacts() for bodies and pairs, NARC_ERROR_ARGUMENT (a row
  * or output is NULL, a reserved member is not, one column of a rotation without the other), NARC_ERROR_INDEX (`error` names the
- * row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. Not in
- * narc_small.wasm. */
+ * row, and the pair, arc or edge that is not there). No rows: NARC_OK. Allocates nothing. */
 NARC_API narc_status narc_refine_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                           const narc_refinement *refinement, const narc_contact *rows, size_t count,
                                           narc_refined_contact *out_rows, narc_error *error);

@@ -224,8 +224,6 @@ NARC_API narc_status narc_save_contacts(const narc_contacts *contacts, void *out
 NARC_API narc_status narc_load_contacts(narc_contacts *contacts, const narc_shapes *shapes, const void *bytes,
                                         size_t size, const narc_step_result **out_result, narc_error *error);
 
-/* Nothing of this header is in narc_small.wasm. */
-
 #ifdef __cplusplus
 }
 #endif

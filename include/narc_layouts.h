@@ -66,7 +66,7 @@ NARC_API const narc_layout *narc_find_layout(const char *name);
  *      "constants": {"NARC_MAX_ARCS": 64, ...}} */
 NARC_API size_t narc_write_layouts(char *out_text, size_t capacity);
 
-/* Nothing of this header is in narc_small.wasm. */
+/* Nothing of this header is in the modules for WebAssembly. */
 
 #ifdef __cplusplus
 }

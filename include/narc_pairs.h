@@ -68,7 +68,7 @@ NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_
  *   out_count    how many; on NARC_ERROR_CAPACITY so many as surely are enough, and no points are written
  * So an arc with the radius r and the sweep s has some s * sqrt(r / (8 * tolerance)) chords. Other errors, with nothing written:
  * NARC_ERROR_ARGUMENT (NULL, a tolerance of 0 or less, a broken body), NARC_ERROR_NOT_FINITE, NARC_ERROR_SWEEP. Thread-safe; the
- * same bits on every machine. Not in narc_small.wasm. */
+ * same bits on every machine. */
 NARC_API narc_status narc_flatten_arcs(const narc_arc *arcs, size_t count, bool closed, const narc_body *body,
                                        double tolerance, narc_point *out_points, size_t capacity, size_t *out_count,
                                        narc_error *error);

@@ -137,7 +137,8 @@ typedef struct narc_owners {
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
  *   workers   threads to use; NULL: the calling one
  *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either
- *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all */
+ *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all, as
+ *             in an index without worlds */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;
@@ -188,9 +189,9 @@ typedef enum narc_inside {
  *   most          hits that each ray has room for, nearest first; 0: 1, the closest. Row i of ray k is row
  *                 k * most + i; the rows behind its last hit have count 0
  *   out_skipped   how many rays have no answer; NULL: nobody asks
- *   out_order     rays->count numbers. Rays whose starts are in no order are asked in one, neighbours after each other:
- *                 their numbers in this order are written here. Rows are the same. NULL: rays are asked in the order that
- *                 they come in, as is best for few, and where neighbours follow each other anyway */
+ *   out_order     rays->count numbers. Rays whose starts are in no order are asked in one, world by world, neighbours
+ *                 after each other: their numbers in this order are written here. Rows are the same. NULL: rays are asked
+ *                 in the order that they come in, as is best for few, and where neighbours follow each other anyway */
 typedef struct narc_ray_options {
     narc_index_query search;
     narc_inside inside;
@@ -250,7 +251,7 @@ NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *
  *   out_rows   room for `capacity` rows, at least rays->count
  * Rows are those of narc_cast_rays() with an index of that body alone, to the last bit, whatever the bodies' boxes.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
- * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. Not in narc_small.wasm. */
+ * exist), NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe. */
 NARC_API narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
                                          const narc_index_column *body, const narc_ray_options *options,
                                          narc_ray_hit *out_rows, size_t capacity, narc_error *error);
@@ -410,7 +411,7 @@ NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_b
  *   workers    threads to use; NULL: the calling one
  *   out_bits   NARC_BIT_WORDS(points->count) words
  * The bit is set exactly if the separation that narc_find_distances() tells is below 0, so a point on the outline is not
- * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. Not in narc_small.wasm. */
+ * within; of a piece of a chain, and where there is no answer, never. Errors and the rest as there. */
 NARC_API narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                       const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
                                       narc_error *error);

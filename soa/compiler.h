@@ -41,8 +41,9 @@
 #define UNROLL_FEW _Pragma("GCC unroll 4")
 #endif
 
-#define LIKELY(condition) __builtin_expect(condition, 1)
-#define FETCH(address)    __builtin_prefetch(address)
+#define LIKELY(condition)       __builtin_expect(condition, 1)
+#define FETCH(address)          __builtin_prefetch(address)
+#define FETCH_TO_WRITE(address) __builtin_prefetch(address, 1)
 #ifdef __wasm__ /* it has no such instruction */
 #define FETCHES 0
 #else

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * box2d.c - Box2D 3: manifolds of two shapes, distance of two polygons, the collision part of a step, rays by
- * b2World_CastRayClosest(), regions by b2DynamicTree_Query(), casts by b2ShapeCast() and b2TimeOfImpact().
+ * b2World_CastRayClosest(), regions by b2DynamicTree_Query(), casts by b2ShapeCast() and b2TimeOfImpact(); rays and
+ * points of one polygon each, hulls.
  */
 #include <box2d/box2d.h>
 #include <box2d/constants.h>
@@ -287,6 +288,48 @@ static size_t move_proxies(void *context, const struct asked *asked, void *out) 
     return 0;
 }
 
+/* ------------------------------------------------------------------------------------------------ of one body each */
+
+static size_t cast_at_named(void *context, const struct asked *asked, void *out) {
+    const struct posed *posed = context;
+    float *fractions = out;
+    for (size_t k = 0; k < asked->count; k++) {
+        const struct ray *ray = &asked->rays[k];
+        const b2Transform at = posed->transforms[asked->named[k]];
+        const b2RayCastInput input = {b2InvTransformPoint(at, (b2Vec2){ray->x, ray->y}),
+                                      b2InvRotateVector(at.q, (b2Vec2){ray->motion_x, ray->motion_y}), 1};
+        const b2CastOutput hit = b2RayCastPolygon(&posed->shapes[posed->shape[asked->named[k]]].as.polygon, &input);
+        fractions[k] = hit.hit ? hit.fraction : 2;
+    }
+    return 0;
+}
+
+static size_t find_distances(void *context, const struct asked *asked, void *out) {
+    const struct posed *posed = context;
+    float *distances = out;
+    for (size_t k = 0; k < asked->count; k++) {
+        const b2Transform at = posed->transforms[asked->named[k]];
+        const b2Vec2 point = {asked->rays[k].x, asked->rays[k].y};
+        const b2DistanceInput input = {.proxyA = proxy_of(&posed->shapes[posed->shape[asked->named[k]]].as.polygon),
+                                       .proxyB = b2MakeProxy(&(b2Vec2){0, 0}, 1, 0),
+                                       .transform = {b2InvTransformPoint(at, point), b2Rot_identity}};
+        b2SimplexCache cache = {0};
+        distances[k] = b2ShapeDistance(&input, &cache, NULL, 0).distance;
+    }
+    return 0;
+}
+
+static size_t find_inside(void *context, const struct asked *asked, void *out) {
+    const struct posed *posed = context;
+    float *inside = out;
+    for (size_t k = 0; k < asked->count; k++) {
+        const b2Transform at = posed->transforms[asked->named[k]];
+        const b2Vec2 point = b2InvTransformPoint(at, (b2Vec2){asked->rays[k].x, asked->rays[k].y});
+        inside[k] = b2PointInPolygon(&posed->shapes[posed->shape[asked->named[k]]].as.polygon, point);
+    }
+    return 0;
+}
+
 /* ------------------------------------------------------------------------------------------------ times of impact */
 
 static void *create_nothing(struct scene *scene) {
@@ -332,6 +375,19 @@ static size_t find_impacts(void *context, const struct asked *asked, void *out) 
     return 0;
 }
 
+static size_t find_hulls(void *context, const struct asked *asked, void *out) {
+    uint8_t *corners = out;
+    (void)context;
+    for (size_t k = 0; k < asked->count; k++) {
+        b2Vec2 points[B2_MAX_POLYGON_VERTICES];
+        for (size_t i = 0; i < asked->cloud_size; i++)
+            points[i] =
+                (b2Vec2){asked->cloud[k * asked->cloud_size + i][0], asked->cloud[k * asked->cloud_size + i][1]};
+        corners[k] = (uint8_t)b2ComputeHull(points, (int)asked->cloud_size).count;
+    }
+    return 0;
+}
+
 const char *box2d_name(void) {
     static char name[32];
     const b2Version version = b2GetVersion();
@@ -351,3 +407,7 @@ const struct peer box2d_rays = BOX2D("ray", .create = create_still, .ask = cast)
 const struct peer box2d_regions = BOX2D("region", .create = create_tree, .ask = find_regions);
 const struct peer box2d_moves = BOX2D("move", .create = create_tree, .ask = move_proxies);
 const struct peer box2d_impacts = BOX2D("impact", .create = create_nothing, .ask = find_impacts);
+const struct peer box2d_named = BOX2D("named", .create = create, .ask = cast_at_named);
+const struct peer box2d_distances = BOX2D("distance", .create = create, .ask = find_distances);
+const struct peer box2d_inside = BOX2D("inside", .create = create, .ask = find_inside);
+const struct peer box2d_hulls = BOX2D("hull", .create = create_nothing, .ask = find_hulls);

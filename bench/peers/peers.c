@@ -18,6 +18,10 @@ MISSING(box2d_rays, "ray", "box2d", "Box2D");
 MISSING(box2d_regions, "region", "box2d", "Box2D");
 MISSING(box2d_moves, "move", "box2d", "Box2D");
 MISSING(box2d_impacts, "impact", "box2d", "Box2D");
+MISSING(box2d_named, "named", "box2d", "Box2D");
+MISSING(box2d_distances, "distance", "box2d", "Box2D");
+MISSING(box2d_inside, "inside", "box2d", "Box2D");
+MISSING(box2d_hulls, "hull", "box2d", "Box2D");
 #endif
 #ifndef BENCH_CCD
 MISSING(ccd_gjk, "overlap", "ccd-gjk", "libccd");
@@ -27,9 +31,10 @@ MISSING(ccd_mpr, "overlap", "ccd-mpr", "libccd");
 MISSING(geos_regions, "region", "geos", "GEOS");
 #endif
 
-static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap, &box2d_world,   &box2d_rays,
-                                           &box2d_ground,  &box2d_regions, &box2d_impacts, &box2d_moves,
-                                           &ccd_gjk,       &ccd_mpr,       &geos_regions,  &disc_loop};
+static const struct peer *const peers[] = {&box2d_collide, &box2d_overlap,   &box2d_world,   &box2d_rays,
+                                           &box2d_ground,  &box2d_regions,   &box2d_impacts, &box2d_moves,
+                                           &box2d_named,   &box2d_distances, &box2d_inside,  &box2d_hulls,
+                                           &ccd_gjk,       &ccd_mpr,         &geos_regions,  &disc_loop};
 
 const struct peer *find_peer(const char *query, const char *name) {
     for (size_t k = 0; k < sizeof peers / sizeof peers[0]; k++)

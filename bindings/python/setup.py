@@ -14,7 +14,7 @@ from setuptools.command.sdist import sdist
 
 HERE = pathlib.Path(__file__).resolve().parent
 CORE = HERE / "core" if (HERE / "core").exists() else HERE.parent.parent
-NEEDED = ["CMakeLists.txt", "LICENSE", "cmake", "include", "soa", "kernels", "dispatch"]
+NEEDED = ["CMakeLists.txt", "LICENSE", "cmake", "include", "soa", "kernels", "dispatch", "files", "fit"]
 
 
 class BuildByCMake(build_ext):
@@ -25,7 +25,7 @@ class BuildByCMake(build_ext):
         subprocess.run(["cmake", "-S", str(HERE), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release", f"-DNARC_SOURCE={CORE}",
                         f"-DNARC_PYTHON_INCLUDE={sysconfig.get_path('include')}",
                         f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={out}", *os.environ.get("CMAKE_ARGS", "").split()], check=True)
-        subprocess.run(["cmake", "--build", str(build), "--target", "_narc", "--parallel", str(os.cpu_count() or 1)],
+        subprocess.run(["cmake", "--build", str(build), "--target", "python_modules", "--parallel", str(os.cpu_count() or 1)],
                        check=True)
 
 

@@ -4,6 +4,7 @@
  * and a pair with a concave arc may have several rows. The first one is its slot's, the others lie apart.
  */
 #include "column.h"
+#include "compiler.h"
 #include "contacts.h"
 #include "merge.h"
 
@@ -104,7 +105,18 @@ static size_t take_rows(const narc_contact_step *s, size_t k, uint32_t slot, siz
     return end;
 }
 
+/* Asks the cache for what take_rows() writes. */
+static void fetch_slot(const narc_contacts *c, uint32_t slot) {
+    const char *const row = narc_slot_row(c, slot), *const kept = (const char *)&c->kept[slot];
+    FETCH_TO_WRITE(row);
+    FETCH_TO_WRITE(row + c->row_size - 1);
+    FETCH_TO_WRITE(kept);
+    FETCH_TO_WRITE(kept + sizeof *c->kept - 1);
+    FETCH_TO_WRITE(&c->more_of[slot]);
+}
+
 void narc_take_ground(const narc_contact_step *s) {
+    enum { AHEAD = 8 };
     narc_contacts *const c = s->contacts;
     const narc_pairs pairs = narc_view_slots(c);
     const bool has_more = c->more.count > 0;
@@ -115,6 +127,8 @@ void narc_take_ground(const narc_contact_step *s) {
     c->next_more.count = 0;
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t k = c->work[i].pair, what = c->work[i].what, slot = c->work[i].slot;
+        if (FETCHES && c->work_count - i > AHEAD)
+            fetch_slot(c, c->work[i + AHEAD].slot);
         if (what != NARC_ASK_GROUND && what != NARC_NO_GROUND)
             continue;
         for (; has_more && next < k; next++)

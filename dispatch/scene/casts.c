@@ -28,7 +28,6 @@ static narc_status check_options(const narc_cast_options *options, narc_error *e
     return status == NARC_OK ? narc_check_reserved(options->reserved, 1, "options", error) : status;
 }
 
-#if !NARC_SMALL
 /* Pair `number` of a batch by itself, or of a call whose pairs bring their `own` bodies: 1 if it has no answer, below 0 if it is
  * the other kernels', or names what does not exist. */
 static int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
@@ -102,20 +101,16 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
         *options->out_skipped = skipped;
     return true;
 }
-#endif
 
 void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
     const narc_cast_batch *const casts = &job->batch;
     const narc_kernel_table *const kernels = NARC_KERNELS_FOR(end - first, casts->kernels);
+    const bool few = end - first <= NARC_FEW;
     size_t skipped = 0;
-    bool few = false;
-#if !NARC_SMALL
-    few = end - first <= NARC_FEW;
     for (size_t place = first; few && place < end; place++) {
         const int broken = cast_alone(casts, narc_pair_at(casts->batch, place), false);
         skipped += broken < 0 ? kernels->casts(casts, place, place + 1) : (size_t)broken;
     }
-#endif
     if (!few)
         skipped = kernels->casts(casts, first, end);
     if (skipped > 0)
@@ -166,10 +161,8 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
     narc_query query;
     narc_batch batch;
     narc_cast_job job;
-#if !NARC_SMALL
     if (cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity))
         return NARC_OK;
-#endif
     narc_status status = narc_check_casts(motions, other_motions, o, &job, error);
     if (o->workers)
         query = (narc_query){.workers = o->workers};

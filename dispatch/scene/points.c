@@ -70,7 +70,6 @@ narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bo
 
 /* ------------------------------------------------------------------------------------------------ within */
 
-#if !NARC_SMALL
 static void answer_bits(void *argument, size_t part, size_t first, size_t end) {
     const point_job *job = argument;
     (void)part;
@@ -99,7 +98,6 @@ narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodie
         narc_run_ranges(workers, points->count, PART, answer_bits, &job);
     return status;
 }
-#endif
 
 /* ------------------------------------------------------------------------------------------------ nearest */
 

@@ -32,12 +32,15 @@ static void cast_part(void *argument, size_t part, size_t first, size_t end) {
 
 /* ------------------------------------------------------------------------------------------------ order */
 
-/* Rays are sorted by the cells of a grid over the scene that they start in, along Morton's curve. Where rows will be, the
- * cells' numbers wait, and where the rays of each begin. */
+/* Rays are sorted by their worlds, as far as there are no more of these than cells, and by the cells of a grid over the
+ * scene that they start in, along Morton's curve. Where rows will be, the cells' numbers wait, and where the rays of each
+ * begin. */
 struct ordering {
     const narc_rays *rays;
+    narc_index_column world;
     double min_x, min_y, cells_x, cells_y; /* the latter in a unit of length */
     uint32_t cells;                        /* along each axis */
+    uint32_t worlds;                       /* a power of 2: what is above does not count */
     uint32_t *cell;
 };
 
@@ -55,22 +58,39 @@ static void find_cells(void *argument, size_t part, size_t first, size_t end) {
         const double x = narc_position_at(rays->x, k), y = narc_position_at(rays->y, k);
         const uint32_t cell_x = find_cell((x - o->min_x) * o->cells_x, o->cells);
         const uint32_t cell_y = find_cell((y - o->min_y) * o->cells_y, o->cells);
-        o->cell[k] = narc_spread_bits(cell_x) + 2 * narc_spread_bits(cell_y);
+        const uint32_t world = o->world.base ? narc_index_at(o->world, k) & (o->worlds - 1) : 0;
+        o->cell[k] = narc_spread_bits(cell_x) + 2 * narc_spread_bits(cell_y) + o->cells * o->cells * world;
     }
 }
 
-static void order_rays(const narc_index *index, const narc_rays *rays, const narc_workers *workers, void *room,
+static uint32_t find_largest_world(narc_index_column world, size_t count) {
+    uint32_t largest = 0;
+    for (size_t k = 0; k < count && world.base; k++)
+        largest = narc_index_at(world, k) > largest ? narc_index_at(world, k) : largest;
+    return largest;
+}
+
+static void order_rays(const narc_index *index, const narc_rays *rays, const narc_index_query *search, void *room,
                        uint32_t *out) {
     const narc_box scene = narc_find_index_box(index);
     const narc_point origin = index->origin;
-    struct ordering o = {rays, (double)scene.min_x + origin.x, (double)scene.min_y + origin.y, 0, 0, 1, room};
+    struct ordering o = {.rays = rays,
+                         .world = search->world,
+                         .min_x = (double)scene.min_x + origin.x,
+                         .min_y = (double)scene.min_y + origin.y,
+                         .cells = 1,
+                         .worlds = 1,
+                         .cell = room};
     uint32_t *const place = o.cell + rays->count;
-    while (4 * o.cells * o.cells * RAYS_IN_CELL <= rays->count && o.cells < MOST_CELLS)
+    const size_t most = rays->count / RAYS_IN_CELL, largest = find_largest_world(o.world, rays->count);
+    while (o.worlds <= largest && 2 * (size_t)o.worlds <= most)
+        o.worlds *= 2;
+    while (4 * (size_t)o.cells * o.cells * o.worlds <= most && o.cells < MOST_CELLS)
         o.cells *= 2;
     o.cells_x = o.cells / ((double)scene.max_x - (double)scene.min_x);
     o.cells_y = o.cells / ((double)scene.max_y - (double)scene.min_y);
-    const size_t cells = (size_t)o.cells * o.cells;
-    narc_run_ranges(workers, rays->count, CELLS, find_cells, &o);
+    const size_t cells = (size_t)o.cells * o.cells * o.worlds;
+    narc_run_ranges(search->workers, rays->count, CELLS, find_cells, &o);
     memset(place, 0, cells * sizeof *place);
     for (size_t k = 0; k < rays->count; k++)
         place[o.cell[k]]++;
@@ -122,14 +142,13 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
     if (!job.kernels)
         return status;
     if (o->out_order && rays->count > 0)
-        order_rays(index, rays, o->search.workers, out_rows, o->out_order);
+        order_rays(index, rays, &o->search, out_rows, o->out_order);
     narc_run_ranges(o->search.workers, rays->count, PART, cast_part, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;
 }
 
-#if !NARC_SMALL
 static void cast_pairs_part(void *argument, size_t part, size_t first, size_t end) {
     struct ray_job *const job = argument;
     (void)part;
@@ -171,4 +190,3 @@ narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bo
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;
 }
-#endif

@@ -21,12 +21,16 @@ typedef struct updating {
     narc_index *index;
     const narc_box *boxes;
     size_t waiting;
+    bool all; /* may have changed: all nodes are fitted */
 } updating;
 
 /* ------------------------------------------------------------------------------------------------ leaves */
 
-/* Marks a node of which something has changed, for all nodes above it. */
-static void touch(narc_index *index, unsigned level, size_t node) {
+/* Marks a node of which something has changed, for all nodes above it: unless all are fitted anyway. */
+static void touch(const updating *u, unsigned level, size_t node) {
+    narc_index *const index = u->index;
+    if (u->all)
+        return;
     while (++level < index->level_count) {
         uint8_t *const touched = &index->touched[index->first_node[level] + node / NARC_NODE_SLOTS];
         const bool known = *touched != 0;
@@ -69,7 +73,7 @@ static void put_body(updating *u, size_t place, uint32_t body) {
         index->masks[place] = find_category(u, body);
     if (index->worlds)
         narc_put_worlds(&index->worlds[place / NARC_NODE_SLOTS], place % NARC_NODE_SLOTS, find_world(u, body));
-    touch(index, 0, place / NARC_NODE_SLOTS);
+    touch(u, 0, place / NARC_NODE_SLOTS);
 }
 
 static void take_out(updating *u, uint32_t body) {
@@ -84,7 +88,7 @@ static void take_out(updating *u, uint32_t body) {
         index->masks[place] = 0;
     if (index->worlds)
         narc_put_worlds(&index->worlds[node], place % NARC_NODE_SLOTS, narc_no_worlds);
-    touch(index, 0, node);
+    touch(u, 0, node);
     for (unsigned level = 0; level < index->level_count; level++, node /= NARC_NODE_SLOTS)
         index->filled[index->first_node[level] + node]--;
 }
@@ -110,7 +114,7 @@ static inline void look_at(updating *u, uint32_t body, uint32_t place) {
         else if (has_box(&index->nodes[leaf], slot, box))
             return;
         put_box(&index->nodes[leaf], slot, box);
-        touch(index, 0, leaf);
+        touch(u, 0, leaf);
         return;
     }
     if (place != NARC_NO_PLACE)
@@ -180,7 +184,7 @@ static void spread(updating *u, unsigned level, size_t node, uint32_t body) {
     if (body != UINT32_MAX)
         list[count++] = body;
     narc_spread_bodies(&u->making, level, node, count);
-    touch(index, level, node);
+    touch(u, level, node);
 }
 
 /* So many bodies that came count one that did not find room in the leaf that it belongs to. */
@@ -273,6 +277,13 @@ static void fit_touched(updating *u, unsigned level, size_t node) {
     narc_fit_nodes(&u->making, level, node, node + 1);
 }
 
+/* Fits all nodes, a level after the other: cheaper than to look for them where most have changed. */
+static void fit_all(updating *u) {
+    narc_index *const index = u->index;
+    for (unsigned level = 1; level < index->level_count; level++)
+        narc_fit_nodes(&u->making, level, 0, index->node_count[level]);
+}
+
 /* ------------------------------------------------------------------------------------------------ the call */
 
 /* All bodies, in the order of leaves; then those that are in none. */
@@ -321,9 +332,9 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)
         return status;
-    updating u = {{index, kernels, boxes, o}, index, boxes, 0};
     const narc_point origin = o->origin ? *o->origin : (narc_point){0, 0};
     const bool all = !changed || origin.x != index->origin.x || origin.y != index->origin.y;
+    updating u = {{index, kernels, boxes, o}, index, boxes, 0, all};
     index->origin = origin;
     for (size_t k = index->count; k > count; k--)
         if (index->place[k - 1] != NARC_NO_PLACE)
@@ -346,7 +357,9 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
     }
     narc_index_node above;
     const unsigned top = index->level_count - 1;
-    if (top > 0 && index->touched[index->first_node[top]] != 0)
+    if (top > 0 && all)
+        fit_all(&u);
+    else if (top > 0 && index->touched[index->first_node[top]] != 0)
         fit_touched(&u, top, 0);
     kernels->nodes(index, index->level_count, 0, 1, &above);
     return NARC_OK;

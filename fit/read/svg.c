@@ -264,40 +264,66 @@ static narc_status find_scale(const struct subject *of, double *out_scale, narc_
 
 /* ---------------------------------------------------------------------------- the outline */
 
-enum { LINES = 64 };
-
-/* Marks what is within REACH of a sample with the bit `from`, in a line of samples, with `to`; in up to LINES of them that
- * begin side by side, or the columns of a large picture would miss the cache. */
-static void mark_near(uint16_t *samples, size_t lines, size_t count, size_t step, unsigned from, unsigned to) {
-    for (int pass = 0; pass < 2; pass++) {
-        unsigned since[LINES];
-        for (size_t line = 0; line < lines; line++)
-            since[line] = REACH + 1;
-        for (size_t k = 0; k < count; k++) {
-            uint16_t *at = samples + step * (pass ? count - 1 - k : k);
-            for (size_t line = 0; line < lines; line++) {
-                since[line] = at[line] & from ? 0 : since[line] + 1;
-                at[line] = (uint16_t)(at[line] | (since[line] <= REACH ? to : 0));
-            }
-        }
+/* Which of a row's bytes are at least so large. */
+static void list_row(const unsigned char *row, size_t width, int least, uint64_t *out) {
+    for (size_t x = 0; x < width; x += 64) {
+        const size_t count = width - x < 64 ? width - x : 64;
+        uint64_t word = 0;
+        for (size_t k = 0; k < count; k++)
+            word |= (uint64_t)(row[x + k] >= least) << k;
+        out[x / 64] = word;
     }
 }
 
-/* Samples of the ink that counts: what is strong enough, and fainter ink within REACH of it in both directions. */
-static void mark_ink(const struct drawing *drawing, struct extent part, int least, uint16_t *samples) {
-    enum { STRONG = 1, NEAR_IN_ROW = 2, NEAR = 4 };
+/* Adds the neighbours that are `by` pixels away in a row, fewer than 64. */
+static void spread_row(const uint64_t *row, size_t stride, unsigned by, uint64_t *out) {
+    for (size_t k = 0; k < stride; k++) {
+        const uint64_t before = k > 0 ? row[k - 1] : 0, behind = k + 1 < stride ? row[k + 1] : 0;
+        out[k] = row[k] | row[k] << by | row[k] >> by | before >> (64 - by) | behind << (64 - by);
+    }
+}
+
+/* And those in rows that are `by` rows away. */
+static void spread_rows(const uint64_t *words, size_t stride, size_t height, size_t by, uint64_t *out) {
+    for (size_t y = 0; y < height; y++) {
+        const uint64_t *const row = words + y * stride;
+        const uint64_t *const above = y >= by ? row - by * stride : row;
+        const uint64_t *const below = height - y > by ? row + by * stride : row;
+        for (size_t k = 0; k < stride; k++)
+            out[y * stride + k] = row[k] | above[k] | below[k];
+    }
+}
+
+/* Spread one after the other, these are all within REACH. */
+static const unsigned spreads[] = {1, 2, 5};
+enum { SPREADS = sizeof spreads / sizeof *spreads };
+_Static_assert(REACH == 1 + 2 + 5, "spreads");
+
+static void swap(uint64_t **a, uint64_t **b) {
+    uint64_t *const other = *a;
+    *a = *b;
+    *b = other;
+}
+
+/* The ink that counts: what is strong enough, and fainter ink within REACH of it in both directions. Returns the one of two
+ * arrays of height * stride words that it is in. */
+static uint64_t *mark_ink(const struct drawing *drawing, struct extent part, int least, size_t stride, uint64_t *words,
+                          uint64_t *spare) {
     const size_t width = (size_t)(part.right - part.left), height = (size_t)(part.bottom - part.top);
     const unsigned char *first = drawing->alpha + (size_t)part.top * drawing->stride + part.left;
-    for (size_t y = 0; y < height; y++) {
-        for (size_t x = 0; x < width; x++)
-            samples[y * width + x] = first[y * drawing->stride + x] >= least ? STRONG : 0;
-        mark_near(samples + y * width, 1, width, 1, STRONG, NEAR_IN_ROW);
-    }
-    for (size_t x = 0; x < width; x += LINES)
-        mark_near(samples + x, width - x < LINES ? width - x : LINES, height, width, NEAR_IN_ROW, NEAR);
     for (size_t y = 0; y < height; y++)
-        for (size_t x = 0; x < width; x++)
-            samples[y * width + x] = first[y * drawing->stride + x] && samples[y * width + x] & NEAR ? FULL : 0;
+        list_row(first + y * drawing->stride, width, least, words + y * stride);
+    for (size_t k = 0; k < SPREADS; k++, swap(&words, &spare))
+        for (size_t y = 0; y < height; y++)
+            spread_row(words + y * stride, stride, spreads[k], spare + y * stride);
+    for (size_t k = 0; k < SPREADS; k++, swap(&words, &spare))
+        spread_rows(words, stride, height, spreads[k], spare);
+    for (size_t y = 0; y < height; y++) {
+        list_row(first + y * drawing->stride, width, 1, spare);
+        for (size_t k = 0; k < stride; k++)
+            words[y * stride + k] &= spare[k];
+    }
+    return words;
 }
 
 /* Does the whole page count, but for pixels at its right and lower sides of which only a part is on it? */
@@ -331,19 +357,20 @@ static narc_status trace(const struct subject *of, const struct drawing *drawing
                                 ink.top > REACH ? ink.top - REACH : 0,
                                 ink.bottom + REACH < drawing->height ? ink.bottom + REACH : drawing->height};
     const size_t width = (size_t)(part.right - part.left), height = (size_t)(part.bottom - part.top);
-    uint16_t *samples = malloc(width * height * sizeof *samples);
-    if (!samples)
+    const size_t stride = (width + 63) / 64;
+    uint64_t *words = malloc(2 * height * stride * sizeof *words);
+    if (!words)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for the outline of the SVG file");
-    mark_ink(drawing, part, of->least, samples);
     const double pixel = 1 / drawing->scale;
-    const narc_image image = {.samples = samples,
-                              .width = width,
-                              .height = height,
-                              .pixel = pixel,
-                              /* y up */
-                              .origin = {of->page.box.x + pixel * part.left, -of->page.box.y - pixel * part.bottom}};
+    const narc_image image = {
+        .bits = {mark_ink(drawing, part, of->least, stride, words, words + height * stride), stride},
+        .width = width,
+        .height = height,
+        .pixel = pixel,
+        /* y up */
+        .origin = {of->page.box.x + pixel * part.left, -of->page.box.y - pixel * part.bottom}};
     const narc_status status = narc_trace_image(&image, LEVEL, path, error);
-    free(samples);
+    free(words);
     return status;
 }
 

@@ -16,7 +16,7 @@ static const ptrdiff_t step_column[4] = {1, 0, -1, 0}, step_row[4] = {0, -1, 0, 
 struct tracer {
     const narc_image *image;
     double level;
-    unsigned char *seen; /* a bit for each sample: its crossing to the west belongs to a contour that was followed */
+    narc_bits fresh; /* samples above the level, those to their west not, whose contour was not followed yet */
 };
 
 /* Where a contour crosses from one sample, which is above the level, to its neighbour, which is not. */
@@ -25,10 +25,18 @@ struct crossing {
     int side;
 };
 
+static bool is_set(const narc_bits *bits, size_t column, size_t row) {
+    return bits->words[row * bits->stride + column / 64] >> column % 64 & 1;
+}
+
 static double sample(const struct tracer *t, ptrdiff_t column, ptrdiff_t row) {
     const narc_image *image = t->image;
     const bool inside = column >= 0 && row >= 0 && (size_t)column < image->width && (size_t)row < image->height;
-    return inside ? image->samples[(size_t)row * image->width + (size_t)column] : 0;
+    if (!inside)
+        return 0;
+    if (image->samples)
+        return image->samples[(size_t)row * image->width + (size_t)column];
+    return is_set(&image->bits, (size_t)column, (size_t)row) ? UINT16_MAX : 0;
 }
 
 static double neighbour(const struct tracer *t, struct crossing crossing, int side) {
@@ -65,19 +73,14 @@ static struct crossing advance(const struct tracer *t, struct crossing crossing)
     return (struct crossing){crossing.column, crossing.row, ahead};
 }
 
-static size_t bit_of(const struct tracer *t, struct crossing crossing) {
-    return (size_t)crossing.row * t->image->width + (size_t)crossing.column;
-}
-
 static narc_status follow(const struct tracer *t, struct crossing start, narc_path *path, narc_error *error) {
     struct crossing crossing = start;
     narc_point place = locate(t, start);
     narc_status status = narc_move_to(path, &place, error);
     while (!status) {
-        if (crossing.side == WEST) {
-            const size_t bit = bit_of(t, crossing);
-            t->seen[bit / 8] = (unsigned char)(t->seen[bit / 8] | 1u << bit % 8);
-        }
+        if (crossing.side == WEST)
+            t->fresh.words[(size_t)crossing.row * t->fresh.stride + (size_t)crossing.column / 64] &=
+                ~((uint64_t)1 << crossing.column % 64);
         crossing = advance(t, crossing);
         if (crossing.column == start.column && crossing.row == start.row && crossing.side == start.side)
             return NARC_OK;
@@ -87,22 +90,47 @@ static narc_status follow(const struct tracer *t, struct crossing start, narc_pa
     return status;
 }
 
+/* The samples of a row above the level whose neighbour to the west is not. */
+static void list_wests(const struct tracer *t, size_t row) {
+    const narc_image *image = t->image;
+    uint64_t *const out = t->fresh.words + row * t->fresh.stride;
+    uint64_t before = 0;
+    for (size_t k = 0; k < t->fresh.stride; k++) {
+        uint64_t above = 0;
+        if (image->samples)
+            for (size_t x = 64 * k; x < 64 * k + 64 && x < image->width; x++)
+                above |= (uint64_t)(image->samples[row * image->width + x] > t->level) << x % 64;
+        else
+            above = image->bits.words[row * image->bits.stride + k];
+        out[k] = above & ~(above << 1 | before >> 63);
+        before = above;
+    }
+}
+
+static unsigned lowest_bit(uint64_t word) {
+    unsigned bit = 0;
+    for (unsigned half = 32; half > 0; half /= 2)
+        if ((word >> bit & (((uint64_t)1 << half) - 1)) == 0)
+            bit += half;
+    return bit;
+}
+
 /* Every contour passes the west side of some sample above the level: of the leftmost that it goes round, or, if it is a
  * hole, of the one to the right of the hole. */
 narc_status narc_trace_image(const narc_image *image, double level, narc_path *path, narc_error *error) {
-    struct tracer t = {image, level, calloc(image->width * image->height / 8 + 1, 1)};
-    narc_status status =
-        t.seen ? NARC_OK : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for the outline of the image");
-    for (size_t row = 0; row < image->height && !status; row++) {
-        for (size_t column = 0; column < image->width && !status; column++) {
-            const struct crossing crossing = {(ptrdiff_t)column, (ptrdiff_t)row, WEST};
-            const size_t bit = bit_of(&t, crossing);
-            if (sample(&t, crossing.column, crossing.row) > level && neighbour(&t, crossing, WEST) < level &&
-                !(t.seen[bit / 8] >> bit % 8 & 1))
-                status = follow(&t, crossing, path, error);
+    const size_t stride = (image->width + 63) / 64, count = stride * image->height;
+    struct tracer t = {image, level, {malloc(count * sizeof *t.fresh.words + 1), stride}};
+    if (!t.fresh.words)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for the outline of the image");
+    narc_status status = NARC_OK;
+    for (size_t row = 0; row < image->height; row++)
+        list_wests(&t, row);
+    for (size_t k = 0; k < count; k++)
+        while (t.fresh.words[k] && !status) {
+            const size_t column = 64 * (k % stride) + lowest_bit(t.fresh.words[k]);
+            status = follow(&t, (struct crossing){(ptrdiff_t)column, (ptrdiff_t)(k / stride), WEST}, path, error);
         }
-    }
-    free(t.seen);
+    free(t.fresh.words);
     return status;
 }
 

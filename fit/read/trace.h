@@ -7,10 +7,17 @@
 
 #include "narc_fit.h"
 
+/* A bit for each pixel, row by row: column x is bit x % 64 of word x / 64. Behind a row's end bits are 0. */
+typedef struct narc_bits {
+    uint64_t *words; /* [rows * stride] */
+    size_t stride;   /* words of a row */
+} narc_bits;
+
 /* Samples at the centres of pixels, the top row first: pixel (column, row) is `pixel` times (column + 1/2, height - row
  * - 1/2) from `origin`, the image's lower left corner. */
 typedef struct narc_image {
-    const uint16_t *samples;
+    const uint16_t *samples; /* or NULL: those of `bits` are the largest, all others 0 */
+    narc_bits bits;          /* without samples */
     size_t width, height;
     double pixel;
     narc_point origin;

@@ -121,11 +121,10 @@ static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
     return is_row ? POSE_DOUBLE_ROWS : POSE_COLUMNS;
 }
 
-/* That of both sets of a batch, where it is the same. Rows of doubles are subtracted within one set only. */
+/* That of both sets of a batch, where it is the same. */
 static inline enum pose_layout find_layout(const struct sources *given) {
     const enum pose_layout a = find_pose_layout(&given->a), b = find_pose_layout(&given->b);
-    const bool one_set = given->a.x.base == given->b.x.base && given->a.x.stride == given->b.x.stride;
-    return a == b && (a != POSE_DOUBLE_ROWS || one_set) ? a : POSE_COLUMNS;
+    return a == b ? a : POSE_COLUMNS;
 }
 
 /* Positions that are float. */
@@ -175,15 +174,14 @@ struct body_pair {
     vf scale_a, scale_b;
 };
 
-INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
+INLINE void load_double_rows(const struct sources *given, const int32_t *a, const int32_t *b, const vec2 *shift,
                              struct body_pair *out, int32_t *const out_shapes[2]) {
-    const char *row = bodies->x.base, *half = row + 2 * sizeof(double);
-    const ptrdiff_t stride = bodies->x.stride;
+    const struct double_rows rows = {given->a.x.base, given->b.x.base, given->a.x.stride, given->b.x.stride};
     const vf shifts[2] = {shift ? shift->x : v_set(0), shift ? shift->y : v_set(0)};
     vf of_a[4], of_b[4], difference[2];
-    v_rows(half, stride, a, of_a);
-    v_rows(half, stride, b, of_b);
-    v_double_differences(row, stride, a, b, shift ? shifts : NULL, difference);
+    v_rows(rows.a + 2 * sizeof(double), rows.stride_a, a, of_a);
+    v_rows(rows.b + 2 * sizeof(double), rows.stride_b, b, of_b);
+    v_double_differences(&rows, a, b, shift ? shifts : NULL, difference);
     *out = (struct body_pair){{difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
     if (out_shapes) {
         vi_store(out_shapes[0], vi_bits(of_a[3]));
@@ -223,7 +221,7 @@ INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layou
                                   load_column_or(given->a.scale, a, 1),
                                   load_column_or(given->b.scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
-        load_double_rows(&given->a, a, b, shift, &pair, out_shapes);
+        load_double_rows(given, a, b, shift, &pair, out_shapes);
     } else if (layout == POSE_LANES) {
         pair = load_lanes(&given->a, &given->b, (uint32_t)*a);
     } else {

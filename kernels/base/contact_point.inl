@@ -154,15 +154,22 @@ INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
                        vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));
 }
 
-/* The answer to the pairs k ... of a queue that touch along n, in A's frame. `reaches`: are they asked for? */
-INLINE struct answer find_answer(const struct queue *queue, int k, vf separation, vec2 n, const struct feature *on_a,
-                                 const struct feature *on_b, bool reaches) {
-    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
-    const vec2 to_world = get_vec2(queue, ROTATION_A, k);
-    const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
-    const vm edge_b = touches_edge(on_b, info_b, get(queue, SCALE_B, k));
-    const vi number_a = find_arc_number(on_a->record, get_bits(queue, FIRST_RECORD_A, k), info_a);
-    const vi number_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), info_b);
+/* What is told of both bodies of a pair beside how they touch: the first two words of their headers, their scales, and A's
+ * rotation in the world. */
+struct touching_pair {
+    vi first_a, first_b, info_a, info_b;
+    vf scale_a, scale_b;
+    vec2 to_world;
+};
+
+/* The answer to pairs that touch along n, in A's frame. `reaches`: are they asked for? */
+INLINE struct answer tell_touch(const struct touching_pair *pair, vf separation, vec2 n, const struct feature *on_a,
+                                const struct feature *on_b, bool reaches) {
+    const vi info_a = pair->info_a, info_b = pair->info_b, zero = vi_set(0);
+    const vec2 to_world = pair->to_world;
+    const vm edge_a = touches_edge(on_a, info_a, pair->scale_a), edge_b = touches_edge(on_b, info_b, pair->scale_b);
+    const vi number_a = find_arc_number(on_a->record, pair->first_a, info_a);
+    const vi number_b = find_arc_number(on_b->record, pair->first_b, info_b);
     const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));
     const vi feature_b = vi_add(number_b, vi_select(edge_b, vi_set(NARC_FEATURE_EDGE), zero));
     return (struct answer){.separation = separation,
@@ -173,6 +180,19 @@ INLINE struct answer find_answer(const struct queue *queue, int k, vf separation
                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius),
                            .reach_a = reaches ? find_reach(on_a, n, info_a, edge_a) : zero,
                            .reach_b = reaches ? find_reach(on_b, n, info_b, edge_b) : zero};
+}
+
+/* The same of the pairs k ... of a queue. */
+INLINE struct answer find_answer(const struct queue *queue, int k, vf separation, vec2 n, const struct feature *on_a,
+                                 const struct feature *on_b, bool reaches) {
+    const struct touching_pair pair = {get_bits(queue, FIRST_RECORD_A, k),
+                                       get_bits(queue, FIRST_RECORD_B, k),
+                                       get_bits(queue, INFO_A, k),
+                                       get_bits(queue, INFO_B, k),
+                                       get(queue, SCALE_A, k),
+                                       get(queue, SCALE_B, k),
+                                       get_vec2(queue, ROTATION_A, k)};
+    return tell_touch(&pair, separation, n, on_a, on_b, reaches);
 }
 
 #endif

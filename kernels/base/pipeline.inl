@@ -33,15 +33,19 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
 
+/* Settles pairs of a kind, of those with pieces in the lanes `open`, and returns the others. */
+typedef vm settling(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS]);
+
 /* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
 typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
-    detour *take;   /* if call->boxes: what comes before all else */
-    triage *settle; /* what is answered as it is set up; all others go to stage `first` */
-    dropping *drop; /* if call->concave: what of them goes no further; or NULL */
-    int fields;     /* what travels from there on */
+    detour *take;     /* if call->boxes: what comes before all else */
+    triage *settle;   /* what is answered as it is set up; all others go to stage `first` */
+    settling *beside; /* if call->concave: what of them is answered at once, */
+    dropping *drop;   /* and what goes no further; or NULL */
+    int fields;       /* what travels from there on */
     stage *const *stages;
     int first;
     int edged; /* where pairs with edges may begin instead, or 0 */
@@ -141,20 +145,23 @@ INLINE void fetch_range(const struct call *call, const struct sources *given, bo
     }
 }
 
-/* What pairs read that come after the block that begins with number `block`: of one block the records of pieces, of the
- * next one the headers, of a third one the bodies; before the first block for that, too. */
-NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t block) {
-    const size_t pieces = block > 0 ? block + BLOCK : 0, headers = block > 0 ? block + 2 * BLOCK : 0;
+/* What pairs read that come one block, two and three after a vector of them, the first of which is number `first`: the records
+ * of pieces, the headers, the bodies; before the first one all up to there. A vector at a time, as the memory takes few
+ * requests at once. */
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t first) {
+    const size_t bodies = first + 3 * BLOCK, headers = first + 2 * BLOCK, pieces = first + BLOCK;
     HAS_EFFECT;
-    fetch_range(call, given, of_b, block > 0 ? block + 3 * BLOCK : 0, block + 4 * BLOCK, FETCH_BODIES);
-    fetch_range(call, given, of_b, headers, block + 3 * BLOCK, FETCH_HEADERS);
-    fetch_range(call, given, of_b, pieces, block + 2 * BLOCK, FETCH_PIECES);
+    fetch_range(call, given, of_b, first > 0 ? bodies : 0, bodies + V_WIDTH, FETCH_BODIES);
+    fetch_range(call, given, of_b, first > 0 ? headers : 0, headers + V_WIDTH, FETCH_HEADERS);
+    fetch_range(call, given, of_b, first > 0 ? pieces : 0, pieces + V_WIDTH, FETCH_PIECES);
 }
 
 /* Where the pairs of a call have pieces, and what became of them. */
 struct pieces_met {
-    bool many;          /* are there MANY_RECORDS? */
-    bool of_a, of_b;    /* has a pair of the last block one? Of the first block: the first pair */
+    bool many;       /* are there MANY_RECORDS? */
+    bool of_a, of_b; /* has a pair of the last block one? Of the first block: the first pair */
+    bool fetches;    /* so they are asked for ahead: of B, or of A */
+    bool fetches_b;
     int tried, dropped; /* so many may have been dropped, and were */
 };
 
@@ -174,10 +181,9 @@ INLINE struct pieces_met meet_pieces(const struct call *call, const struct sourc
 }
 
 /* Before a block of a call with pieces. */
-INLINE void begin_block_of_pieces(const struct call *call, const struct sources *given, struct pieces_met *met,
-                                  size_t block) {
-    if (met->many && (met->of_a || met->of_b))
-        fetch_ahead(call, given, met->of_b, block);
+INLINE void begin_block_of_pieces(struct pieces_met *met) {
+    met->fetches = met->many && (met->of_a || met->of_b);
+    met->fetches_b = met->of_b;
     met->of_a = met->of_b = false;
 }
 
@@ -207,7 +213,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                                                                : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
-    struct pieces_met met = {false, false, false, 0, 0};
+    struct pieces_met met = {.many = false};
     if (NARC_PIECES && !LIKELY(!call->pieces) && call->count > 0)
         met = meet_pieces(call, &given);
     for (int s = 0; s < course->end; s++)
@@ -216,13 +222,15 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_pairs(&given, call->first + block, n, layout != POSE_DOUBLE_ROWS, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
-            begin_block_of_pieces(call, &given, &met, block);
+            begin_block_of_pieces(&met);
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
+            if (NARC_PIECES && !LIKELY(!met.fetches))
+                fetch_ahead(call, &given, met.fetches_b, block + (size_t)k);
             const struct placement placement = place_pairs(call, &given, &indices, k, layout, true);
             vm asked = vm_front(n - k);
             if (course->take && !LIKELY(!call->boxes)) {
@@ -234,8 +242,11 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             vm open = course->settle(call, block + (size_t)k, &circles, item);
-            if (NARC_PIECES && !LIKELY(!call->pieces))
+            if (NARC_PIECES && !LIKELY(!call->pieces)) {
+                if (course->beside && call->concave && vm_any(open))
+                    open = course->beside(call, queues, open, circles.margin, item);
                 open = drop_some(call, course->drop, &indices, k, open, item, &met);
+            }
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
                 if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||

@@ -161,7 +161,7 @@ INLINE void write_rows(const struct call *call, char *const *place, vi numbers, 
     const enum row_kind kind = call->question->kind;
     if (kind == CONTACT_ROWS) {
         write_contacts(place, numbers, answer);
-    } else if (NARC_SMALL || kind == MANIFOLD_ROWS) {
+    } else if (kind == MANIFOLD_ROWS) {
         const vf zero = v_set(0);
         const struct manifold_points only = {
             .count = vi_set(1),

@@ -42,6 +42,23 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
     return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
 }
 
+/* Is a circle so shallow that it reaches the piece (narc_is_shallow()), for certain? By the record of its arc, with its scale,
+ * and that of the solid, with the piece's. */
+INLINE vm is_circle_shallow(const narc_record *records, vi circle_record, vf circle_scale, vi solid_record,
+                            vf piece_scale, vf separation) {
+    const vf room = v_set(0x1p-17f), depth = v_mul(v_set(-1 - 0x1p-17f), separation);
+    int32_t index[V_WIDTH];
+    vf circle[4], solid[4];
+    vi_store(index, circle_record);
+    v_rows(records, sizeof *records, index, circle);
+    vi_store(index, solid_record);
+    v_rows(records, sizeof *records, index, solid);
+    /* The inner circle of its header lacks some roundings of the extent. */
+    const vf extent = v_add(v_add(v_abs(circle[0]), v_abs(circle[1])), circle[2]);
+    const vf inner = v_mul(v_sub(circle[2], v_mul(room, extent)), circle_scale);
+    return vm_and(v_le(depth, v_add(inner, inner)), v_le(depth, v_mul(solid[0], piece_scale)));
+}
+
 /* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
  * (soa/piece.h). `n`: in A's frame. Most are shallow: of them no more is looked at than that. */
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
@@ -50,6 +67,17 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     const vm of_a = has_mark(get_bits(queue, INFO_A, k), NARC_PIECE_MARKS);
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
     const vi last = vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count));
+    const vm round =
+        has_flag(vi_select(of_a, get_bits(queue, INFO_B, k), get_bits(queue, INFO_A, k)), NARC_SHAPE_CIRCLE);
+    if (!front_only && vm_any(vm_and(which, round))) {
+        const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
+        const vm shallow =
+            is_circle_shallow(batch->shapes->records, vi_select(of_a, ring_b.base, ring_a.base),
+                              v_select(of_a, scale_b, scale_a), last, v_select(of_a, scale_a, scale_b), separation);
+        which = vm_and_not(which, vm_and(round, shallow));
+    }
+    if (!vm_any(which))
+        return which;
     const uint32_t piece_is_a = vm_bits(of_a);
     int32_t pair[V_WIDTH], solid[V_WIDTH];
     float scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};

@@ -4,7 +4,7 @@
  * and so are the bits; there is no block, and no queue has more than one pair. What only the whole formula decides, what
  * more than two edges of boxes may, pieces of chains and pairs without an answer are left to the other kernels.
  *
- * Without vectors there is no kernel: all is left. SSE4.1's lanes take more instructions and text than plain C.
+ * Without vectors there is no kernel but in narc_small.wasm: all is left. SSE4.1's lanes take more instructions and text than plain C.
  */
 #define NARC_ONE_PAIR
 #undef NARC_SIMD
@@ -22,7 +22,7 @@
 /* What becomes of a pair. */
 enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 
-#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
+#if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON) || defined(__wasm_simd128__) || NARC_SMALL)
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"

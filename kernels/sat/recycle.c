@@ -124,6 +124,20 @@ INLINE void move_rows(const vf word[WORDS], const struct placement *placement, c
     }
 }
 
+/* Asks the cache for what the block from `first` on reads: of pairs that are far apart in memory, where rows are kept of
+ * ground. */
+NOINLINE void fetch_kept(const narc_batch *batch, const struct sources *given, size_t first, size_t count,
+                         const uint32_t *item, const narc_kept_row *kept) {
+    HAS_EFFECT;
+    for (size_t k = 0; k < count && k < BLOCK; k++) {
+        const size_t number = narc_pair_at(batch, first + k);
+        const char *const row = (const char *)(kept + (item ? item[k] : number));
+        FETCH(row);
+        FETCH(row + sizeof *kept - 1);
+        FETCH(narc_at(given->b.x.base, given->b.x.stride, narc_index_at(given->pairs.b, number)));
+    }
+}
+
 /* Lets rows of those of a batch's pairs first .. first + count - 1 follow whose bodies have moved by less than the
  * tolerance, and whose first point still is within the margin, and pairs without a row stay so; `batch->row_size` says which
  * rows. Lists the numbers of all other pairs in `left`, in their order, and returns how many there are; their rows stay as
@@ -143,6 +157,8 @@ size_t NARC_NAMED(recycle)(const narc_batch *batch, size_t first, size_t count, 
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_pairs(&given, first + block, n, false, &indices);
+        if (FETCHES && item && given.pairs.b.base && block + BLOCK < count)
+            fetch_kept(batch, &given, first + block + BLOCK, count - block - BLOCK, item + block + BLOCK, kept);
         const int32_t *const items = find_items(item ? item + block : NULL, &indices, n, own);
         for (int k = 0; k < n; k += V_WIDTH) {
             const int32_t *const number = items + k;

@@ -22,6 +22,7 @@
 #include "box/circles.inl"
 #include "kernels.h"
 #include "piece/beside.inl"
+#include "piece/circles_beside.inl"
 #include "piece/concave_detour.inl"
 #include "piece/pieces.inl"
 #include "sat/answers.inl"
@@ -50,6 +51,13 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
 /* The last stages of rows of one point. */
 static void answer_rows(const struct call *call, struct queue *queues, int begin) {
     answer_settled(call, queues, begin, false);
+}
+
+static vm settle_circles(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS]) {
+    const vm left = settle_circles_beside(call, queues, open, margin, item);
+    if (queues[ANSWER].count >= FLUSH)
+        run_stage(call, answer_rows, queues, ANSWER);
+    return left;
 }
 
 static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
@@ -82,6 +90,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     const bool drops = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 4; /* in few lanes a look costs what it saves */
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
+                                  .beside = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_circles : NULL,
                                   .drop = drops ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,

@@ -343,7 +343,6 @@ NOINLINE void ask_contacts(const narc_shapes *shapes, narc_casts *casts, size_t 
     NARC_NAMED(contact)(&batch, first, count, &unused, &rows);
 }
 
-#if !NARC_SMALL
 /* The same of a few casts, each by itself where that has an answer. */
 NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
     const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
@@ -359,7 +358,6 @@ NOINLINE void ask_few(const narc_cast_batch *given, narc_casts *casts) {
             ask_contacts(batch.shapes, casts, k, 1);
     }
 }
-#endif
 
 size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end) {
     const narc_batch *const batch = given->batch;
@@ -387,11 +385,9 @@ size_t NARC_NAMED(casts)(const narc_cast_batch *given, size_t first, size_t end)
             first += count;
         }
         place_casts(&casts);
-#if !NARC_SMALL
         if (casts.count <= NARC_FEW)
             ask_few(given, &casts);
         else
-#endif
             ask_contacts(batch->shapes, &casts, 0, casts.count);
         advance_casts(&call, &casts);
     }

@@ -273,7 +273,6 @@ void NARC_NAMED(distance)(const narc_point_batch *batch, size_t first, size_t en
 
 /* ------------------------------------------------------------------------------------------------ within */
 
-#if !NARC_SMALL
 /* As place_point(), points from k on, in lanes. One without an answer lies outside of all that there is. */
 INLINE vec2 place_points(const struct body_frame *frame, const narc_points *points, size_t k, int lanes) {
     double x[V_WIDTH], y[V_WIDTH];
@@ -343,7 +342,6 @@ void NARC_NAMED(inside)(const narc_point_batch *batch, size_t first, size_t end,
         }
     }
 }
-#endif
 
 /* ------------------------------------------------------------------------------------------------ nearest */
 

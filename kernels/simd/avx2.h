@@ -51,16 +51,16 @@ INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x88));
     v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xdd));
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     const bool shifted = shifts != NULL;
     const __m256 zero = _mm256_setzero_ps();
     const __m256 s_low = shifted ? _mm256_unpacklo_ps(shifts[0], shifts[1]) : zero;
     const __m256 s_high = shifted ? _mm256_unpackhi_ps(shifts[0], shifts[1]) : zero;
-    const __m128 d01 = v_two_differences(base, stride, a, b, shifted, _mm256_castps256_ps128(s_low));
-    const __m128 d23 = v_two_differences(base, stride, a + 2, b + 2, shifted, _mm256_castps256_ps128(s_high));
-    const __m128 d45 = v_two_differences(base, stride, a + 4, b + 4, shifted, _mm256_extractf128_ps(s_low, 1));
-    const __m128 d67 = v_two_differences(base, stride, a + 6, b + 6, shifted, _mm256_extractf128_ps(s_high, 1));
+    const __m128 d01 = v_two_differences(rows, a, b, shifted, _mm256_castps256_ps128(s_low));
+    const __m128 d23 = v_two_differences(rows, a + 2, b + 2, shifted, _mm256_castps256_ps128(s_high));
+    const __m128 d45 = v_two_differences(rows, a + 4, b + 4, shifted, _mm256_extractf128_ps(s_low, 1));
+    const __m128 d67 = v_two_differences(rows, a + 6, b + 6, shifted, _mm256_extractf128_ps(s_high, 1));
     const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(d01), d45, 1);
     const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(d23), d67, 1);
     out[0] = _mm256_shuffle_ps(low, high, 0x88);

@@ -57,24 +57,22 @@ INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     v_put_four_rows(place + 3, offset, _mm512_shuffle_ps(high01, high23, 0xee));
 }
 /* Of lanes 0, 1, 4, 5, 8 ... (from lane 0 on) or 2, 3, 6, 7 ... */
-INLINE __m512 v_half_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
+INLINE __m512 v_half_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, bool shifted,
                                  __m512 shifts) {
-    __m512 all = _mm512_castps128_ps512(v_two_differences(base, stride, a, b, shifted, _mm512_castps512_ps128(shifts)));
-    all = _mm512_insertf32x4(
-        all, v_two_differences(base, stride, a + 4, b + 4, shifted, _mm512_extractf32x4_ps(shifts, 1)), 1);
-    all = _mm512_insertf32x4(
-        all, v_two_differences(base, stride, a + 8, b + 8, shifted, _mm512_extractf32x4_ps(shifts, 2)), 2);
-    return _mm512_insertf32x4(
-        all, v_two_differences(base, stride, a + 12, b + 12, shifted, _mm512_extractf32x4_ps(shifts, 3)), 3);
+    __m512 all = _mm512_castps128_ps512(v_two_differences(rows, a, b, shifted, _mm512_castps512_ps128(shifts)));
+    all = _mm512_insertf32x4(all, v_two_differences(rows, a + 4, b + 4, shifted, _mm512_extractf32x4_ps(shifts, 1)), 1);
+    all = _mm512_insertf32x4(all, v_two_differences(rows, a + 8, b + 8, shifted, _mm512_extractf32x4_ps(shifts, 2)), 2);
+    return _mm512_insertf32x4(all, v_two_differences(rows, a + 12, b + 12, shifted, _mm512_extractf32x4_ps(shifts, 3)),
+                              3);
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     const bool shifted = shifts != NULL;
     const __m512 zero = _mm512_setzero_ps();
     const __m512 s_low = shifted ? _mm512_unpacklo_ps(shifts[0], shifts[1]) : zero;
     const __m512 s_high = shifted ? _mm512_unpackhi_ps(shifts[0], shifts[1]) : zero;
-    const __m512 low = v_half_differences(base, stride, a, b, shifted, s_low);
-    const __m512 high = v_half_differences(base, stride, a + 2, b + 2, shifted, s_high);
+    const __m512 low = v_half_differences(rows, a, b, shifted, s_low);
+    const __m512 high = v_half_differences(rows, a + 2, b + 2, shifted, s_high);
     out[0] = _mm512_shuffle_ps(low, high, 0x88);
     out[1] = _mm512_shuffle_ps(low, high, 0xdd);
 }

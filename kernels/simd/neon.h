@@ -47,22 +47,23 @@ INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     v_put_row(place[3] + offset, vzip2q_f32(high02, high13));
 }
 /* The differences of one lane. */
-INLINE float32x2_t v_double_difference(const char *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted,
+INLINE float32x2_t v_double_difference(const struct double_rows *rows, int32_t a, int32_t b, bool shifted,
                                        float32x2_t shift) {
-    const float64x2_t from = vld1q_f64((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)a * stride));
-    const float64x2_t to = vld1q_f64((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)b * stride));
+    const float64x2_t from =
+        vld1q_f64((const double *)(const void *)(rows->a + (ptrdiff_t)(uint32_t)a * rows->stride_a));
+    const float64x2_t to = vld1q_f64((const double *)(const void *)(rows->b + (ptrdiff_t)(uint32_t)b * rows->stride_b));
     const float64x2_t difference = vsubq_f64(to, from);
     return vcvt_f32_f64(shifted ? vaddq_f64(difference, vcvt_f64_f32(shift)) : difference);
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     const bool shifted = shifts != NULL;
     const vf s_low = shifted ? vzip1q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);
     const vf s_high = shifted ? vzip2q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);
-    const vf low = vcombine_f32(v_double_difference(base, stride, a[0], b[0], shifted, vget_low_f32(s_low)),
-                                v_double_difference(base, stride, a[1], b[1], shifted, vget_high_f32(s_low)));
-    const vf high = vcombine_f32(v_double_difference(base, stride, a[2], b[2], shifted, vget_low_f32(s_high)),
-                                 v_double_difference(base, stride, a[3], b[3], shifted, vget_high_f32(s_high)));
+    const vf low = vcombine_f32(v_double_difference(rows, a[0], b[0], shifted, vget_low_f32(s_low)),
+                                v_double_difference(rows, a[1], b[1], shifted, vget_high_f32(s_low)));
+    const vf high = vcombine_f32(v_double_difference(rows, a[2], b[2], shifted, vget_low_f32(s_high)),
+                                 v_double_difference(rows, a[3], b[3], shifted, vget_high_f32(s_high)));
     out[0] = vuzp1q_f32(low, high);
     out[1] = vuzp2q_f32(low, high);
 }

@@ -28,9 +28,10 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     v_put_row(*place, offset, _mm_movelh_ps(_mm_unpacklo_ps(in[0], in[1]), _mm_unpacklo_ps(in[2], in[3])));
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
-    const __m128d difference = _mm_sub_pd(v_double_row(base, stride, *b), v_double_row(base, stride, *a));
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
+    const __m128d from = v_double_row(rows->a, rows->stride_a, *a), to = v_double_row(rows->b, rows->stride_b, *b);
+    const __m128d difference = _mm_sub_pd(to, from);
     const __m128d shift = shifts ? _mm_cvtps_pd(_mm_unpacklo_ps(shifts[0], shifts[1])) : _mm_setzero_pd();
     out[0] = _mm_cvtpd_ps(shifts ? _mm_add_pd(difference, shift) : difference);
     out[1] = _mm_shuffle_ps(out[0], out[0], 0x55);

@@ -32,11 +32,11 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     memcpy(*place + offset, in, 4 * sizeof(float));
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     double from[2], to[2];
-    memcpy(from, (const char *)base + (ptrdiff_t)(uint32_t)*a * stride, sizeof from);
-    memcpy(to, (const char *)base + (ptrdiff_t)(uint32_t)*b * stride, sizeof to);
+    memcpy(from, rows->a + (ptrdiff_t)(uint32_t)*a * rows->stride_a, sizeof from);
+    memcpy(to, rows->b + (ptrdiff_t)(uint32_t)*b * rows->stride_b, sizeof to);
     for (int i = 0; i < 2; i++)
         out[i] = (float)(shifts ? to[i] - from[i] + (double)shifts[i] : to[i] - from[i]);
 }

@@ -12,9 +12,9 @@
  *   v_rows(void *base, ptrdiff_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
  *   v_put_rows(char *const *place, int offset, vf in[4])        four floats to byte `offset` of place[lane], lane by lane
- *   v_double_differences(void *base, ptrdiff_t stride, int32_t *a, int32_t *b, vf *shifts, vf out[2])
- *                                                               of two doubles from byte index[lane] * stride of base
- *                                                               on: those of b less those of a, plus two shifts for
+ *   v_double_differences(struct double_rows *rows, int32_t *a, int32_t *b, vf *shifts, vf out[2])
+ *                                                               of two doubles from byte index[lane] * stride of
+ *                                                               rows->b on those of rows->a, plus two shifts for
  *                                                               each lane unless NULL; in double precision, rounded
  *   v_add v_sub v_mul v_div v_sqrt v_abs v_neg
  *   v_min v_max                                                 exactly a < b ? a : b and a > b ? a : b
@@ -50,6 +50,12 @@
 #include <string.h>
 
 #include "compiler.h"
+
+/* Where two sets of rows begin that have two doubles in front, and the bytes from one to the next. */
+struct double_rows {
+    const char *a, *b;
+    ptrdiff_t stride_a, stride_b;
+};
 
 #ifndef NARC_SIMD
 #error "define NARC_SIMD, the file of a vector wrapper: \"simd/scalar.h\""

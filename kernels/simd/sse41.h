@@ -41,14 +41,14 @@ INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     v_put_row(place[2], offset, _mm_shuffle_ps(high01, high23, 0x88));
     v_put_row(place[3], offset, _mm_shuffle_ps(high01, high23, 0xdd));
 }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     const bool shifted = shifts != NULL;
     const __m128 zero = _mm_setzero_ps();
     const __m128 s_low = shifted ? _mm_unpacklo_ps(shifts[0], shifts[1]) : zero;
     const __m128 s_high = shifted ? _mm_unpackhi_ps(shifts[0], shifts[1]) : zero;
-    const __m128 low = v_two_differences(base, stride, a, b, shifted, s_low);
-    const __m128 high = v_two_differences(base, stride, a + 2, b + 2, shifted, s_high);
+    const __m128 low = v_two_differences(rows, a, b, shifted, s_low);
+    const __m128 high = v_two_differences(rows, a + 2, b + 2, shifted, s_high);
     out[0] = _mm_shuffle_ps(low, high, 0x88);
     out[1] = _mm_shuffle_ps(low, high, 0xdd);
 }

@@ -48,21 +48,22 @@ INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     wasm_v128_store(place[3] + offset, v_zip_high(high02, high13));
 }
 /* The differences of one lane, in the two lower lanes; its shifts are those of the lower lanes. */
-INLINE vf v_double_difference(const void *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted, vf shift) {
-    const v128_t difference = wasm_f64x2_sub(v_row(base, stride, b), v_row(base, stride, a));
+INLINE vf v_double_difference(const struct double_rows *rows, int32_t a, int32_t b, bool shifted, vf shift) {
+    const v128_t from = v_row(rows->a, rows->stride_a, a), to = v_row(rows->b, rows->stride_b, b);
+    const v128_t difference = wasm_f64x2_sub(to, from);
     return wasm_f32x4_demote_f64x2_zero(shifted ? wasm_f64x2_add(difference, wasm_f64x2_promote_low_f32x4(shift))
                                                 : difference);
 }
 INLINE vf v_upper_half(vf a) { return wasm_i64x2_shuffle(a, a, 1, 1); }
-INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
-                                 const vf *shifts, vf out[2]) {
+INLINE void v_double_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     const bool shifted = shifts != NULL;
     const vf s_low = shifted ? v_zip_low(shifts[0], shifts[1]) : v_set(0);
     const vf s_high = shifted ? v_zip_high(shifts[0], shifts[1]) : v_set(0);
-    const vf d0 = v_double_difference(base, stride, a[0], b[0], shifted, s_low);
-    const vf d1 = v_double_difference(base, stride, a[1], b[1], shifted, v_upper_half(s_low));
-    const vf d2 = v_double_difference(base, stride, a[2], b[2], shifted, s_high);
-    const vf d3 = v_double_difference(base, stride, a[3], b[3], shifted, v_upper_half(s_high));
+    const vf d0 = v_double_difference(rows, a[0], b[0], shifted, s_low);
+    const vf d1 = v_double_difference(rows, a[1], b[1], shifted, v_upper_half(s_low));
+    const vf d2 = v_double_difference(rows, a[2], b[2], shifted, s_high);
+    const vf d3 = v_double_difference(rows, a[3], b[3], shifted, v_upper_half(s_high));
     const vf low = wasm_i64x2_shuffle(d0, d1, 0, 2), high = wasm_i64x2_shuffle(d2, d3, 0, 2);
     out[0] = wasm_i32x4_shuffle(low, high, 0, 2, 4, 6);
     out[1] = wasm_i32x4_shuffle(low, high, 1, 3, 5, 7);

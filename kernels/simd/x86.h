@@ -34,20 +34,22 @@ INLINE __m256d v_two_double_rows(const char *base, ptrdiff_t stride, const int32
     const __m256d low = _mm256_castpd128_pd256(v_double_row(base, stride, index[0]));
     return _mm256_insertf128_pd(low, v_double_row(base, stride, index[1]), 1);
 }
-INLINE __m128 v_two_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
+INLINE __m128 v_two_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, bool shifted,
                                 __m128 shifts) {
-    const __m256d difference = _mm256_sub_pd(v_two_double_rows(base, stride, b), v_two_double_rows(base, stride, a));
+    const __m256d from = v_two_double_rows(rows->a, rows->stride_a, a);
+    const __m256d difference = _mm256_sub_pd(v_two_double_rows(rows->b, rows->stride_b, b), from);
     return _mm256_cvtpd_ps(shifted ? _mm256_add_pd(difference, _mm256_cvtps_pd(shifts)) : difference);
 }
 #else
-INLINE __m128 v_difference(const char *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted, __m128 shift) {
-    const __m128d difference = _mm_sub_pd(v_double_row(base, stride, b), v_double_row(base, stride, a));
+INLINE __m128 v_difference(const struct double_rows *rows, int32_t a, int32_t b, bool shifted, __m128 shift) {
+    const __m128d from = v_double_row(rows->a, rows->stride_a, a), to = v_double_row(rows->b, rows->stride_b, b);
+    const __m128d difference = _mm_sub_pd(to, from);
     return _mm_cvtpd_ps(shifted ? _mm_add_pd(difference, _mm_cvtps_pd(shift)) : difference);
 }
-INLINE __m128 v_two_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
+INLINE __m128 v_two_differences(const struct double_rows *rows, const int32_t *a, const int32_t *b, bool shifted,
                                 __m128 shifts) {
-    return _mm_movelh_ps(v_difference(base, stride, a[0], b[0], shifted, shifts),
-                         v_difference(base, stride, a[1], b[1], shifted, _mm_movehl_ps(shifts, shifts)));
+    return _mm_movelh_ps(v_difference(rows, a[0], b[0], shifted, shifts),
+                         v_difference(rows, a[1], b[1], shifted, _mm_movehl_ps(shifts, shifts)));
 }
 #endif
 

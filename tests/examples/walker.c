@@ -61,8 +61,10 @@ static void end_stage(stage *s) {
 static void place(stage *s) {
     narc_box boxes[MOST];
     narc_view_bodies(s->bodies, s->count, &s->view);
-    assert_int_equal(narc_compute_boxes(s->store, &s->view, NULL, boxes, NULL), NARC_OK);
-    assert_int_equal(narc_build_index(s->scene.index, boxes, s->count, NULL, NULL), NARC_OK);
+    const narc_box_options from = {.origin = s->scene.origin};
+    assert_int_equal(narc_compute_boxes(s->store, &s->view, &from, boxes, NULL), NARC_OK);
+    const narc_index_options options = {.origin = s->scene.origin};
+    assert_int_equal(narc_build_index(s->scene.index, boxes, s->count, &options, NULL), NARC_OK);
     s->scene.shapes = s->store;
     s->scene.bodies = &s->view;
 }
@@ -157,6 +159,25 @@ TEST(test_corner) {
     assert_true(is_at(s, -2 + radius + 0.01, standing));
     walk(s, 10, 0.05);
     assert_true(is_at(s, -2 + radius + 0.01 + 0.5, standing));
+    end_stage(s);
+}
+
+/* So many walls in one place, and far from (0, 0): each is met, none ends the walk. */
+TEST(test_many_walls_far_away) {
+    const narc_point origin = {1e8, 3e8};
+    stage *const s = begin_stage(0, standing);
+    for (int k = 0; k < 25; k++)
+        add_box(s, 2, 10, 3, 5, 0);
+    add_box(s, 2, 10, -3, 5, 0);
+    s->scene.origin = &origin;
+    s->who.body.x += origin.x, s->who.body.y += origin.y;
+    for (size_t k = 0; k < s->count; k++)
+        s->bodies[k].x += origin.x, s->bodies[k].y += origin.y;
+    place(s);
+    walk(s, 60, 0.05);
+    assert_true(is_at(s, origin.x + 2 - radius - 0.01, origin.y + standing));
+    walk(s, 100, -0.05);
+    assert_true(is_at(s, origin.x - 2 + radius + 0.01, origin.y + standing));
     end_stage(s);
 }
 

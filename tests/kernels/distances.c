@@ -401,12 +401,25 @@ static double find_separation(const struct scene *scene, const uint32_t *owner, 
     return least;
 }
 
+/* Outside all of the thing's parts: one that the place lies in answers. */
+static bool is_outside(const struct scene *scene, const uint32_t *owner, double x, double y) {
+    static uint32_t last; /* neighbours of a place lie in the same part */
+    for (uint32_t k = 0; k < PARTS; k++) {
+        const uint32_t part = (last + k) % PARTS;
+        const struct reference_body body = scene_reference(scene, part);
+        if (owner[part] == 5 && !(reference_point_distance(&body, x - body.x, y - body.y) > 0)) {
+            last = part;
+            return false;
+        }
+    }
+    return true;
+}
+
 /* Takes a place of an outline, if it is nearer and what lies so far beyond it is outside. */
 static void take_outside(const struct scene *scene, const uint32_t *owner, double x, double y, double at_x, double at_y,
                          double beyond, double *best) {
     const double away = hypot(at_x - x, at_y - y);
-    if (away < *best &&
-        find_separation(scene, owner, at_x + beyond * (at_x - x) / away, at_y + beyond * (at_y - y) / away) > 0)
+    if (away < *best && is_outside(scene, owner, at_x + beyond * (at_x - x) / away, at_y + beyond * (at_y - y) / away))
         *best = away;
 }
 
@@ -444,7 +457,7 @@ static bool is_near_outside(const struct scene *scene, const uint32_t *owner, do
     for (double radius = 2 * seam; radius < 100 * seam && !found; radius *= 2)
         for (int k = 0; k < ANGLES && !found; k++) {
             const double angle = 2 * PI * k / ANGLES;
-            found = find_separation(scene, owner, x + radius * cos(angle), y + radius * sin(angle)) > 0;
+            found = is_outside(scene, owner, x + radius * cos(angle), y + radius * sin(angle));
         }
     return found;
 }

@@ -21,6 +21,8 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
 static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0xd2f7a23d8eddfd23u,
                                          0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
+/* Hulls, their polylines. */
+static const uint64_t golden_outlines[] = {0x063a84d40a282487u, 0x8b695e716cf6b629u};
 #endif
 #ifdef NARC_TEST_POSES
 /* Without SLEEF, and of SLEEF 3.5.1. */
@@ -88,7 +90,6 @@ static uint64_t hash_manifolds(const struct scene *scene, int reaches) {
     return hash;
 }
 
-#ifndef NARC_SMALL /* which has no separations by themselves, no chains, and nothing that asks of one body each */
 /* Rays from each body's position at another body, and which points of a lattice around each are within it. */
 static uint64_t hash_alone(const struct scene *scene, int inside) {
     enum { GRID = 9, POINTS = BODIES * GRID * GRID };
@@ -153,7 +154,6 @@ static uint64_t hash_separations(const struct scene *scene, int way) {
     }
     return hash;
 }
-#endif
 
 /* Overlaps, contacts and manifolds. */
 static uint64_t hash_query(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -327,7 +327,6 @@ static uint64_t hash_rays(const struct scene *scene, int inside) {
     return hash;
 }
 
-#ifndef NARC_SMALL
 /* Pairs of boxes in worlds, and what an index finds of each one's world after bodies have changed places. */
 static uint64_t hash_worlds(const struct scene *scene, int way) {
     enum { WORLDS = 3 };
@@ -368,7 +367,6 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     narc_destroy_index(index);
     return hash;
 }
-#endif
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. Boxes of those are
  * rounded outwards to floats. */
@@ -382,24 +380,18 @@ TEST(test_scenes) {
         {"answers", hash_answers, 0, {0x9467dc252df3f63fu, 0x9467dc252df3f63fu}},
         {"manifolds", hash_manifolds, 0, {0x1fe97f326534654au, 0x1fe97f326534654au}},
         {"reaches", hash_manifolds, 1, {0xb20aca8e704ae916u, 0xb20aca8e704ae916u}},
-#ifndef NARC_SMALL
         {"separations", hash_separations, 0, {0xe84fda589ddcfdb3u, 0xe84fda589ddcfdb3u}},
-#endif
         {"straight casts", hash_casts, 0, {0x2634ea780a76a17au, 0x2634ea780a76a17au}},
         {"turning casts", hash_casts, 1, {0x8b787b23ced4e944u, 0x8b787b23ced4e944u}},
         {"casts that let go", hash_casts, 2, {0x92129cf6bff7fc37u, 0x92129cf6bff7fc37u}},
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
-#ifndef NARC_SMALL
         {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
-#endif
         {"points and things", hash_points, 1, {0x9cfc56f9d9095a29u, 0x9219f23e0c618f85u}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},
-#ifndef NARC_SMALL
         {"alone", hash_alone, NARC_INSIDE_LEAVES, {0x9008dfea5b72d305u, 0x9008dfea5b72d305u}},
-#endif
     };
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_golden_scene((narc_precision)precision);
@@ -529,6 +521,36 @@ TEST(test_ground) {
     free(a);
     free(b);
     destroy_scene(&scene);
+}
+#endif
+
+#ifndef NARC_SMALL
+/* Of clouds of points of a lattice, with a skin and without. */
+TEST(test_outlines) {
+    enum { CLOUDS = 200, POINTS = 60, LINE = 4096 };
+    static narc_point line[LINE];
+    const narc_body body = {3, -5, 0.6f, 0.8f, 1.5f, 0};
+    struct test_random random = {3};
+    uint64_t hulls = TEST_HASH_START, lines = TEST_HASH_START;
+    size_t all = 0;
+    for (size_t k = 0; k < CLOUDS; k++) {
+        narc_point points[POINTS];
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t count, line_count;
+        for (size_t i = 0; i < POINTS; i++)
+            points[i] = (narc_point){(double)random_below(&random, 1 << 20) / 1024,
+                                     (double)random_below(&random, 1 << 20) / (double)(1024 << k % 8)};
+        assert_int_equal(narc_build_hull(points, POINTS, 0.25, (double)(k % 3), arcs, &count, NULL), NARC_OK);
+        for (size_t i = 0; i < count; i++)
+            hulls = test_hash_items(hulls, &arcs[i], 5, sizeof(double));
+        assert_int_equal(
+            narc_flatten_arcs(arcs, count, true, k % 2 ? &body : NULL, 0x1p-9, line, LINE, &line_count, NULL), NARC_OK);
+        lines = test_hash_items(lines, line, 2 * line_count, sizeof(double));
+        all += line_count;
+    }
+    printf("  %zu points of %d polylines\n", all, (int)CLOUDS);
+    check_hash("hulls", hulls, golden_outlines[0]);
+    check_hash("polylines", lines, golden_outlines[1]);
 }
 #endif
 

@@ -9,6 +9,7 @@
 
 #include "chains.h"
 #include "expect.h"
+#include "guard.h"
 #include "merge.h"
 #include "narc_broad_phase.h"
 #include "plain_kernels.h"
@@ -267,6 +268,26 @@ static bool has_several(const struct contacts *rows) {
     return false;
 }
 
+/* A chain of a family that makes entries, with room for bodies that each have a pair with every entry. */
+static struct ground_bodies *begin_family(struct test_random *random, enum chain_family family, size_t bodies) {
+    narc_shapes *probe = empty_store();
+    struct chain chain;
+    narc_chain_entry entries[ENTRIES];
+    size_t count;
+    while (chain = make_chain(random, family),
+           chain.count < 3 ||
+               narc_add_chain(probe, chain.arcs, chain.count, &(narc_chain_options){.closed = chain.closed}, entries,
+                              ENTRIES, &count, NULL) != NARC_OK)
+        free(chain.arcs);
+    narc_destroy_shapes(probe);
+    struct ground_bodies *g = begin_chain(0, 0, 0);
+    free(g->walk.arcs);
+    g->walk.arcs = chain.arcs;
+    g->walk.count = chain.count;
+    place_chain(g, &(narc_chain_options){.closed = chain.closed, .first_run = 7}, bodies, ENTRIES * bodies);
+    return g;
+}
+
 /* Hills, bowls, and what is thinner than bodies, so that what faces away is not reached. */
 TEST(test_forms) {
     static const enum chain_family families[] = {CHAIN_BOWLS, CHAIN_MIXED, CHAIN_HILLS, CHAIN_ARCH, CHAIN_SHEET};
@@ -275,21 +296,7 @@ TEST(test_forms) {
     bool several = false;
     const size_t rounds = test_trials(20);
     for (size_t round = 0; round < rounds || !several; round++) {
-        narc_shapes *probe = empty_store();
-        struct chain chain;
-        narc_chain_entry entries[ENTRIES];
-        size_t count;
-        while (chain = make_chain(&random, families[round % FAMILIES]),
-               chain.count < 3 ||
-                   narc_add_chain(probe, chain.arcs, chain.count, &(narc_chain_options){.closed = chain.closed},
-                                  entries, ENTRIES, &count, NULL) != NARC_OK)
-            free(chain.arcs);
-        narc_destroy_shapes(probe);
-        struct ground_bodies *g = begin_chain(0, 0, 0);
-        free(g->walk.arcs);
-        g->walk.arcs = chain.arcs;
-        g->walk.count = chain.count;
-        place_chain(g, &(narc_chain_options){.closed = chain.closed, .first_run = 7}, MOVERS, (size_t)ENTRIES * MOVERS);
+        struct ground_bodies *g = begin_family(&random, families[round % FAMILIES], MOVERS);
         add_movers(&random, g, MOVERS);
         struct contacts right = ask(g, &(narc_query){.margin = margin});
         several |= has_several(&right);
@@ -299,6 +306,69 @@ TEST(test_forms) {
         free(right.rows);
         end_chain(g);
     }
+}
+
+/* Circles above and below where arcs and edges meet, and a little beside: on their own origin, and off it. */
+TEST(test_circles_at_junctions) {
+    static const enum chain_family families[] = {CHAIN_HILLS, CHAIN_MIXED, CHAIN_BOWLS, CHAIN_ARCH, CHAIN_SHEET};
+    enum { CIRCLES = 200, FAMILIES = sizeof families / sizeof *families };
+    struct test_random random = test_random_named("circles at junctions");
+    const size_t rounds = test_trials(40);
+    for (size_t round = 0; round < rounds; round++) {
+        struct ground_bodies *g = begin_family(&random, families[round % FAMILIES], CIRCLES);
+        for (uint32_t k = 0; k < CIRCLES; k++) {
+            const narc_arc *near = &g->chain.arcs[random_below(&random, g->chain.count)];
+            const double angle = random_below(&random, 2) ? near->start : near->end, c = cos(angle), s = sin(angle);
+            const double off = random_below(&random, 2) ? random_between(&random, -2, 2) : 0;
+            const struct shape shape = {.count = 1, .arcs = {{off, off / 2, 1, -PI, PI}}};
+            const double scale = random_log_between(&random, 0.01, 1);
+            const double beside = random_log_between(&random, 1e-9, 0.1) * (random_below(&random, 2) ? 1 : -1);
+            const double above =
+                random_below(&random, 3)
+                    ? scale * (1 + random_log_between(&random, 1e-7, 0.1) * (random_below(&random, 2) ? 1 : -1))
+                    : beside * random_between(&random, -8, 8);
+            struct body body = turned_body(random_between(&random, -PI, PI), scale);
+            const double x = near->center_x + (near->radius + above) * c - beside * s,
+                         y = near->center_y + (near->radius + above) * s + beside * c;
+            body.x = x - scale * off * ((double)body.cosine - (double)body.sine / 2);
+            body.y = y - scale * off * ((double)body.sine + (double)body.cosine / 2);
+            body.shape = scene_add_shape(&g->scene, &shape);
+            const uint32_t circle = scene_add_body(&g->scene, body);
+            for (uint32_t e = 0; e < g->entry_count; e++)
+                scene_add_pair(&g->scene, (e + k) % 2 ? e : circle, (e + k) % 2 ? circle : e);
+        }
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        check_formula(g, &right);
+        free(right.rows);
+        end_chain(g);
+    }
+}
+
+/* In a vector with a circle on a run there are pairs of others: nothing is read behind the last shape of all. */
+TEST(test_last_shape_beside_runs) {
+    enum { PAIRS = 64 };
+    const narc_arc hill[] = {{0, -2, 2, 0.8, 1.2}, {0, -2, 2, 1.2, 2}, {0, -2, 2, 2, 2.3}};
+    narc_shapes *shapes = NULL;
+    narc_chain_entry entry;
+    size_t count, found;
+    uint32_t last = 0;
+    assert_int_equal(narc_create_shapes(&guard_allocator, &shapes), NARC_OK);
+    assert_int_equal(narc_add_chain(shapes, hill, 3, NULL, &entry, 1, &count, NULL), NARC_OK);
+    for (int k = 0; shapes->record_count + 3 <= shapes->record_capacity || k == 0; k++) {
+        const narc_arc circle = {0, 0, 1 + 0.01 * k, -PI, PI};
+        assert_int_equal(narc_add_shape(shapes, &circle, 1, &last, NULL), NARC_OK);
+    }
+    const narc_body body[] = {{0, 1, 1, 0, 1, last}, {entry.x, entry.y, 1, 0, 1, entry.shape}, {0, 2, 1, 0, 1, last}};
+    uint32_t a[PAIRS] = {0}, b[PAIRS];
+    narc_contact contacts[PAIRS];
+    for (uint32_t k = 0; k < PAIRS; k++)
+        b[k] = 1 + k % 2;
+    narc_bodies bodies;
+    narc_view_bodies(body, 3, &bodies);
+    const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, NULL, contacts, PAIRS, &found, NULL), NARC_OK);
+    assert_int_equal(found, PAIRS);
+    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays and points */

@@ -57,6 +57,9 @@ function(build_and_test source_folder)
   run(${CMAKE_CTEST_COMMAND} --test-dir "${folder}" -C "${CONFIG}" -R "${TESTS}.*" --output-on-failure --no-tests=error)
 endfunction()
 
+# For steps that build the library anew: what they are about does not depend on optimisation, nor on instruction sets.
+set(one_set -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF)
+
 if(STEP STREQUAL "install")
   file(REMOVE_RECURSE "${prefix}")
   run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}" --config "${CONFIG}")
@@ -208,10 +211,9 @@ elseif(STEP STREQUAL "documented_shapes")
   run("${command}" scene ${shapes} --bodies 200 --density 1 --seed 1 --out "${folder}/bodies.csv")
   run("${command}" collide ${shapes} --bodies "${folder}/bodies.csv")
 
-# These build the library anew. What they are about does not depend on optimisation, nor on instruction sets.
 elseif(STEP STREQUAL "subproject")
   build_and_test("${SOURCE}/tests/package/consumer" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}"
-    -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DCMAKE_BUILD_TYPE=Debug)
+    ${one_set} -DCMAKE_BUILD_TYPE=Debug)
   file(GLOB_RECURSE extra "${folder}/narc/files/*" "${folder}/narc/fit/*" "${folder}/narc/methods/*"
     "${folder}/narc/tests/*" "${folder}/narc/tools/*")
   if(extra)
@@ -247,7 +249,7 @@ elseif(STEP STREQUAL "subproject_flags")
 
 elseif(STEP STREQUAL "compiler_alone")
   # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
-  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FILES=OFF
+  run(${configure} -S "${SOURCE}" -B "${folder}" ${one_set} -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FILES=OFF
     -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
     -DNARC_OPENMP=OFF -DNARC_SLEEF=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
   run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}" --target

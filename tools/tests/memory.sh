@@ -9,7 +9,6 @@ preload=$3
 printf '0,0\n4,0\n4,3\n1,4\n' >points.csv
 printf 'x,y,motion_x,motion_y\n-5,0,10,0\n10,5,0,-10\n' >rays.csv
 printf 'a,b\n0,1\n2,3\n' >pairs.csv
-run_out "collide" 2 c.csv "$narc" collide $known --threads 1 --out c.csv
 run_out "to standard output" 2 "" "$narc" collide $known --threads 1 --pairs pairs.csv --out -
 run_out "pictures" 2 "c.csv c.png" "$narc" collide $known --threads 1 --out c.csv --picture c.png
 run_out "scene" 2 s.csv "$narc" scene $five --density 0.5 --seed 1 --out s.csv

@@ -14,6 +14,7 @@ columns stay in your arrays and are not copied. Errors are narc.Error (a ValueEr
 
 from ._batch import (bodies, box_pairs, boxes, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
                      refine, separations, validate)
+from ._fits import Fit, NamedShape, Outline, cut, fit, fit_chains, hull, read_shapes, write_shapes
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
 from ._scene import Contacts, Index, Step, casts, distances, inside, rays
@@ -23,9 +24,10 @@ from ._tables import (AABB, ARC, BODY, BOX, CHAIN_ENTRY, CIRCLE, CONSTANTS, CONT
                       REFINED_CONTACT, TOUCH_EVENT)
 
 __all__ = ["AABB", "ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "CONTACT", "Contacts", "DISTANCE", "Error",
-           "IMPACT", "Index", "MANIFOLD", "MASS", "NoAnswer", "OutOfRange", "RAY_HIT", "REFINED_CONTACT", "Shapes", "Step",
-           "TOUCH_EVENT", "__version__", "adjust", "bodies", "bounding_box", "bounding_circle", "box_pairs", "boxes",
-           "casts", "center", "contact", "contacts", "contains", "depths", "distances", "flatten", "get_isa", "inscribed_circle",
-           "inside", "manifold", "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter",
-           "place_parts", "poses", "radius_range", "rays", "refine", "separations", "set_isa", "support", "union_mass",
-           "validate", "validate_arcs", "weld"]
+           "Fit", "IMPACT", "Index", "MANIFOLD", "MASS", "NamedShape", "NoAnswer", "OutOfRange", "Outline", "RAY_HIT",
+           "REFINED_CONTACT", "Shapes", "Step", "TOUCH_EVENT", "__version__", "adjust", "bodies", "bounding_box",
+           "bounding_circle", "box_pairs", "boxes", "casts", "center", "contact", "contacts", "contains", "cut", "depths",
+           "distances", "fit", "fit_chains", "flatten", "get_isa", "hull", "inscribed_circle", "inside", "manifold",
+           "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter", "place_parts", "poses",
+           "radius_range", "rays", "read_shapes", "refine", "separations", "set_isa", "support", "union_mass", "validate",
+           "validate_arcs", "weld", "write_shapes"]

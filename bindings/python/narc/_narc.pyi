@@ -6,7 +6,7 @@ _H = TypeVar("_H", bound=Handle)
 version: str
 
 class Handle:
-    def __new__(cls: type[_H], kind: str, rows: int = ...) -> _H: ...
+    def __new__(cls: type[_H], kind: str, rows: int = ..., user_size: int = ...) -> _H: ...
 
 class Error(ValueError):
     """What the library refuses."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _narc
 from ._batch import Bodies, Rows, boxes, count_of, from_bits
@@ -165,17 +165,22 @@ class Step(NamedTuple):
 
 
 class Contacts(_narc.Handle):
-    """Contacts that stay: update() is a step, with work only for what has moved. `rows`: "manifolds" or "contacts"."""
+    """Contacts that stay: update() is a step, with work only for what has moved. `rows`: "manifolds" or "contacts". `user`: the
+    dtype of what you keep for each pair, such as impulses: all 0 for a new pair, and there as long as its slot is."""
 
     _kind: Any
+    _user: np.dtype[Any]
 
-    def __new__(cls, rows: str = "manifolds") -> Contacts:
+    def __new__(cls, rows: str = "manifolds", user: DTypeLike = np.dtype([])) -> Contacts:
         kinds = {"manifolds": (MANIFOLD, int(CONSTANTS["NARC_MANIFOLD_ROWS"])),
                  "contacts": (CONTACT, int(CONSTANTS["NARC_CONTACT_ROWS"]))}
         if rows not in kinds:
             raise ValueError(f"rows is {rows!r}, it must be 'manifolds' or 'contacts'")
-        self = super().__new__(cls, "Contacts", kinds[rows][1])
-        self._kind = kinds[rows][0]
+        kept = np.dtype(user)
+        if kept.hasobject or kept.itemsize % 4:
+            raise TypeError(f"user is {kept}: a dtype without objects is wanted, of 4, 8, 12 ... bytes")
+        self = super().__new__(cls, "Contacts", kinds[rows][1], kept.itemsize)
+        self._kind, self._user = kinds[rows][0], kept
         return self
 
     def update(self, shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, skin: float = 0.0, recycling: float = 0.0,
@@ -192,6 +197,19 @@ class Contacts(_narc.Handle):
         kinds = (np.uint32, np.uint32, self._kind, self._kind, TOUCH_EVENT, TOUCH_EVENT, np.uint32)
         arrays: list[Any] = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
         return Step(arrays[0].reshape(-1, 2), *arrays[1:], *step[7:])
+
+    def user(self, slots: ArrayLike) -> NDArray[Any]:
+        """What you keep for these slots of the last step, a copy (n,) of your dtype."""
+        given = np.ascontiguousarray(slots, np.uint32)
+        out = np.zeros(len(given), self._user)
+        _narc.read_user(self, given, out.view(np.uint8))
+        return out
+
+    def keep(self, slots: ArrayLike, rows: ArrayLike) -> None:
+        """Keeps rows of your dtype for these slots of the last step."""
+        given = np.ascontiguousarray(slots, np.uint32)
+        kept = np.ascontiguousarray(np.broadcast_to(np.asarray(rows, self._user), given.shape))
+        _narc.write_user(self, given, kept.view(np.uint8))
 
     def slots_of(self, body: int) -> NDArray[np.uint32]:
         """The slots of all pairs of a body, by its number in the last step."""

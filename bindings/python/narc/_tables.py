@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from typing import Any
 
 import numpy as np
@@ -34,6 +36,14 @@ def _known(name: str) -> np.dtype[np.void]:
     kind = row_type(name)
     _narc.know(name, kind)
     return kind
+
+
+def warn_of_skipped(count: int) -> None:
+    """Warns at the line outside this package that asked."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and str(frame.f_globals.get("__name__")).startswith("narc."):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(f"{count} of what was asked has no answer: a broken body or number", _narc.NoAnswer, level)
 
 
 def split(options: dict[str, Any], structure: str) -> tuple[dict[str, Any] | None, dict[str, Any]]:

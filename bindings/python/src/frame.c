@@ -565,6 +565,17 @@ static bool are_rows(const Py_buffer *view, const narc_layout *layout) {
     return are;
 }
 
+/* Of the widest number in a structure. */
+static size_t find_alignment(const narc_layout *layout) {
+    size_t widest = 1;
+    for (size_t k = 0; k < layout->member_count; k++) {
+        const narc_layout *const inner = narc_find_layout(layout->members[k].type);
+        const size_t here = inner ? find_alignment(inner) : layout->members[k].size;
+        widest = here > widest ? here : widest;
+    }
+    return widest;
+}
+
 bool frame_rows(frame *f, const narc_layout *layout, size_t size, bool writable, PyObject *given, void **out_rows,
                 size_t *out_count) {
     *out_rows = NULL;
@@ -581,6 +592,10 @@ bool frame_rows(frame *f, const narc_layout *layout, size_t size, bool writable,
     if (layout && !writable && !is_known ? !are_rows(view, layout) : rows > 0 && view->len != rows * row) {
         PyErr_Format(PyExc_TypeError, "%s: rows of %s are wanted, %zd bytes each", f->argument,
                      layout ? layout->name : "numbers", row);
+        return false;
+    }
+    if (rows > 0 && (uintptr_t)view->buf % (layout ? find_alignment(layout) : size) != 0) {
+        PyErr_Format(PyExc_ValueError, "%s: its rows lie where no number of theirs may", f->argument);
         return false;
     }
     *out_rows = view->buf;

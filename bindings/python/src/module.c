@@ -7,6 +7,7 @@
  */
 #include "frame.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,31 +16,10 @@
 #include <narc_contacts.h>
 #include <narc_scene.h>
 
+#include "errors.h"
 #include "threads.h"
 
-static PyObject *error_class, *index_error_class, *warning_class;
-
-/* ------------------------------------------------------------------------------------------------ errors */
-
-static PyObject *raise_error(const narc_error *error, narc_status status) {
-    if (status == NARC_ERROR_MEMORY)
-        return PyErr_NoMemory();
-    PyObject *const of = status == NARC_ERROR_INDEX ? index_error_class : error_class;
-    PyObject *const raised =
-        PyObject_CallFunction(of, "s", error->message[0] ? error->message : narc_status_name(status));
-    PyObject *const values[] = {PyUnicode_FromString(narc_status_name(status)), PyLong_FromSize_t(error->index),
-                                PyFloat_FromDouble(error->value)};
-    static const char *const names[] = {"status", "index", "value"};
-    bool ok = raised != NULL;
-    for (int k = 0; k < 3; k++) {
-        ok = ok && values[k] && PyObject_SetAttrString(raised, names[k], values[k]) == 0;
-        Py_XDECREF(values[k]);
-    }
-    if (ok)
-        PyErr_SetObject(of, raised);
-    Py_XDECREF(raised);
-    return NULL;
-}
+static PyObject *warning_class;
 
 /* ------------------------------------------------------------------------------------------------ objects */
 
@@ -47,6 +27,8 @@ static PyObject *raise_error(const narc_error *error, narc_status status) {
  * under way without Python's lock, is an error. */
 typedef struct handle {
     PyObject_HEAD void *pointer;
+    const narc_step_result *step; /* of contacts: the last one, if it can still be read */
+    size_t user_size;
     int kind, readers;
     bool is_changed;
 } handle;
@@ -62,12 +44,13 @@ static int find_kind(const char *name, size_t length) {
     return -1;
 }
 
-/* Handle(kind, rows): rows are those of contacts, NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS. */
+/* Handle(kind, rows, user_size): of contacts, NARC_MANIFOLD_ROWS or NARC_CONTACT_ROWS, and the caller's bytes of a slot. */
 static PyObject *handle_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
     const char *name;
     unsigned rows = 0;
+    Py_ssize_t user_size = 0;
     (void)keywords;
-    if (!PyArg_ParseTuple(arguments, "s|I:Handle", &name, &rows))
+    if (!PyArg_ParseTuple(arguments, "s|In:Handle", &name, &rows, &user_size))
         return NULL;
     const int kind = find_kind(name, strlen(name));
     if (kind < 0)
@@ -77,8 +60,9 @@ static PyObject *handle_new(PyTypeObject *type, PyObject *arguments, PyObject *k
     if (!self)
         return NULL;
     self->kind = kind;
+    self->user_size = (size_t)user_size;
     narc_error error = {0};
-    const narc_contacts_settings settings = {.rows = rows};
+    const narc_contacts_settings settings = {.rows = rows, .user_size = self->user_size};
     const narc_status status = kind == SHAPES  ? narc_create_shapes(NULL, (narc_shapes **)&self->pointer)
                                : kind == INDEX ? narc_create_index(NULL, (narc_index **)&self->pointer)
                                : kind == CONTACTS
@@ -167,12 +151,53 @@ static narc_status find_inside(const narc_arc *arcs, size_t count, const narc_po
     return MUST(count > 0 && count <= NARC_MAX_ARCS);
 }
 
-static narc_status update_contacts(void **p, const narc_step_result **out_step, narc_error *error) {
+static narc_status update_contacts(void **p, handle *contacts, const narc_step_result **out_step, narc_error *error) {
     narc_step step = {0};
     if (p[3])
         step = *(const narc_step *)p[3];
     step.bodies = p[2];
-    return narc_update_contacts(p[0], p[1], &step, out_step, error);
+    contacts->step = NULL;
+    const narc_status status = narc_update_contacts(p[0], p[1], &step, out_step, error);
+    contacts->step = status == NARC_OK ? *out_step : NULL;
+    return status;
+}
+
+static narc_status load_contacts(void **p, size_t size, handle *contacts, const narc_step_result **out_step,
+                                 narc_error *error) {
+    contacts->step = NULL;
+    const narc_status status = narc_load_contacts(p[0], p[1], p[2], size, out_step, error);
+    contacts->step = status == NARC_OK ? *out_step : NULL;
+    return status;
+}
+
+/* The caller's bytes of slots, read or written: user_size of each. */
+static narc_status copy_user(const handle *contacts, const uint32_t *slots, size_t count, char *rows, size_t size,
+                             bool writes, narc_error *error) {
+    const narc_step_result *const step = contacts->step;
+    const size_t bytes = contacts->user_size;
+    if (!step || size != count * bytes) {
+        snprintf(error->message, sizeof error->message,
+                 step ? "rows have %zu bytes, not %zu for each slot" : "there is no step whose slots have rows", size,
+                 bytes);
+        return NARC_ERROR_ARGUMENT;
+    }
+    for (size_t k = 0; k < count; k++)
+        if (slots[k] >= step->pairs.count) {
+            snprintf(error->message, sizeof error->message, "there is no slot %u", slots[k]);
+            error->index = k;
+            error->value = slots[k];
+            return NARC_ERROR_INDEX;
+        }
+    for (size_t k = 0; k < count && bytes; k++) {
+        char *const own = (char *)step->user + bytes * slots[k], *const row = rows + bytes * k;
+        memcpy(writes ? own : row, writes ? row : own, bytes);
+    }
+    return NARC_OK;
+}
+
+static narc_status forget(void *object) {
+    ((handle *)object)->step = NULL;
+    return NARC_OK;
 }
 
 #define CALL(name, arguments, result, expression)                                                                      \
@@ -319,6 +344,8 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         PyObject *const whole = PyNumber_Index(given);
         f->n[k] = whole ? PyLong_AsSize_t(whole) : 0;
         Py_XDECREF(whole);
+        if (whole && PyErr_Occurred())
+            PyErr_Format(index_error_class, "%s is %R, which no number of one is", a->name, given);
         return !PyErr_Occurred();
     }
     default:
@@ -394,13 +421,21 @@ static PyObject *copy_step(const narc_step_result *r) {
     return made;
 }
 
+/* The warning, at the line outside this package; false if it is an exception there. */
+static bool warn_of_skipped(size_t skipped) {
+    PyObject *const tables = PyImport_ImportModule("narc._tables");
+    PyObject *const told = tables ? PyObject_CallMethod(tables, "warn_of_skipped", "n", (Py_ssize_t)skipped) : NULL;
+    Py_XDECREF(told);
+    Py_XDECREF(tables);
+    return told != NULL;
+}
+
 static PyObject *make_result(const frame *f, const signature *s, narc_status status) {
     if (status != NARC_OK && status != NARC_ERROR_CAPACITY)
         return raise_error(&f->error, status);
     if (status == NARC_ERROR_CAPACITY && f->count == 0)
         return raise_error(&f->error, status);
-    if (f->skipped > 0 &&
-        PyErr_WarnFormat(warning_class, 2, "%zu of what was asked has no answer: a broken body or number", f->skipped))
+    if (f->skipped > 0 && !warn_of_skipped(f->skipped))
         return NULL;
     switch (s->call->result) {
     case PAIRS:

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Batches beside plain NumPy and shapely; arrays in all layouts; what is refused."""
 
+import os
+import pathlib
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -228,6 +232,10 @@ REFUSED = [
     (lambda s: narc._narc.find_overlaps(s.shapes, s.bodies, np.zeros((65, 2), "u4"), None, np.zeros(1, "u8")), ValueError,
      "out has 1 rows, where there are 2"),
     (lambda s: narc.bodies([1, 2, 3]), ValueError, "xy: the shape"),
+    (lambda s: s.shapes.arcs(-1), narc.OutOfRange, "shape is -1"),
+    (lambda s: s.shapes.remove(2**70), IndexError, "shape is 1180591620717411303424"),
+    (lambda s: narc._narc.compute_mass(np.frombuffer(bytes(81), "u1")[1:].view(narc.ARC), np.zeros(1, narc.MASS)), ValueError,
+     "arcs: its rows lie"),
     (lambda s: narc.place_parts(s.bodies, s.bodies[:5], np.zeros(4, np.uint32)), ValueError, "owner has 4 items"),
 ]
 
@@ -282,8 +290,11 @@ def test_errors_have_numbers(scene):
 
 def test_broken_bodies_are_told_of(scene):
     scene.bodies["xy"][4] = np.nan
-    with pytest.warns(narc.NoAnswer, match="2 of"):
+    with pytest.warns(narc.NoAnswer, match="2 of") as told:
         narc.contacts(scene.shapes, scene.bodies, [[4, 5], [6, 7], [8, 4]])
+    with pytest.warns(narc.NoAnswer) as also:
+        narc.contacts(scene.shapes, scene.bodies)
+    assert {one.filename for one in (*told, *also)} == {__file__}
 
 
 def test_nothing_is_an_answer_too(scene):
@@ -311,7 +322,10 @@ def test_python_runs_meanwhile_and_shapes_are_guarded(random):
     seen, errors = [], []
 
     def ask():
-        seen.append(narc.separations(shapes, bodies, pairs).tobytes())
+        for _ in range(100):
+            seen.append(narc.separations(shapes, bodies, pairs).tobytes())
+            if errors:  # or this thread had been quicker than the other one began
+                break
 
     threads = [threading.Thread(target=ask) for _ in range(2)]
     for thread in threads:
@@ -321,5 +335,39 @@ def test_python_runs_meanwhile_and_shapes_are_guarded(random):
             shapes.circle(1 + len(errors))
         except RuntimeError as error:
             errors.append(str(error))
-    assert seen[0] == seen[1]
+    assert len(set(seen)) == 1
     assert errors and set(errors) == {"shapes is in use by another call"}
+
+
+def test_a_child_of_a_fork_goes_on(scene):
+    before = narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes()
+    child = os.fork()
+    if child == 0:
+        same = narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes() == before
+        os._exit(0 if same else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes() == before
+
+
+def test_memory_does_not_grow(scene):
+    def ask():
+        narc.contact(scene.shapes, scene.bodies[0], scene.bodies[1], margin=9)
+        narc.contacts(scene.shapes, scene.bodies, pairs, margin=1)
+        index.nearest(point)
+        with pytest.raises(narc.Error):
+            scene.shapes.circle(-1)
+
+    pairs, index, point = np.array([[0, 1], [2, 3]], np.uint32), narc.Index(scene.shapes, scene.bodies), np.zeros((1, 2))
+    used = []
+    for _ in range(3):
+        for _ in range(8000):
+            ask()
+        used.append(int(pathlib.Path("/proc/self/statm").read_text().split()[1]))
+    assert used[2] - used[1] < 64  # pages
+
+
+def test_there_are_no_subinterpreters(tmp_path):
+    code = ("import _xxsubinterpreters as s; i = s.create(isolated=False)\n"
+            "try: s.run_string(i, 'import narc._narc')\nexcept s.RunFailedError as e: print(e)")
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "narc does not run in subinterpreters" in told.stdout + told.stderr

@@ -51,6 +51,15 @@ def test_worlds_are_stepped_and_rewarded():
     assert rows["separation"].min() > -0.35
 
 
+def test_a_drawing_is_bounded_and_cut():
+    pytest.importorskip("narc._fit")
+    drawing = load("drawing")
+    outline = narc.Outline.read(FOLDER / "drawing.svg")
+    whole = drawing.fit_whole(outline, (4, 6))
+    assert 0 < whole[6].area - whole[6].hull_area < whole[4].area - whole[4].hull_area
+    assert len(narc.cut(outline, 5)) > 3
+
+
 @pytest.mark.parametrize("name", ["lidar", "packing", "worlds"])
 def test_pictures_are_drawn(name, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")

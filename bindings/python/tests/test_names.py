@@ -17,7 +17,10 @@ INCLUDE = HERE.parent.parent / "include"
 OWN = """create_shapes destroy_shapes create_index destroy_index create_contacts destroy_contacts create_broad_phase
 destroy_broad_phase get_layout get_constant find_layout write_layouts view_bodies openmp_workers copy_pairs status_name version
 reserve_shapes get_aabb""".split()
-LIBRARIES = ["narc_files.h", "narc_fit.h", "narc_methods.h"]
+# Fits read whole drawings, so a pen, one curve and a list of characters are left out; readers of files have their places here.
+OWN += """create_path destroy_path release_contours release_parts release_chains close_font quadratic_to cubic_to
+next_character fit_bezier find_named_shape destroy_shape_list""".split()
+LIBRARIES = ["narc_methods.h"]  # for those who compare methods
 
 
 @pytest.mark.skipif(not INCLUDE.exists(), reason="the headers are not here")
@@ -30,7 +33,7 @@ def test_all_functions_are_called():
     sources = "".join(path.read_text() for path in (HERE / "src").glob("*.*"))
     called = set(re.findall(r"\bnarc_(\w+)\b", sources))
     used = set(re.findall(r"_narc\.(\w+)", "".join(path.read_text() for path in (HERE / "narc").glob("*.py"))))
-    assert len(declared) > 90
+    assert len(declared) > 110
     assert sorted(declared - called - set(OWN)) == []
     table = set(re.findall(r"^CALL\((\w+),", sources, flags=re.M))
     assert sorted(table - used) == []

@@ -322,3 +322,29 @@ def test_subinterpreters_are_refused():
                                     f"spec = find('narc._narc', {narc._narc.__file__!r})\nspec.loader.exec_module(module_from_spec(spec))")
     finally:
         interpreters.destroy(other)
+
+
+def test_what_is_kept_stays_with_its_pair(random):
+    shapes = narc.Shapes()
+    ball = shapes.circle(0.6)
+    bodies = narc.bodies(np.stack([np.arange(40.0), np.zeros(40)], 1), shape=ball)
+    contacts = narc.Contacts("contacts", user=[("impulse", "f4", 2), ("age", "u4")])
+    with pytest.raises(narc.Error, match="no step"):
+        contacts.user([0])
+    ages = {}
+    for _ in range(30):
+        bodies["xy"][:, 1] = random.normal(0, 0.4, 40)
+        step = contacts.update(shapes, bodies, skin=3.0)
+        kept = contacts.user(step.slots)
+        assert [int(age) for age in kept["age"]] == [ages.get((a, b), 0) for a, b in step.pairs.tolist()]
+        kept["age"] += 1
+        contacts.keep(step.slots, kept)
+        ages.update({(a, b): int(age) for (a, b), age in zip(step.pairs.tolist(), kept["age"])})
+    assert max(ages.values()) > 5
+    with pytest.raises(narc.OutOfRange, match="slot 99999"):
+        contacts.user([99999])
+    with pytest.raises(TypeError, match="user is"):
+        narc.Contacts(user="O")
+    contacts.forget()
+    with pytest.raises(narc.Error, match="no step"):
+        contacts.keep([0], ((0, 0), 0))

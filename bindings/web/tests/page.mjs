@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// The page in headless Chromium: node page.mjs PAGE TOOLS OUT WORLD. TOOLS has puppeteer-core, OUT gets pictures, WORLD is the example's
+// program, whose bits are to be the page's.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+import { serve } from "./serve.mjs";
+
+const [folder, tools, out, world] = process.argv.slice(2);
+const puppeteer = createRequire(resolve(tools, "x.js"))("puppeteer-core");
+const { address, end } = await serve(folder);
+const browser = await puppeteer.launch({ executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+const said = [];
+
+async function open(hash = "", { width = 1440, height = 900, touch = false, dark = false, calm = false } = {}) {
+    const tab = await browser.newPage();
+    tab.on("console", (message) => said.push(message.text()));
+    tab.on("pageerror", (error) => said.push(String(error)));
+    tab.on("requestfailed", (request) => said.push(request.url()));
+    tab.on("request", (request) => assert(request.url().startsWith(address) || request.url().startsWith("data:"), request.url()));
+    await tab.setViewport({ width, height, hasTouch: touch, isMobile: touch });
+    await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" },
+        { name: "prefers-reduced-motion", value: calm ? "reduce" : "no-preference" }]);
+    await tab.goto(`${address}${hash}`);
+    await tab.waitForFunction("globalThis.page !== undefined");
+    return tab;
+}
+const steps = (tab, count) => tab.evaluate((n) => {
+    for (let k = 0; k < n; k++)
+        if (!page.step())
+            throw new Error(page.text(page.core.error()));
+}, count);
+const pressed = (tab, id) => tab.$eval(`#${id}`, (button) => button.getAttribute("aria-pressed"));
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+/** Where a moving body is on the screen, the highest one. */
+const bodyAt = (tab, least = -Infinity) => tab.evaluate((low) => {
+    const count = page.core.draw(), f32 = new Float32Array(page.core.memory.buffer), u32 = new Uint32Array(page.core.memory.buffer), base = page.core.drawn() / 4, v = page.view();
+    let best = null;
+    for (let k = 0; k < count; k++)
+        if (!(u32[base + 6 * k + 5] & 14) && f32[base + 6 * k + 1] > low && (!best || f32[base + 6 * k + 1] > best.y))
+            best = { k, x: f32[base + 6 * k], y: f32[base + 6 * k + 1] };
+    const { left, top } = document.getElementById("canvas").getBoundingClientRect();
+    return { ...best, px: left + (v.x + v.scale * best.x) / v.ratio, py: top + (v.y - v.scale * best.y) / v.ratio };
+}, least);
+
+async function test(name, run) {
+    const begin = Date.now();
+    await run();
+    assert.deepEqual(said, [], name);
+    console.log(`ok - ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
+}
+
+try {
+    await test("it starts, moves at once, and draws in time", async () => {
+        const tab = await open();
+        assert.equal(await tab.evaluate(() => page.core.body_count()), 1000);
+        const before = await tab.evaluate(() => page.hash());
+        await wait(600);
+        assert.notEqual(await tab.evaluate(() => page.hash()), before);
+        await wait(2500);
+        await tab.screenshot({ path: join(out, "well.png") });
+        await tab.click("#pause");
+        await steps(tab, 400);
+        const { step, draw } = await tab.evaluate(() => page.times);
+        console.log(`  1,000 bodies: step ${step.toFixed(1)} ms, drawing ${draw.toFixed(1)} ms`);
+        await tab.close();
+    });
+    await test("after 600 steps the state has the native bits", async () => {
+        const tab = await open("", { calm: true });
+        for (const name of ["well", "wheels", "looping", "car", "bullets", "dominoes", "platforms", "rain", "stack"]) {
+            await tab.evaluate((scene) => page.start(scene, 1), name);
+            await steps(tab, 600);
+            const native = /state ([0-9a-f]+)/.exec(execFileSync(world, [name, "--seconds", "10"], { encoding: "utf8" }))[1];
+            assert.equal(await tab.evaluate(() => page.hash()), native, name);
+        }
+        await tab.close();
+    });
+    await test("bodies come to rest", async () => {
+        const tab = await open("#scene=pyramid&seed=1", { calm: true });
+        await steps(tab, 600);
+        assert.equal(await tab.evaluate(() => page.core.moving_count()), 0);
+        await tab.close();
+    });
+    await test("the pointer moves a body", async () => {
+        const tab = await open("#scene=pyramid&seed=2", { calm: true });
+        await steps(tab, 60);
+        const from = await bodyAt(tab);
+        await tab.mouse.move(from.px, from.py);
+        await tab.mouse.down();
+        await tab.mouse.move(from.px + 150, from.py - 60, { steps: 5 });
+        await steps(tab, 60);
+        const to = await bodyAt(tab, from.y);
+        assert(to.x > from.x + 1, `${from.x} ${to.x}`);
+        await tab.mouse.up();
+        await steps(tab, 120);
+        await tab.close();
+    });
+    await test("an outline becomes a body", async () => {
+        const tab = await open("#scene=stack&seed=1", { calm: true }), count = await tab.evaluate(() => page.core.body_count());
+        await tab.keyboard.press("d");
+        assert.equal(await pressed(tab, "draw"), "true");
+        const { x, y, width, height } = await (await tab.$("#canvas")).boundingBox(), at = (k) => [x + width * 0.25 + 80 * Math.cos(k / 4), y + height * 0.4 - 50 * Math.sin(k / 4)];
+        await tab.mouse.move(...at(0));
+        await tab.mouse.down();
+        for (let k = 1; k < 24; k++)
+            await tab.mouse.move(...at(k));
+        await wait(100);
+        await tab.mouse.up();
+        assert.equal(await tab.evaluate(() => page.core.body_count()), count + 1);
+        assert.match(await tab.$eval("#message", (p) => p.textContent), /n-arc of 8 arcs/);
+        await wait(100);
+        await tab.screenshot({ path: join(out, "draw.png") });
+        await tab.close();
+    });
+    await test("all tabs and overlays by keyboard", async () => {
+        const tab = await open("", { calm: true }), names = await tab.$$eval("#tabs button", (all) => all.map((button) => button.dataset.scene));
+        for (const [k, name] of names.entries()) {
+            await tab.keyboard.press(String((k + 1) % 10));
+            assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), name);
+            assert.match(await tab.evaluate(() => location.hash), new RegExp(`scene=${name}&seed=1`));
+            await steps(tab, 120);
+            await wait(60);
+            await tab.screenshot({ path: join(out, `${name}-tab.png`) });
+        }
+        await tab.keyboard.press("1");
+        await tab.focus("#tabs [aria-selected=true]");
+        await tab.keyboard.press("ArrowRight");
+        assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), names[1]);
+        await tab.keyboard.press("9"); // the pyramid
+        await steps(tab, 60);
+        for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["z", "sleep"], ["l", "rays"], ["s", "slow"]]) {
+            await tab.keyboard.press(key);
+            assert.equal(await pressed(tab, id), "true", id);
+        }
+        await wait(100);
+        await tab.screenshot({ path: join(out, "overlays.png") });
+        const unlabelled = await tab.$$eval("button, select, [tabindex]", (all) => all.filter((one) => !one.textContent.trim() && !one.getAttribute("aria-label")).length);
+        assert.equal(unlabelled, 0);
+        await tab.close();
+    });
+    await test("arcs roll further than corners", async () => {
+        const tab = await open("#scene=wheels&seed=1", { calm: true });
+        await steps(tab, 300);
+        await wait(100);
+        await tab.screenshot({ path: join(out, "wheels.png") });
+        const [smooth, cornered] = await tab.evaluate(() => {
+            page.core.draw();
+            const f32 = new Float32Array(page.core.memory.buffer), base = page.core.drawn() / 4;
+            return [f32[base], f32[base + 6]];
+        });
+        assert(smooth > cornered + 3, `${smooth} ${cornered}`);
+        await tab.close();
+    });
+    await test("rays end where bodies are", async () => {
+        const tab = await open("#scene=well&seed=1", { calm: true });
+        await steps(tab, 500);
+        await tab.keyboard.press("l");
+        const { x, y, width, height } = await (await tab.$("#canvas")).boundingBox();
+        await tab.mouse.move(x + width / 2, y + height * 0.3);
+        await wait(200);
+        await tab.screenshot({ path: join(out, "rays.png") });
+        const hits = await tab.evaluate(() => {
+            const count = page.core.scan(0, 30, 60), f32 = new Float32Array(page.core.memory.buffer), base = page.core.points() / 4;
+            return Array.from({ length: count }, (_, k) => [f32[base + 4 * k], f32[base + 4 * k + 1], f32[base + 4 * k + 2]]);
+        });
+        assert.equal(hits.length, 1080);
+        assert(Math.abs(hits[0][0] - 20) < 1e-4 && hits[0][2] === -1, `${hits[0]}`); // the wall on the right
+        assert(hits[810][1] > 0 && hits[810][1] < 30); // straight down: what lies on top
+        await tab.close();
+    });
+    await test("a phone: touch, 360 pixels wide, dark", async () => {
+        const tab = await open("#scene=pyramid&seed=3", { width: 360, height: 740, touch: true, dark: true, calm: true });
+        await steps(tab, 60);
+        const from = await bodyAt(tab);
+        await tab.touchscreen.touchStart(from.px, from.py);
+        await tab.touchscreen.touchMove(from.px + 40, from.py - 30);
+        await steps(tab, 40);
+        const to = await bodyAt(tab, from.y);
+        assert(to.y > from.y + 0.5, `${from.y} ${to.y}`);
+        await tab.touchscreen.touchEnd();
+        assert(await tab.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+        await tab.setViewport({ width: 1000, height: 500, hasTouch: true, isMobile: true });
+        await wait(200);
+        const [wide, ratio] = await tab.evaluate(() => [document.getElementById("canvas").width, page.view().ratio]);
+        assert(Math.abs(wide / ratio - 1000) < 60, `${wide}`);
+        await tab.setViewport({ width: 360, height: 740, hasTouch: true, isMobile: true });
+        await tab.evaluate(() => page.start("well", 1));
+        await steps(tab, 400);
+        await wait(200);
+        await tab.screenshot({ path: join(out, "phone.png") });
+        await tab.close();
+    });
+} finally {
+    await browser.close();
+    end();
+}

@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ray_walk.inl - the way of a ray that goes alone, from the root of the index down to the bodies whose boxes it meets,
+ * nearest first; several in turn.
+ *
+ * The lanes are a node's eight slots. A slot's box is met from `near` to `far` along the ray, which are computed in
+ * single precision with room, so that nothing is lost that ray_entry.inl would find; then it makes no difference which
+ * boxes are met besides, in which order, and how large they are. A near, a far err by three roundings in proportion, and
+ * by the rounding of the start, up to 2^-24 of it.
+ */
+#ifndef NARC_SCENE_RAY_WALK_INL
+#define NARC_SCENE_RAY_WALK_INL
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "index.h"
+#include "kernels.h"
+#include "scene/part_walk.inl"
+#include "scene/ray_entry.inl"
+#include "scene/ray_reading.inl"
+#include "scene/things.inl"
+#include "simd/simd.h"
+
+/* A ray's way along an axis past boxes: the planes that it meets first and last of a node's, as offsets in floats, and
+ * the start, moved apart by the room. */
+struct axis {
+    size_t first, last;
+    float first_start, last_start, inverse;
+};
+
+#define PLANE(name) (offsetof(narc_index_node, name) / sizeof(float))
+
+/* Where a walk is: of each level its node, counted within it, and how far away the slots are. All that is left to visit is
+ * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
+struct descent {
+    uint64_t left, above;
+    unsigned levels;
+    uint32_t node[NARC_INDEX_LEVELS];
+    unsigned flips[NARC_INDEX_LEVELS];
+    float near[NARC_INDEX_LEVELS][NARC_NODE_SLOTS > V_WIDTH ? NARC_NODE_SLOTS : V_WIDTH];
+};
+
+/* A ray, and what is known of its hits. */
+struct walk {
+    struct ray ray;
+    struct axis x, y;
+    unsigned left, aslant; /* see narc_find_flips() */
+    double base;           /* where along the ray nears are counted from */
+    float room;            /* of a distance */
+    float limit;           /* no body whose near is above is wanted */
+    float limit_fraction;
+    struct chosen chosen;
+    size_t found;
+    narc_ray_hit *rows;
+};
+
+/* ------------------------------------------------------------------------------------------------ a ray begins */
+
+static float clip_to_float(double a) { return (float)find_most(-(double)FLT_MAX, find_least((double)FLT_MAX, a)); }
+
+/* Nothing further than a fraction of the ray's motion is wanted; what is as far still is, also up to rounding of fractions
+ * that underflow. */
+INLINE void set_limit(struct walk *w, float fraction) {
+    const double distance = ((double)fraction * (1 + 0x1p-22) + 0x1p-149) * w->ray.length - w->base;
+    w->limit_fraction = fraction;
+    w->limit = clip_to_float(distance + fabs(distance) * (double)ROOM + (double)w->room);
+}
+
+/* Planes of greatest coordinates lie so many floats behind those of the least. */
+enum { PLANES_APART = PLANE(max_x) - PLANE(min_x) };
+
+INLINE struct axis get_axis(const struct read_axis *axis, size_t k, bool backwards, size_t min) {
+    const size_t first = min + PLANES_APART * backwards;
+    return (struct axis){first, 2 * min + PLANES_APART - first, axis->first_start[k], axis->last_start[k],
+                         axis->inverse[k]};
+}
+
+/* The k-th of them; its rows are empty. */
+INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays, size_t k, struct walk *w) {
+    w->ray = (struct ray){{rays->origin_x[k], rays->origin_y[k]},
+                          {rays->direction_x[k], rays->direction_y[k]},
+                          rays->length[k],
+                          rays->inverse_length[k]};
+    const bool left = rays->x.inverse[k] < 0, down = rays->y.inverse[k] < 0;
+    w->x = get_axis(&rays->x, k, left, PLANE(min_x));
+    w->y = get_axis(&rays->y, k, down, PLANE(min_y));
+    w->left = left ? 7 : 0;
+    w->aslant = left != down ? 7 : 0;
+    w->base = rays->base[k];
+    w->room = rays->room[k];
+    w->chosen = read_chosen(&batch->options->search, rays->number[k]);
+    w->found = 0;
+    w->rows = get_rows(batch, rays, k);
+    w->limit = rays->limit[k];
+    w->limit_fraction = rays->fraction[k];
+}
+
+/* ------------------------------------------------------------------------------------------------ a node */
+
+/* A bit for each slot that the ray meets, and where. */
+INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, float *out_near) {
+    const float *const planes = (const float *)node;
+    const vf inverse_x = v_set(w->x.inverse), inverse_y = v_set(w->y.inverse), limit = v_set(w->limit);
+    uint32_t slots = 0;
+    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
+        const vf near_x = v_mul(v_sub(v_load(planes + w->x.first + k), v_set(w->x.first_start)), inverse_x);
+        const vf near_y = v_mul(v_sub(v_load(planes + w->y.first + k), v_set(w->y.first_start)), inverse_y);
+        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), v_set(w->x.last_start)), inverse_x);
+        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), v_set(w->y.last_start)), inverse_y);
+        const vf near = v_max(v_max(near_x, near_y), v_set(0));
+        const vf far = v_mul(v_min(far_x, far_y), v_set(1 + ROOM));
+        v_store(out_near + k, near);
+        slots |= vm_bits(vm_and(v_le(near, far), v_le(near, limit))) << k;
+    }
+    return slots & ((1u << NARC_NODE_SLOTS) - 1);
+}
+
+/* Of each set of slots and each flips: bit k becomes bit k ^ flips. Sets of more slots are those of fewer, without a slot
+ * and with it. */
+#define FLIP(k, f)       | 1 << ((k) ^ (f))
+#define SETS_2(set, f)   set, set FLIP(0, f)
+#define SETS_4(set, f)   SETS_2(set, f), SETS_2(set FLIP(1, f), f)
+#define SETS_8(set, f)   SETS_4(set, f), SETS_4(set FLIP(2, f), f)
+#define SETS_16(set, f)  SETS_8(set, f), SETS_8(set FLIP(3, f), f)
+#define SETS_32(set, f)  SETS_16(set, f), SETS_16(set FLIP(4, f), f)
+#define SETS_64(set, f)  SETS_32(set, f), SETS_32(set FLIP(5, f), f)
+#define SETS_128(set, f) SETS_64(set, f), SETS_64(set FLIP(6, f), f)
+#define ALL_SETS(f)                                                                                                    \
+    { SETS_128(0, f), SETS_128(0 FLIP(7, f), f) }
+static const uint8_t flipped[8][256] = {ALL_SETS(0), ALL_SETS(1), ALL_SETS(2), ALL_SETS(3),
+                                        ALL_SETS(4), ALL_SETS(5), ALL_SETS(6), ALL_SETS(7)};
+
+INLINE bool is_before(const narc_ray_hit *a, const narc_ray_hit *b) {
+    return a->fraction < b->fraction || (a->fraction == b->fraction && a->body < b->body);
+}
+
+/* Puts a hit among a ray's rows, if it is one of the first. */
+INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
+    size_t k = w->found;
+    if (k == most && !is_before(hit, &w->rows[most - 1]))
+        return;
+    for (k = k == most ? most - 1 : k; k > 0 && is_before(hit, &w->rows[k - 1]); k--)
+        w->rows[k] = w->rows[k - 1];
+    w->rows[k] = *hit;
+    w->found += w->found < most;
+    if (w->found == most)
+        set_limit(w, w->rows[most - 1].fraction);
+}
+
+/* ------------------------------------------------------------------------------------------------ things */
+
+/* Does the ray start within a part of the thing? */
+NOINLINE bool starts_in(const narc_ray_batch *batch, const struct walk *w, uint32_t owner) {
+    struct part_walk parts = begin_part_walk(batch->index, &w->chosen, owner, w->ray.origin, 4 * (double)w->room);
+    struct body_frame frame;
+    struct meeting met;
+    uint32_t body;
+    while (find_next_part(&parts, batch->shapes, batch->bodies, &body, &frame))
+        if (find_meeting(&frame, &w->ray, NARC_INSIDE_STOPS, false, &met) && met.is_within)
+            return true;
+    return false;
+}
+
+/* Where the ray leaves a thing, from where it leaves a part that it starts in (`out`, at this distance): from part to part, as
+ * long as one that holds the place, or lies within a seam of it, goes on further. False if that is too far. */
+NOINLINE bool leave_thing(const narc_ray_batch *batch, const struct walk *w, uint32_t owner, double distance,
+                          narc_ray_hit *out) {
+    const struct ray *const ray = &w->ray;
+    for (double at = -1; at < distance;) {
+        at = distance;
+        const place from = {ray->origin.x + at * ray->direction.x, ray->origin.y + at * ray->direction.y};
+        struct part_walk parts = begin_part_walk(batch->index, &w->chosen, owner, from, 4 * (double)w->room);
+        struct body_frame frame;
+        struct meeting met;
+        uint32_t body;
+        while (find_next_part(&parts, batch->shapes, batch->bodies, &body, &frame))
+            if (find_meeting(&frame, ray, NARC_INSIDE_LEAVES, true, &met) &&
+                (met.distance > distance || (met.distance == distance && body < out->body)) &&
+                find_depth_in(&frame, find_place_in(&frame, from)) * frame.scale <= find_seam(&frame) &&
+                put_meeting(&frame, ray, &met, INFINITY, out)) {
+                distance = met.distance;
+                out->body = body;
+            }
+    }
+    return out->fraction <= w->limit_fraction;
+}
+
+/* Takes a thing's row out, if it has one. False if that is before the hit. */
+INLINE bool replace_row(struct walk *w, uint32_t owner, const narc_ray_hit *hit) {
+    for (size_t k = 0; k < w->found; k++)
+        if (find_owner(&w->chosen, w->rows[k].body) == owner) {
+            if (!is_before(hit, &w->rows[k]))
+                return false;
+            for (w->found--; k < w->found; k++)
+                w->rows[k] = w->rows[k + 1];
+        }
+    return true;
+}
+
+/* A row for a part, if none of its thing is before it. Of a thing that the ray starts in, that of its end, or none. */
+INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame,
+                          narc_ray_hit *out) {
+    const narc_inside inside = batch->options->inside;
+    const uint32_t owner = find_owner(&w->chosen, out->body);
+    const bool is_part = owner != UINT32_MAX;
+    struct meeting met;
+    if (!is_chosen(&w->chosen, out->body) ||
+        !find_meeting(frame, &w->ray, is_part && inside == NARC_INSIDE_IGNORES ? NARC_INSIDE_LEAVES : inside, false,
+                      &met))
+        return false;
+    if (!is_part || inside == NARC_INSIDE_STOPS || !met.is_within)
+        return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
+               (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner)) &&
+               (!is_part || replace_row(w, owner, out));
+    return inside == NARC_INSIDE_LEAVES && put_meeting(frame, &w->ray, &met, INFINITY, out) &&
+           leave_thing(batch, w, owner, met.distance, out) && replace_row(w, owner, out);
+}
+
+/* ------------------------------------------------------------------------------------------------ a body */
+
+NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
+    if (!find_part_row(batch, w, frame, &hit))
+        return false;
+    keep_hit(w, batch->most, &hit);
+    return batch->options->any;
+}
+
+/* Casts a ray at a body. Is it done? */
+NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
+    struct meeting met;
+    if (w->chosen.owners)
+        return cast_at_part(batch, w, frame, body);
+    if (body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
+        !put_meeting(frame, &w->ray, &met, w->limit_fraction, &hit))
+        return false;
+    keep_hit(w, batch->most, &hit);
+    return batch->options->any;
+}
+
+INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned slot, struct body_frame *out) {
+    return load_body_frame(batch->shapes, batch->bodies, batch->index->body[NARC_NODE_SLOTS * leaf + slot], out);
+}
+
+INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsigned flips) {
+    const uint64_t left = (uint64_t)flipped[flips][slots] << 8 * (level & 7);
+    d->flips[level] = flips;
+    if (level < 8)
+        d->left |= left;
+    else
+        d->above |= left;
+}
+
+/* Leaves out what is further than a limit that has become less, from a level up. */
+NOINLINE void drop_slots(struct descent *d, unsigned level, float limit) {
+    for (; level < d->levels; level++) {
+        uint32_t far = 0;
+        for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
+            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[level] + k))) << k;
+        const uint64_t dropped = (uint64_t)flipped[d->flips[level]][far & 0xff] << 8 * (level & 7);
+        if (level < 8)
+            d->left &= ~dropped;
+        else
+            d->above &= ~dropped;
+    }
+}
+
+/* The next slot that is left, and its level. False if there is none. */
+INLINE bool take_slot(struct descent *d, unsigned *level, unsigned *slot) {
+    unsigned bit;
+    if (d->left) {
+        bit = (unsigned)FIND_LOWEST_64(d->left);
+        d->left &= d->left - 1;
+    } else {
+        if (d->above == 0)
+            return false;
+        bit = 64 + (unsigned)FIND_LOWEST_64(d->above);
+        d->above &= d->above - 1;
+    }
+    *level = bit >> 3;
+    *slot = (bit & 7) ^ d->flips[*level];
+    return true;
+}
+
+/* Casts a ray at the body in a leaf's slot. Is it done? */
+INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, struct descent *d, unsigned slot) {
+    const size_t leaf = d->node[0];
+    const float limit = w->limit;
+    struct body_frame frame;
+    if (load_slot_frame(batch, leaf, slot, &frame) &&
+        cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]))
+        return true;
+    if (w->limit < limit)
+        drop_slots(d, 0, w->limit);
+    return false;
+}
+
+/* Leaves the slots of a node that the ray meets to be visited. */
+INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned level, uint32_t at, struct descent *d) {
+    const size_t node = (size_t)index->first_node[level] + at;
+    const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
+    d->node[level] = at;
+    leave_slots(d, level, mask_slots(index, node, slots, &w->chosen),
+                narc_find_flips(index->order[node], w->left, w->aslant));
+}
+
+NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
+    struct descent d;
+    unsigned slot, level = batch->index->level_count - 1;
+    uint32_t below = 0;
+    d.left = d.above = 0;
+    d.levels = level + 1;
+    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+        visit_node(batch->index, w, level, below, &d);
+        do {
+            if (!take_slot(&d, &level, &slot) || (level == 0 && visit_slot(batch, w, &d, slot)))
+                return;
+        } while (level == 0);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ rays side by side */
+
+/* Rays that each go their own way take a step in turn, so that the processor need not wait for one. */
+enum { UNDER_WAY = 16 };
+
+struct stepper {
+    struct walk walk;
+    struct descent d;
+    unsigned level, slot;
+    uint32_t below;
+};
+
+/* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
+INLINE bool find_step(struct stepper *s) {
+    if (!take_slot(&s->d, &s->level, &s->slot))
+        return false;
+    s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
+    return true;
+}
+
+/* Rays that have no company. */
+struct loners {
+    const struct read_rays *rays;
+    size_t next, count;
+    uint8_t number[READ];
+};
+
+/* The next one begins. False if there is none. */
+INLINE bool begin_steps(const narc_ray_batch *batch, struct loners *loners, struct stepper *out) {
+    if (loners->next == loners->count)
+        return false;
+    begin_walk(batch, loners->rays, loners->number[loners->next++], &out->walk);
+    out->d.left = out->d.above = 0;
+    out->below = 0;
+    out->level = out->d.levels = batch->index->level_count;
+    return true;
+}
+
+NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
+    struct stepper steppers[UNDER_WAY], *at_node[UNDER_WAY], *at_body[UNDER_WAY];
+    size_t node_count = 0, body_count;
+    for (; node_count < UNDER_WAY && begin_steps(batch, loners, &steppers[node_count]); node_count++)
+        at_node[node_count] = &steppers[node_count];
+    while (node_count > 0) {
+        body_count = 0;
+        const size_t nodes = node_count;
+        node_count = 0;
+        for (size_t k = 0; k < nodes; k++) {
+            struct stepper *const s = at_node[k];
+            visit_node(batch->index, &s->walk, s->level - 1, s->below, &s->d);
+            if (!find_step(s) && !begin_steps(batch, loners, s))
+                continue;
+            at_node[node_count] = at_body[body_count] = s;
+            node_count += s->level > 0;
+            body_count += s->level == 0;
+        }
+        for (size_t k = 0; k < body_count; k++) {
+            struct stepper *const s = at_body[k];
+            bool goes_on;
+            do {
+                goes_on = !visit_slot(batch, &s->walk, &s->d, s->slot) && find_step(s);
+            } while (goes_on && s->level == 0);
+            if (goes_on || begin_steps(batch, loners, s))
+                at_node[node_count++] = s;
+        }
+    }
+}
+
+static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) {
+    struct walk w;
+    while (loners->next < loners->count) {
+        begin_walk(batch, loners->rays, loners->number[loners->next++], &w);
+        walk_alone(batch, &w);
+    }
+}
+
+#endif
