@@ -72,25 +72,29 @@ bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
     const size_t row_size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
     const bool own = narc_have_own_bodies(pairs);
+    narc_manifold rows[NARC_FEW]; /* or contacts: where the last pair is an error the caller's rows stay as they are */
     size_t found = 0;
+    if (!kernels)
+        return false;
     batch.shapes = shapes;
     batch.a = bodies;
     batch.b = pairs->other_bodies ? pairs->other_bodies : bodies;
     batch.pairs = pairs;
     batch.flat_sine = manifold ? narc_find_flat_sine(q->flat_angle) : -1;
-    for (uint32_t k = 0; kernels && k < pairs->count; k++) {
-        char *const row = (char *)out_rows + (q->dense ? k : found) * row_size;
-        const int rows = ask_few(kernels, &batch, k, own, manifold, row);
-        if (rows < 0)
+    for (uint32_t k = 0; k < pairs->count; k++) {
+        char *const row = (char *)rows + (q->dense ? k : found) * row_size;
+        const int answered = ask_few(kernels, &batch, k, own, manifold, row);
+        if (answered < 0)
             return false;
-        if (rows == 0 && q->dense)
+        if (answered == 0 && q->dense)
             clear_row(k, row_size, row);
-        found += rows > 0;
+        found += answered > 0;
     }
+    memcpy(out_rows, rows, (q->dense ? pairs->count : found) * row_size);
     if (q->out_skipped)
         *q->out_skipped = 0;
     *out_count = found;
-    return kernels != NULL;
+    return true;
 }
 
 size_t narc_find_few_contacts(const narc_batch *batch, size_t first, size_t count, size_t *skipped,

@@ -3,6 +3,7 @@
  * casts.c - narc_cast_pairs(): argument checks, then pairs part by part (kernels/scene/casts.c).
  */
 #include <math.h>
+#include <string.h>
 
 #include "broad_phase/steps.h"
 #include "casts.h"
@@ -69,6 +70,7 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     static const narc_motions none;
     narc_batch batch; /* initialisers would clear all of it */
     narc_cast_batch casts;
+    narc_impact rows[NARC_FEW]; /* where the last pair is an error the caller's stay as they are */
     narc_status status = NARC_OK;
     if (!narc_are_few(shapes, bodies, pairs) || !out_rows || capacity < pairs->count || options->targets.base ||
         (other_motions && !pairs->other_bodies) || check_options(options, NULL) != NARC_OK)
@@ -89,7 +91,7 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     casts.tolerance = options->tolerance;
     casts.parting = options->parting;
     casts.nearest = false;
-    casts.out = out_rows;
+    casts.out = rows;
     size_t skipped = 0;
     for (size_t k = 0; k < pairs->count; k++) {
         const int broken = cast_alone(&casts, k, narc_have_own_bodies(pairs));
@@ -97,6 +99,7 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
             return false;
         skipped += (size_t)broken;
     }
+    memcpy(out_rows, rows, pairs->count * sizeof *rows);
     if (options->out_skipped)
         *options->out_skipped = skipped;
     return true;

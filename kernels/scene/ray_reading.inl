@@ -18,6 +18,7 @@
 #include "column.h"
 #include "index.h"
 #include "kernels.h"
+#include "scene/body_frame.inl"
 #include "simd/doubles.h"
 #include "simd/simd.h"
 

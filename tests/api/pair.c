@@ -10,6 +10,7 @@
 #include "check.h"
 #include "corpus.h"
 #include "expect.h"
+#include "narc_scene.h"
 
 enum { BODIES = 60, PAIRS = 600 };
 
@@ -614,6 +615,36 @@ TEST(few_of_a_batch) {
         free(points.rows);
         destroy_scene(&scene);
     }
+}
+
+/* Where the second pair of two is an error, rows and counts stay as they were. */
+TEST(an_error_behind_an_answer) {
+    struct test_random random = test_random_named("an error behind an answer");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const uint32_t a[] = {0, 1}, b[] = {0, BODIES};
+    const float motion[BODIES] = {0};
+    const narc_pairs pairs = {.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    const narc_motions motions = {.x = NARC_ARRAY(motion)};
+    narc_contact contacts[2], none[2];
+    narc_manifold manifolds[2];
+    narc_impact impacts[2];
+    size_t found = 7;
+    memset(none, 0x5a, sizeof none);
+    memset(contacts, 0x5a, sizeof contacts);
+    memset(manifolds, 0x5a, sizeof manifolds);
+    memset(impacts, 0x5a, sizeof impacts);
+    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, NULL, contacts, 2, &found, NULL),
+                     NARC_ERROR_INDEX);
+    assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, NULL, manifolds, 2, &found, NULL),
+                     NARC_ERROR_INDEX);
+    assert_int_equal(narc_cast_pairs(scene.store, &bodies, &motions, &pairs, NULL, NULL, impacts, 2, NULL),
+                     NARC_ERROR_INDEX);
+    assert_int_equal(found, 7);
+    assert_memory_equal(contacts, none, sizeof contacts);
+    assert_memory_equal(manifolds, none, sizeof none);
+    assert_memory_equal(impacts, none, sizeof none);
+    destroy_scene(&scene);
 }
 
 TEST_MAIN("pair")
