@@ -527,6 +527,7 @@ export class Rows<Row> extends List {
     readonly #row: Cursor;
     #arrays: { u8?: Uint8Array; u32?: Uint32Array; f32?: Float32Array; f64?: Float64Array } = {};
     #arraysAt = 0;
+    #arraysReach = 0;
 
     constructor(memory: Memory, readonly layout: Layout, capacity: number, count = 0) {
         super(memory, layout.size, capacity);
@@ -555,8 +556,9 @@ export class Rows<Row> extends List {
 
     #array<Kind extends Items>(name: "u8" | "u32" | "f32" | "f64", Made: new (b: ArrayBufferLike, at: number, n: number) => Kind, size: number): Kind {
         const { pointer } = this;
-        if (this.#arraysAt !== pointer) {
+        if (this.#arraysAt !== pointer || this.#arraysReach !== this.capacity) { // it may be an earlier place, with more room
             this.#arrays = {};
+            this.#arraysReach = this.capacity;
             this.#arraysAt = pointer;
         }
         let array = this.#arrays[name];
@@ -602,7 +604,7 @@ export class Numbers<Kind extends Items> extends List {
     /** All that there is room for; ask again after a call. */
     get array(): Kind {
         const { pointer } = this;
-        if (this.#array === undefined || this.#array.length === 0 || this.#arrayAt !== pointer) {
+        if (this.#array === undefined || this.#array.length !== Math.max(this.capacity, 1) || this.#arrayAt !== pointer) {
             this.#array = new this.#made(this.memory.u8.buffer, pointer, Math.max(this.capacity, 1));
             this.#arrayAt = pointer;
         }

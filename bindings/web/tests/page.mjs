@@ -137,6 +137,9 @@ try {
         await tab.screenshot({ path: join(out, "overlays.png") });
         const unlabelled = await tab.$$eval("button, select, [tabindex]", (all) => all.filter((one) => !one.textContent.trim() && !one.getAttribute("aria-label")).length);
         assert.equal(unlabelled, 0);
+        // Arcs of the scene before are forgotten: a drawn outline may have had the number of a shape.
+        assert(await tab.evaluate(() => page.lit().length) > 0);
+        assert.equal(await tab.evaluate(() => (page.start("stack", 1), page.lit().length)), 0);
         await tab.close();
     });
     await test("arcs roll further than corners", async () => {
