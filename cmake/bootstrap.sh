@@ -583,11 +583,11 @@ web() {
     $tsc -p build/web/tests || fail "the types are not as they should be"
     node --expose-gc --test build/web/tests/module.test.mjs || fail "tests failed in build/web"
     # Poses by the same sines as there: without SLEEF.
-    cmake -B build/native -DCMAKE_BUILD_TYPE=Release -DNARC_SLEEF=OFF -DNARC_OPENMP=OFF -DNARC_BUILD_FILES=OFF -DNARC_BUILD_FIT=OFF -DNARC_BUILD_METHODS=OFF \
-        -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF || fail "configuring build/native failed"
+    cmake -B build/native -DCMAKE_BUILD_TYPE=Release -DNARC_SLEEF=OFF -DNARC_OPENMP=OFF -DNARC_BUILD_FILES=OFF \
+        -DNARC_BUILD_FIT=OFF -DNARC_BUILD_METHODS=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF || fail "configuring build/native failed"
     cmake --build build/native --target narc_static || fail "building build/native failed"
-    cc -O2 -ffp-contract=off -Iinclude -Iexamples examples/world*.c examples/scenes.c -o build/native/world build/native/libnarc.a \
-        -lm || fail "building build/native/world failed"
+    cc -O2 -ffp-contract=off -Iinclude -Iexamples examples/world*.c examples/scenes.c -o build/native/world \
+        build/native/libnarc.a -lm || fail "building build/native/world failed"
     node bindings/web/tests/page.mjs out/web/page build/web-tools out/web build/native/world || fail "the page is not as it should be"
     say "written"
     ls -l out/web
