@@ -108,7 +108,7 @@ def _rows(call: Any, kind: Any, shapes: Shapes, bodies: Bodies, pairs_: Any, mar
         found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
     if out is not None and out.dtype is not kind and out.dtype != kind:
         raise TypeError(f"out: rows of {kind} are wanted")
-    query = {"margin": margin, "workers": threads, **options}
+    query = {"margin": margin, "workers": threads, **options} if margin or threads != 1 or options else None
     rows = np.zeros(count_of(found), kind) if out is None else out
     while (count := call(shapes, bodies, told, query, rows)) > len(rows):
         if out is not None:

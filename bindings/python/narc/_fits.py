@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import operator
 import pathlib
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
@@ -69,10 +70,7 @@ class Outline:
     line and value."""
 
     def __init__(self, contours: ArrayLike | Sequence[ArrayLike]) -> None:
-        parts = [np.ascontiguousarray(part, np.float64) for part in _list_contours(contours)]
-        for part in parts:
-            if part.ndim != 2 or part.shape[1] != 2:
-                raise ValueError(f"contours: arrays (n, 2) are wanted, not {part.shape}")
+        parts = [_points("contours", part) for part in _list_contours(contours)]
         ends = np.cumsum([len(part) for part in parts], dtype=np.uint64)
         self._path = _library().draw(np.concatenate(parts) if parts else np.zeros((0, 2)), ends)
 
@@ -114,6 +112,19 @@ class Outline:
         return f"<narc.Outline: contours {len(contours)}, points {sum(map(len, contours))}>"
 
 
+def _whole(name: str, value: int, most: int = 2**31 - 1) -> int:
+    if not 0 <= operator.index(value) <= most:
+        raise ValueError(f"{name} is {value}, it must be between 0 and {most}")
+    return operator.index(value)
+
+
+def _points(name: str, xy: ArrayLike) -> NDArray[np.float64]:
+    points = np.ascontiguousarray(xy, np.float64)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"{name}: an array (n, 2) is wanted, not {points.shape}")
+    return points
+
+
 def _list_contours(contours: Any) -> list[Any]:
     first = contours[0] if len(contours) else None
     return list(contours) if first is not None and np.ndim(first) == 2 else [contours]
@@ -131,8 +142,9 @@ def fit(outline: Outline | ArrayLike | Sequence[ArrayLike], arcs: int = 8, *, to
     `family`: "n-arc" (arcs with continuous tangents), "edges" (straight edges between arcs, too), "polygon", "paper".
     `goal`: shapes that bound the outline with the least "area", "perimeter" or largest "distance", or those with the least
     largest distance ("nearest") or area between ("difference"). It takes about a second; Ctrl-C ends it. Raises narc.Error."""
-    found, numbers = _library().fit(_outline(outline), arcs, tolerance, _choose("family", family, _FAMILIES),
-                                    _choose("goal", goal, _GOALS), flatness, min_radius, keep_origin, starts)
+    found, numbers = _library().fit(_outline(outline), _whole("arcs", arcs), tolerance, _choose("family", family, _FAMILIES),
+                                    _choose("goal", goal, _GOALS), flatness, min_radius, keep_origin,
+                                    _whole("starts", starts))
     return Fit(np.frombuffer(found, ARC).copy(), **numbers)
 
 
@@ -140,7 +152,7 @@ def cut(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float = 0
         flatness: float = 0.0) -> list[Outline]:
     """Cuts an outline into convex parts that hold its inside, as few as are found within `tolerance` of it, or, with 0, the
     nearest `most`. `lap`: how far parts go on into their neighbours. narc.fit() makes a shape of each. Raises narc.Error."""
-    paths, _, _ = _library().cut(_outline(outline), most, tolerance, lap, flatness)
+    paths, _, _ = _library().cut(_outline(outline), _whole("most", most), tolerance, lap, flatness)
     return [Outline._of(path) for path in paths]
 
 
@@ -153,7 +165,7 @@ def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: fl
 
 def hull(xy: ArrayLike) -> NDArray[np.float64]:
     """The corners of the convex hull of points (n, 2), counter-clockwise, no three in line."""
-    corners = _library().hull(np.ascontiguousarray(xy, np.float64))
+    corners = _library().hull(_points("xy", xy))
     return np.frombuffer(corners, np.float64).reshape(-1, 2).copy()
 
 

@@ -116,6 +116,11 @@ def test_files_keep_shapes(tmp_path):
 @pytest.mark.parametrize("wrong, kind, words", [
     (lambda: narc.fit([[0, 0], [1, 1], [2, 2]]), narc.Error, "line"),
     (lambda: narc.fit(L_SHAPE, 99), narc.Error, "99"),
+    (lambda: narc.fit(L_SHAPE, -1), ValueError, "arcs is -1"),
+    (lambda: narc.fit(L_SHAPE, starts=2**32 + 2), ValueError, "starts is 4294967298"),
+    (lambda: narc.cut(L_SHAPE, most=-1), ValueError, "most is -1"),
+    (lambda: narc.hull(np.zeros((4, 3))), ValueError, "xy: an array"),
+    (lambda: narc.hull(np.zeros(7)), ValueError, "xy: an array"),
     (lambda: narc.fit(L_SHAPE, family="rounds"), ValueError, "family 'rounds': it is one of n-arc"),
     (lambda: narc.fit(L_SHAPE, goal="best"), ValueError, "goal 'best'"),
     (lambda: narc.fit([]), ValueError, "n, 2"),
