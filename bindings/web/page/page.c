@@ -200,7 +200,8 @@ EXPORT(int, add_outline, (unsigned count)) {
         status = world_add_shape(&w, built, arc_count, &shape);
     if (status == NARC_OK)
         status = (narc_status)page_drop(shape, (float)centroid.x, (float)centroid.y);
-    memcpy(arcs, built, sizeof arcs);
+    if (status == NARC_OK)
+        memcpy(arcs, built, arc_count * sizeof *built);
     w.error.status = NARC_OK;
     return status == NARC_OK ? (int)arc_count : -(int)status;
 }

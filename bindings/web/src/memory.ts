@@ -542,7 +542,7 @@ export class Rows<Row> extends List {
 
     /** Row k: always the same object, which the next call of at() moves on. */
     at(k: number): Row {
-        if (!(k >= 0 && k < this.count))
+        if (!(k >= 0 && k < this.count && (k | 0) === k))
             throw new RangeError(`row ${k}: there are ${this.count}`);
         this.#row.place = this.pointer + k * this.layout.size;
         return this.#row as unknown as Row;

@@ -102,6 +102,7 @@ test("wrong calls are errors with names", () => {
         bad(() => narc.contact(shapes, bodies, 0, 4), RangeError, /there are 4/);
         bad(() => narc.contact(shapes, bodies, 0, 0.5), RangeError, /0.5/);
         bad(() => bodies.at(4), RangeError, /there are 4/);
+        bad(() => bodies.at(0.5), RangeError, /row 0.5/);
         bad(() => bodies.column("z"), TypeError, /z/);
         bad(() => shapes.circle(-1), NarcError, /radius/);
         bad(() => shapes.circle("1"), TypeError, /radius/);
