@@ -34,7 +34,9 @@ def test_shapes_have_the_areas_of_formulas():
     assert shapes.uses(1) == 1 and repr(shapes) == "<narc.Shapes: 9>"
     ring = shapes.ring([[0, 0], [4, 0], [4, 3], [2, 1.5], [0, 3]])
     assert shapes.mass(ring)["area"] > 6 and shapes.bounding_circle(ring)["radius"] > 2
-    assert len(shapes.arcs(99)) == 0
+    for ask in (shapes.arcs, shapes.mass, shapes.bounding_circle, shapes.as_polygon):
+        with pytest.raises(IndexError, match="there is no shape 99"):
+            ask(99)
 
 
 def test_outlines_are_within_the_tolerance():
