@@ -15,6 +15,7 @@ from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodi
 
 # Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
 SLICE = 1 << 18
+_ARRAY = np.ndarray  # looked up often
 PairsLike = ArrayLike | Mapping[str, Any]
 
 
@@ -23,7 +24,7 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
 
     Calls take other arrays, too, without copying them: records with fields of these names, or x and y, in any order and
     with others between them; or a mapping of columns, {"xy": (n, 2), "cosine": (n,), "sine": 0.0, ...}, floats of 32 bits but
-    for positions, which may have 64. A single number is that of all bodies."""
+    for positions, which may have 64. A single number is that of all bodies; without cosine and sine none is turned."""
     places = np.asarray(xy, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 2:
         raise ValueError(f"xy: the shape is to be (n, 2), not {places.shape}")
@@ -53,7 +54,7 @@ def narrow(numbers: ArrayLike) -> NDArray[np.float32]:
     """What is asked once may come as float64, or as a list: as float32, and as it is if it is."""
     given = np.asarray(numbers)
     if given.dtype.kind not in "fiu" and given.size:
-        raise TypeError(f"motion and angle: numbers are wanted, not {given.dtype}")
+        raise TypeError(f"motion, angle and fraction: numbers are wanted, not {given.dtype}")
     return given if given.dtype == np.float32 else given.astype(np.float32)
 
 
@@ -118,26 +119,25 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
     return given, {**(given if isinstance(given, dict) else {"ab": given}), "other_bodies": others}, rest
 
 
-def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any] | None, out: Any, count: int,
-          each: int = 1) -> None:
-    """A number, or a bit, for each pair: in slices of `each` pairs an item."""
-    if count <= SLICE:
+def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any, count: int) -> None:
+    """Something for each pair, where its number says."""
+    if count <= SLICE or {"selection", "first", "count"} & query.keys():
         call(shapes, bodies, told, query, out)
         return
     for part in slices(count):
-        call(shapes, bodies, told, {**(query or {}), "first": part.start, "count": part.stop - part.start},
-             out[part.start // each: -(-part.stop // each)])
+        call(shapes, bodies, told, {**query, "first": part.start, "count": part.stop - part.start}, out)
 
 
 def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bodies: Bodies, given: Any, margin: float,
           others: Bodies | None, out: Rows | None, threads: int, options: dict[str, Any]) -> Any:
     found = told = given
-    if others is not None or options or given.__class__ is not np.ndarray:
+    if others is not None or options or given.__class__ is not _ARRAY:
         found, told, options = _prepare(shapes, bodies, given, others, margin, threads, options)
     query = {"margin": margin, "workers": threads, **options} if margin or threads != 1 or options else None
-    room = count_of(found)
-    rows = np.zeros(room, kind) if out is None else out
-    if rows.dtype is not kind and rows.dtype != kind:
+    room = len(found) if found.__class__ is _ARRAY else count_of(found)
+    if out is None:
+        rows = np.zeros(room, kind)
+    elif (rows := out).dtype is not kind and rows.dtype != kind:
         raise TypeError(f"out: rows of {kind} are wanted")
     if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys():
         count = call(shapes, bodies, told, query, rows)
@@ -206,7 +206,7 @@ def overlaps(shapes: Shapes, bodies: Bodies, pairs: PairsLike | None = None, *, 
     found, told, rest = _prepare(shapes, bodies, pairs, others, 0.0, threads, options)
     count = count_of(found)
     words = np.zeros((count + 63) // 64, np.uint64)
-    _fill(_narc.find_overlaps, shapes, bodies, told, {"workers": threads, **rest}, words, count, 64)
+    _fill(_narc.find_overlaps, shapes, bodies, told, {"workers": threads, **rest}, words, count)
     bits = from_bits(words, count)
     return bits if pairs is not None else (bits, found)
 

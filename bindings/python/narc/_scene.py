@@ -23,14 +23,15 @@ def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict
 
 
 def _floats(given: ArrayLike) -> Any:
-    """As they are if they are float32, or double positions; lists become float64."""
-    return given if isinstance(given, np.ndarray) else np.asarray(given, np.float64)
+    """As they are if they are floats of some kind; whole numbers and lists become float64."""
+    array = np.asarray(given)
+    return array.astype(np.float64) if array.dtype.kind in "iu" or array.size == 0 else array
 
 
 def _rays(xy: ArrayLike, motion: ArrayLike, fraction: Any) -> dict[str, Any]:
     start = _floats(xy)
     place = {"x": float(start[0]), "y": float(start[1])} if start.shape == (2,) else {"xy": start}
-    return {**place, "motion": narrow(motion), "fraction": fraction}
+    return {**place, "motion": narrow(motion), "fraction": None if fraction is None else narrow(fraction)}
 
 
 def _of_all(name: str) -> bool:
@@ -55,8 +56,10 @@ def _ask(call: Callable[..., int], fixed: tuple[Any, ...], asked: dict[str, Any]
         call(*fixed, *asked.values(), out)
         return
     for part in slices(count):
-        call(*fixed, *(_cut(given, part, count, name) for name, given in asked.items()),
-             out[part.start * most // bits: -(-part.stop * most // bits)])
+        own = out[part.start * most // bits: -(-part.stop * most // bits)]
+        call(*fixed, *(_cut(given, part, count, name) for name, given in asked.items()), own)
+        if own.dtype.names:
+            own[own.dtype.names[0]] += np.uint32(part.start)  # the number of the question
 
 
 class Index(_narc.Handle):

@@ -582,6 +582,18 @@ static bool fill_tuple(frame *f, const narc_layout *layout, char *structure, PyO
     return true;
 }
 
+/* Bodies of which nothing is said but where they are. */
+static void leave_unturned(narc_bodies *bodies) {
+    static const float one = 1, zero = 0;
+    static const uint32_t first = 0;
+    if (!bodies->cosine.base && !bodies->sine.base) {
+        bodies->cosine.base = &one;
+        bodies->sine.base = &zero;
+    }
+    if (!bodies->shape.base)
+        bodies->shape.base = &first;
+}
+
 /* Queries have it, at their end; and a lookup by name takes longer than all the rest. */
 static const narc_member *find_skipped(const narc_layout *layout) {
     for (size_t k = layout->member_count; k-- > 0;)
@@ -602,6 +614,8 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
     bool is_filled = false;
     if (PyDict_Check(given)) {
         is_filled = fill_mapping(f, layout, structure, given, group);
+        if (is_member(layout->name, "narc_bodies"))
+            leave_unturned(structure);
     } else if (has_two && (known_as ? !rows : is_list(given))) {
         is_filled = fill_two(f, two, structure, given, group);
     } else if (PyTuple_Check(given)) {
