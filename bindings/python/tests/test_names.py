@@ -4,6 +4,8 @@
 import ctypes
 import pathlib
 import re
+import subprocess
+import sys
 import textwrap
 
 import pytest
@@ -62,3 +64,13 @@ def test_what_is_public_has_words():
             assert thing.__doc__ and len(thing.__doc__) > 20, name
             for method, value in vars(thing).items() if isinstance(thing, type) else ():
                 assert method.startswith("_") or not callable(value) or value.__doc__, f"{name}.{method}"
+
+
+def test_help_pages_have_all_that_is_public(tmp_path):
+    subprocess.run([sys.executable, "-m", "narc", "pages", tmp_path], check=True, capture_output=True)
+    text = (tmp_path / "narc.md").read_text() + (tmp_path / "rows.md").read_text()
+    for name in set(narc.__all__) - {"CONSTANTS", "__version__"}:
+        assert f"## narc.{name}\n" in text, name
+    assert "### narc.Shapes.box(self, width: float, height: float, radius: float = 0.0) -> int" in text
+    assert "| `normal` | float32 x 2 | 12 |" in text and "NARC_MAX_ARCS" in (tmp_path / "constants.md").read_text()
+    assert subprocess.run([sys.executable, "-m", "narc", "page"], capture_output=True).returncode == 2
