@@ -28,11 +28,24 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
     places = np.asarray(xy, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 2:
         raise ValueError(f"xy: the shape is to be (n, 2), not {places.shape}")
-    out = np.zeros(len(places), BODY)
-    out["xy"] = places
-    out["cosine"], out["sine"] = np.cos(angle), np.sin(angle)
-    out["scale"], out["shape"] = scale, shape
+    count = len(places)
+    out = np.zeros(count, BODY)
+    turn = _each("angle", angle, count)
+    out["xy"], out["cosine"], out["sine"] = places, np.cos(turn), np.sin(turn)
+    out["scale"], out["shape"] = _each("scale", scale, count), _each("shape", shape, count, whole=True)
     return out
+
+
+def _each(name: str, given: ArrayLike, count: int, whole: bool = False) -> NDArray[Any]:
+    """One number for all, or one for each."""
+    array = np.asarray(given)
+    if array.dtype.kind not in ("iu" if whole else "fiub") and array.size:
+        raise TypeError(f"{name}: {'whole ' if whole else ''}numbers are wanted, not {array.dtype}")
+    if array.ndim and array.shape != (count,):
+        raise ValueError(f"{name}: the shape is to be ({count},), not {array.shape}")
+    if whole and array.size and not (0 <= array.min() and array.max() < 2**32):
+        raise _narc.OutOfRange(f"{name}: {array.min()} to {array.max()} are no numbers of shapes")
+    return array
 
 
 def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
@@ -107,6 +120,8 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
     if "origin" in rest:
         filters = {**(filters or {}), "origin": rest.pop("origin")}
     if given is None:
+        if not isinstance(margin, (int, float, np.number)):
+            raise TypeError(f"margin: a number is wanted, not {margin!r}")
         if not margin < np.inf:
             raise ValueError("margin: without pairs it must be finite")
         given = pairs(shapes, bodies, margin=max(margin, 0.0), others=others, threads=threads, **(filters or {}))

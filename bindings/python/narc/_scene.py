@@ -28,10 +28,16 @@ def _floats(given: ArrayLike) -> Any:
     return array.astype(np.float64) if array.dtype.kind in "iu" or array.size == 0 else array
 
 
+def _places(xy: ArrayLike) -> Any:
+    """Points (n, 2); one place is (1, 2)."""
+    points = _floats(xy)
+    return points[None] if points.shape == (2,) else points
+
+
 def _rays(xy: ArrayLike, motion: ArrayLike, fraction: Any) -> dict[str, Any]:
-    start = _floats(xy)
+    start, motion = _floats(xy), narrow(motion)
     place = {"x": float(start[0]), "y": float(start[1])} if start.shape == (2,) else {"xy": start}
-    return {**place, "motion": narrow(motion), "fraction": None if fraction is None else narrow(fraction)}
+    return {**place, "motion": motion[None] if motion.shape == (2,) else motion, "fraction": None if fraction is None else narrow(fraction)}
 
 
 def _of_all(name: str) -> bool:
@@ -127,10 +133,10 @@ class Index(_narc.Handle):
         return out.reshape(-1, most) if most > 1 else out
 
     def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
-        """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none; (n, most) where
+        """The bodies nearest to each point of `xy` (n, 2), or to one: rows of narc.DISTANCE, `count` 0 where there is none; (n, most) where
         more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is
         within."""
-        points = _floats(xy)
+        points = _places(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
         search, options = _search(options, threads)
         _ask(_narc.find_nearest, (self, self._shapes, self._bodies),
@@ -156,7 +162,7 @@ def _index(shapes: Shapes, bodies: Bodies, options: dict[str, Any]) -> Index:
 
 def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> Rows:
     """How far each point of `xy` (n, 2) is from one body: from number `body`[k], or from body k. Rows of narc.DISTANCE."""
-    points = _floats(xy)
+    points = _places(xy)
     out = np.zeros(len(points), DISTANCE)
     _ask(lambda xy, body, out: int(_narc.find_distances(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
          out, len(points))
@@ -165,7 +171,7 @@ def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | N
 
 def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> NDArray[np.bool_]:
     """Which points of `xy` (n, 2) are within body number `body`[k], one number for all, or body k: (n,) of bool."""
-    points = _floats(xy)
+    points = _places(xy)
     words = np.zeros((len(points) + 63) // 64, np.uint64)
     _ask(lambda xy, body, out: int(_narc.find_inside(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
          words, len(points), bits=64)

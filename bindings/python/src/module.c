@@ -319,7 +319,7 @@ static bool read_signature(const call *of, signature *out) {
 
 static bool take_handle(frame *f, const argument *a, PyObject *given, int slot) {
     if (!PyObject_TypeCheck(given, handle_type) || ((handle *)given)->kind != a->kind) {
-        PyErr_Format(PyExc_TypeError, "%s: a narc.%s is wanted, not %R", a->name, kinds[a->kind], given);
+        PyErr_Format(PyExc_TypeError, "%s: a narc.%s is wanted, not %R", a->name, kinds[a->kind], (PyObject *)Py_TYPE(given));
         return false;
     }
     handle *const h = (handle *)given;
