@@ -20,7 +20,7 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
 #ifndef NARC_SMALL
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
 static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0xd2f7a23d8eddfd23u,
-                                         0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
+                                         0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0xb4a3abf158b36377u};
 /* Hulls, their polylines. */
 static const uint64_t golden_outlines[] = {0x063a84d40a282487u, 0x8b695e716cf6b629u};
 #endif
