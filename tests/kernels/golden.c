@@ -22,7 +22,8 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
 static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0xd2f7a23d8eddfd23u,
                                          0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
 /* Beside half-planes: contacts and manifolds, straight and turning casts, boxes, points, rays. */
-static const uint64_t golden_planes[] = {};
+static const uint64_t golden_planes[] = {0x4a1dc3d782503138u, 0x0331649346ae24dcu, 0xb2ecef259e6c11d4u,
+                                         0x04186dcea4816287u, 0x78033af980cb9b5bu, 0xdce13962d86ce8f6u};
 /* Hulls, their polylines. */
 static const uint64_t golden_outlines[] = {0x063a84d40a282487u, 0x8b695e716cf6b629u};
 #endif
