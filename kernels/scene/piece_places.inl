@@ -14,7 +14,7 @@
 
 #include "scene/body_frame.inl"
 
-/* In the shape's coordinates. */
+/* In the shape's coordinates. Of a half-plane both distances are below 0 in it. */
 struct piece_place {
     place at, normal;
     double distance, separation; /* below 0 behind the tangent of the place; the other never, with END_ROOM */
@@ -116,9 +116,11 @@ INLINE bool find_piece_place(const struct body_frame *frame, place point, struct
     const place turned = turn_to_shape(frame, from);
     const place own = {turned.x * frame->inverse_scale, turned.y * frame->inverse_scale};
     *out = (struct piece_place){.distance = INFINITY};
-    if (has_any_mark(frame, NARC_PIECE_CONCAVE))
+    if (has_mark_of(frame, NARC_PIECE_PLANE))
+        *out = (struct piece_place){{own.x, 0}, {0, 1}, own.y, own.y, INFINITY, NARC_FEATURE_EDGE};
+    if (has_mark_of(frame, NARC_PIECE_CONCAVE))
         look_at_arc(out, own, &frame->arcs[0].arc, 0, CONCAVE_ROOM * fabs((double)frame->arcs[0].arc.radius));
-    const bool is_run = has_any_mark(frame, NARC_PIECE_RUN);
+    const bool is_run = has_mark_of(frame, NARC_PIECE_RUN);
     const double room = is_run ? find_end_room(frame) : 0;
     for (int number = 1; is_run && number + 5 <= frame->header->count; number++)
         look_at_front(out, own, frame, number, room);
