@@ -133,7 +133,7 @@ class Shapes(_narc.Handle):
         _narc.remove_shape(self, shape)
 
     def arcs(self, shape: int) -> Arcs:
-        """The arcs of a shape as they are stored, in single precision; none of a shape that is not there."""
+        """The arcs of a shape as they are stored, in single precision. Raises narc.OutOfRange where there is none."""
         return _built(_narc.get_arcs, self, shape)
 
     def flags(self, shape: int) -> int:

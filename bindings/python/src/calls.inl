@@ -43,7 +43,7 @@ CALL(remove_shape, "shapes:Shapes! shape:size", COUNT, narc_remove_shape(p[0], n
 CALL(count_shapes, "shapes:Shapes", COUNT, (f->count = narc_count_shapes(p[0]), NARC_OK))
 CALL(count_uses, "shapes:Shapes shape:size", COUNT, (f->count = narc_count_uses(p[0], number(n[1])), NARC_OK))
 CALL(shape_flags, "shapes:Shapes shape:size", COUNT, (f->count = narc_shape_flags(p[0], number(n[1])), NARC_OK))
-CALL(get_arcs, "shapes:Shapes shape:size out:>narc_arc*64", COUNT, (f->count = narc_get_arcs(p[0], number(n[1]), p[2]), NARC_OK))
+CALL(get_arcs, "shapes:Shapes shape:size out:>narc_arc*64", COUNT, get_arcs(p[0], n[1], p[2], &f->count, e))
 CALL(count_saved_bytes, "shapes:Shapes", COUNT, (f->count = narc_count_saved_bytes(p[0]), NARC_OK))
 CALL(save_shapes, "shapes:Shapes out:>1", COUNT, narc_save_shapes(p[0], p[1], n[1], e))
 CALL(load_shapes, "shapes:Shapes! bytes:<1", COUNT, load_shapes(f->handles[0], p[1], n[1], e))
