@@ -3,7 +3,7 @@
 import { type Body, type BoxOptions, type CastOptions, type ChainEntry, type Contact, type ContactsSettingsOptions, type Distance,
     type IndexOptions, layouts, type Manifold, type MotionsOptions, type PairFilterOptions, type PairsOptions, type PointsOptions,
     type QueryOptions, type RaysOptions, type RayOptions, type Box as BoxRow, type Impact, type RayHit, type RefinedContact, version } from "./layouts.js";
-import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows } from "./memory.js";
+import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows, rowsOf } from "./memory.js";
 import { type NamedShape, Outlines, readShapes, Shapes, writeShapes } from "./outlines.js";
 import { Contacts, Index } from "./scene.js";
 
@@ -22,6 +22,8 @@ export interface LoadOptions {
     /** The module's bytes, or itself compiled; by default the file beside this one. */
     module?: BufferSource | WebAssembly.Module;
 }
+
+const BODIES = rowsOf(layouts.Body);
 
 /** Does WebAssembly have vectors here? */
 export function hasSimd(): boolean {
@@ -170,7 +172,7 @@ export class Narc {
         if (!(pairs instanceof Uint32Array || pairs instanceof Numbers))
             return memory.columns(layouts.Pairs, pairs);
         const pointer = memory.clear(layouts.Pairs.size), { a, b } = layouts.Pairs.members;
-        const at = pairs instanceof Numbers ? pairs.pointer : memory.copy(pairs);
+        const at = pairs instanceof Numbers ? memory.place(pairs, "pairs", "Uint32Array") : memory.copy(pairs);
         memory.u32[pointer >> 2] = this.#pairCount(pairs);
         memory.u32[(pointer + a.offset) >> 2] = at;
         memory.u32[(pointer + b.offset) >> 2] = at + 4;
@@ -182,14 +184,13 @@ export class Narc {
         return this.#skipped;
     }
 
-    #rows<Row>(name: string, out: Rows<Row>, shapes: Shapes, bodies: Bodies, pairs: PairList, options: QueryOptions | undefined): Rows<Row> {
+    #rows<Row>(name: string, kind: string, out: Rows<Row>, shapes: Shapes, bodies: Bodies, pairs: PairList, options: QueryOptions | undefined): Rows<Row> {
         const { memory } = this, count = this.#pairCount(pairs), dense = Boolean(options?.dense);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", kind, count);
         for (;;) {
             memory.begin();
             const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
-            const status = memory.function(name)(shapes.pointer, given, asked, query, out.pointer, out.capacity, memory.out, memory.error);
+            const status = memory.function(name)(memory.place(shapes, "shapes", "Shapes"), given, asked, query, out.pointer, out.capacity, memory.out, memory.error);
             const fits = memory.fits(status), found = memory.u32[memory.out >> 2]!;
             if (fits) {
                 this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
@@ -213,10 +214,9 @@ export class Narc {
     /** The boxes of bodies, each reaching `margin` beyond them. */
     boxes(shapes: Shapes, bodies: Bodies, options?: BoxOptions, out = new Rows<BoxRow>(this.memory, layouts.Box, countOf(bodies))): Rows<BoxRow> {
         const { memory } = this, count = countOf(bodies);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Box), count);
         memory.begin();
-        memory.call("narc_compute_boxes", shapes.pointer, memory.bodies(bodies), memory.options(layouts.BoxOptions, options, count), out.pointer);
+        memory.call("narc_compute_boxes", memory.place(shapes, "shapes", "Shapes"), memory.bodies(bodies), memory.options(layouts.BoxOptions, options, count), out.pointer);
         out.count = count;
         return out;
     }
@@ -225,8 +225,7 @@ export class Narc {
     pairs(shapes: Shapes, bodies: Bodies, options: PairFilterOptions & { margin?: number; origin?: { x: number; y: number } } = {}, out = this.indices(0)): Numbers<Uint32Array> {
         const { memory } = this, count = countOf(bodies), boxes = this.#boxes, { margin = 0, origin, ...filter } = options;
         this.boxes(shapes, bodies, origin === undefined ? { margin: margin / 2 } : { margin: margin / 2, origin }, boxes);
-        if (out.capacity < 8 * count)
-            out.reserve(8 * count);
+        memory.room(out, "out", "Uint32Array", 8 * count);
         for (;;) {
             memory.begin();
             const { pointer } = out, room = out.capacity >> 1;
@@ -237,53 +236,50 @@ export class Narc {
                 out.count = 2 * found;
                 return out;
             }
-            out.count = 0;
             out.reserve(2 * found);
         }
     }
 
     /** Contacts of all pairs that are closer than `margin`, 0 by default: rows in the order of the pairs. */
     contacts(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out = this.contactRows(this.#pairCount(pairs))): Rows<Contact> {
-        return this.#rows("narc_find_contacts", out, shapes, bodies, pairs, options);
+        return this.#rows("narc_find_contacts", rowsOf(layouts.Contact), out, shapes, bodies, pairs, options);
     }
     /** The same with one or two points a pair: what a solver wants. */
     manifolds(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out = this.manifoldRows(this.#pairCount(pairs))): Rows<Manifold> {
-        return this.#rows("narc_find_manifolds", out, shapes, bodies, pairs, options);
+        return this.#rows("narc_find_manifolds", rowsOf(layouts.Manifold), out, shapes, bodies, pairs, options);
     }
     /** Which pairs collide: bit k % 32 of word k >> 5 is that of pair k. */
     overlaps(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out?: Numbers<Uint32Array>): Numbers<Uint32Array> {
         const { memory } = this, count = this.#pairCount(pairs), words = 2 * Math.ceil(count / 64), bits = out ?? this.indices(words);
-        bits.reserve(words).count = words;
+        memory.room(bits, "out", "Uint32Array", words).count = words;
         memory.begin();
         const given = memory.bodies(bodies), asked = this.#pairs(pairs);
-        memory.call("narc_find_overlaps", shapes.pointer, given, asked, this.#query(options, count), bits.pointer);
+        memory.call("narc_find_overlaps", memory.place(shapes, "shapes", "Shapes"), given, asked, this.#query(options, count), bits.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return bits;
     }
     /** How far apart each pair is, below 0 the depth; Infinity where it is the margin or more, which is Infinity by default. */
     separations(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out?: Numbers<Float32Array>): Numbers<Float32Array> {
         const { memory } = this, count = this.#pairCount(pairs), floats = out ?? this.floats(count);
-        floats.reserve(count).count = count;
+        memory.room(floats, "out", "Float32Array", count).count = count;
         memory.begin();
         const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
         if (options?.margin === undefined)
             memory.f32[(query + layouts.Query.members.margin.offset) >> 2] = Infinity;
-        memory.call("narc_find_separations", shapes.pointer, given, asked, query, floats.pointer);
+        memory.call("narc_find_separations", memory.place(shapes, "shapes", "Shapes"), given, asked, query, floats.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return floats;
     }
 
     #two(name: string, shapes: Shapes, bodies: Rows<Body>, a: number, b: number, margin: number, row: number): void {
-        const { memory } = this, { count, pointer } = bodies, size = layouts.Body.size;
+        const { memory } = this, size = layouts.Body.size, pointer = memory.place(bodies, "bodies", BODIES), { count } = bodies;
         if (!(a >= 0 && a < count && b >= 0 && b < count) || a % 1 !== 0 || b % 1 !== 0)
             throw new RangeError(`bodies ${a} and ${b}: there are ${count}`);
-        if ((bodies.layout as object) !== layouts.Body)
-            throw new TypeError(`bodies: rows of Body are wanted, not of ${bodies.layout.name}`);
         if (margin !== this.#lastMargin) {
             memory.f32[(this.#one + layouts.Query.members.margin.offset) >> 2] = number(margin, "margin");
             this.#lastMargin = margin;
         }
-        memory.check(memory.function(name)(shapes.pointer, pointer + a * size, pointer + b * size, this.#one, row, memory.error));
+        memory.check(memory.function(name)(memory.place(shapes, "shapes", "Shapes"), pointer + a * size, pointer + b * size, this.#one, row, memory.error));
     }
     /** The contact of two bodies, by their numbers: `count` 0 where they are not closer than the margin. It is always the same
      * object. */
@@ -299,11 +295,10 @@ export class Narc {
     /** Contacts again in double precision. */
     refine(shapes: Shapes, bodies: Bodies, pairs: PairList, rows: Rows<Contact>, out = new Rows<RefinedContact>(this.memory, layouts.RefinedContact, rows.count)): Rows<RefinedContact> {
         const { memory } = this;
-        out.count = 0;
-        out.reserve(rows.count);
+        memory.room(out, "out", rowsOf(layouts.RefinedContact), rows.count);
         memory.begin();
         const given = memory.bodies(bodies);
-        memory.call("narc_refine_contacts", shapes.pointer, given, this.#pairs(pairs), 0, rows.pointer, rows.count, out.pointer);
+        memory.call("narc_refine_contacts", memory.place(shapes, "shapes", "Shapes"), given, this.#pairs(pairs), 0, memory.place(rows, "rows", rowsOf(layouts.Contact)), rows.count, out.pointer);
         out.count = rows.count;
         return out;
     }
@@ -311,7 +306,7 @@ export class Narc {
     /** Throws what is wrong with the first body that is broken. */
     validate(shapes: Shapes, bodies: Bodies): void {
         this.memory.begin();
-        this.memory.call("narc_validate_bodies", shapes.pointer, this.memory.bodies(bodies));
+        this.memory.call("narc_validate_bodies", this.memory.place(shapes, "shapes", "Shapes"), this.memory.bodies(bodies));
     }
     /** Cosines and sines, the same bits on every machine. */
     poses(angles: Float32Array): { cosine: Float32Array; sine: Float32Array } {
@@ -326,8 +321,7 @@ export class Narc {
     /** Compounds: where the parts of bodies are; `owner` has for each part the number of its body. Not in the small build. */
     placeParts(owners: Bodies, parts: Bodies, owner: IndexColumn, out = new Rows<Body>(this.memory, layouts.Body, countOf(parts))): Rows<Body> {
         const { memory } = this, count = countOf(parts);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Body), count);
         memory.begin();
         const a = memory.bodies(owners), b = memory.bodies(parts), column = memory.column(owner, "owner", count);
         memory.call("narc_place_parts", a, b, column, 0, out.pointer);
@@ -349,43 +343,40 @@ export class Narc {
     /** When two moving bodies meet: for each pair the first time in 0 .. 1 of its motions. */
     castPairs(shapes: Shapes, bodies: Bodies, motions: MotionsOptions, pairs: PairList, options?: CastOptions, out = this.impactRows(this.#pairCount(pairs))): Rows<Impact> {
         const { memory } = this, count = this.#pairCount(pairs);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Impact), count);
         memory.begin();
         const given = memory.bodies(bodies), moved = memory.options(layouts.Motions, motions, countOf(bodies)), asked = this.#pairs(pairs);
-        memory.call("narc_cast_pairs", shapes.pointer, given, moved, asked, 0, memory.options(layouts.CastOptions, options, count), out.pointer, out.capacity);
+        memory.call("narc_cast_pairs", memory.place(shapes, "shapes", "Shapes"), given, moved, asked, 0, memory.options(layouts.CastOptions, options, count), out.pointer, out.capacity);
         out.count = count;
         return out;
     }
     /** Ray k at body k, or at body[k]. */
     rayPairs(shapes: Shapes, bodies: Bodies, rays: RaysOptions, body?: IndexColumn, options?: Pick<RayOptions, "inside">, out = this.rayHitRows(countOf(rays))): Rows<RayHit> {
         const { memory } = this, count = countOf(rays);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.RayHit), count);
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Rays, rays), column = memory.column(body, "body", count);
-        memory.call("narc_cast_ray_pairs", shapes.pointer, given, asked, column, memory.options(layouts.RayOptions, options, count), out.pointer, out.capacity);
+        memory.call("narc_cast_ray_pairs", memory.place(shapes, "shapes", "Shapes"), given, asked, column, memory.options(layouts.RayOptions, options, count), out.pointer, out.capacity);
         out.count = count;
         return out;
     }
     /** How far each point is from one body: point k from body k, or from body[k]. */
     distances(shapes: Shapes, bodies: Bodies, points: PointsOptions, body?: IndexColumn, out = this.distanceRows(countOf(points))): Rows<Distance> {
         const { memory } = this, count = countOf(points);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Distance), count);
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Points, points), column = memory.column(body, "body", count);
-        memory.call("narc_find_distances", shapes.pointer, given, asked, column, 0, out.pointer);
+        memory.call("narc_find_distances", memory.place(shapes, "shapes", "Shapes"), given, asked, column, 0, out.pointer);
         out.count = count;
         return out;
     }
     /** Is each point within one body? Bits as those of overlaps(). */
     inside(shapes: Shapes, bodies: Bodies, points: PointsOptions, body?: IndexColumn, out?: Numbers<Uint32Array>): Numbers<Uint32Array> {
         const { memory } = this, count = countOf(points), words = 2 * Math.ceil(count / 64), bits = out ?? this.indices(words);
-        bits.reserve(words).count = words;
+        memory.room(bits, "out", "Uint32Array", words).count = words;
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Points, points), column = memory.column(body, "body", count);
-        memory.call("narc_find_inside", shapes.pointer, given, asked, column, 0, bits.pointer);
+        memory.call("narc_find_inside", memory.place(shapes, "shapes", "Shapes"), given, asked, column, 0, bits.pointer);
         return bits;
     }
 }
