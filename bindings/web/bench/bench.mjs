@@ -127,16 +127,28 @@ async function scene(kind, count, falling) {
         engine.end();
     if (falling)
         return;
-    // Questions to the start itself, the same bodies in all.
-    say("\n| engine | µs a ray | mean fraction | µs a region | bodies a region |\n|---|--:|--:|--:|--:|");
+    // Questions to the start itself, in turns: the same bodies in all.
+    const asked = [];
     for (const { name } of engines) {
-        const engine = new Engine(name, file), { version } = await engine.answer();
-        if (name !== "narc" && name !== "detect-collisions" && name !== "matter")
-            await engine.ask("steps", { count: 1, limit: Infinity }); // where trees are made
-        const told = await engine.ask("ask", { rays, regions });
+        const engine = new Engine(name, file);
+        Object.assign(engine, await engine.answer());
+        if (engine.steps && name !== "narc" && name !== "matter")
+            await engine.ask("steps", { count: 1, limit: Infinity }); // in which they make their trees
+        await engine.ask("begin");
+        asked.push(Object.assign(engine, { all: { rays: [], regions: [] } }));
+    }
+    for (let round = 0; round < 8; round++)
+        for (const engine of asked)
+            for (const [word, given] of [["rays", rays], ["regions", regions]]) {
+                const told = await engine.ask(word, given);
+                if (told && round > 0) // the first round is for the compiler
+                    engine.all[word].push(told);
+            }
+    say("\n| engine | µs a ray | mean fraction | µs a region | bodies a region |\n|---|--:|--:|--:|--:|");
+    for (const engine of asked) {
+        const tell = (list, digits) => list.length ? [(1000 * median(list.map(({ ms }) => ms)) / list[0].out.length).toFixed(2), (list[0].out.reduce((a, b) => a + b, 0) / list[0].out.length).toFixed(digits)] : ["–", "–"];
+        say(`| ${engine.name} ${engine.version} | ${tell(engine.all.rays, 4).join(" | ")} | ${tell(engine.all.regions, 2).join(" | ")} |`);
         engine.end();
-        const tell = (of, digits) => of ? [(1000 * of.ms / of.out.length).toFixed(2), (of.out.reduce((a, b) => a + b, 0) / of.out.length).toFixed(digits)] : ["–", "–"];
-        say(`| ${name} ${version} | ${tell(told.rays, 4).join(" | ")} | ${tell(told.regions, 2).join(" | ")} |`);
     }
 }
 

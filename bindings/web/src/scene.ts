@@ -112,10 +112,12 @@ export class Index extends Owned {
         memory.things = countOf(this.#bodies);
         const given = memory.copy(boxes), pairs = memory.clear(layouts.Pairs.size);
         memory.call("narc_query_index", this.pointer, given, count, memory.options(layouts.IndexQuery, search, count), pairs);
-        const { a, b } = layouts.Pairs.members, found = memory.u32[pairs >> 2]!, out = new Uint32Array(2 * found);
-        for (let k = 0; k < found; k++)
-            for (const [i, { offset }] of [a, b].entries())
-                out[2 * k + i] = memory.u32[(memory.u32[(pairs + offset) >> 2]! + k * memory.u32[(pairs + offset + 4) >> 2]!) >> 2]!;
+        const { a, b } = layouts.Pairs.members, { u32 } = memory, found = u32[pairs >> 2]!, out = new Uint32Array(2 * found);
+        [a, b].forEach(({ offset }, i) => {
+            const base = u32[(pairs + offset) >> 2]! >> 2, stride = u32[(pairs + offset + 4) >> 2]! >> 2;
+            for (let k = 0; k < found; k++)
+                out[2 * k + i] = u32[base + k * stride]!;
+        });
         return out;
     }
 }
