@@ -45,6 +45,7 @@ const CHUNK = 1 << 16, ERROR = layouts.Error;
 export class Memory {
     readonly #functions: Record<string, Function | undefined>;
     readonly #memory: WebAssembly.Memory;
+    readonly #shared: boolean;
     u8!: Uint8Array;
     u16!: Uint16Array;
     u32!: Uint32Array;
@@ -62,9 +63,11 @@ export class Memory {
     #used = 0;
     #full: number[] = [];
 
-    constructor(instance: WebAssembly.Instance, readonly build: "fast" | "small") {
+    /** `shared`: the memory of a module that does not have its own. */
+    constructor(instance: WebAssembly.Instance, readonly build: "fast" | "small", shared?: WebAssembly.Memory) {
         this.#functions = instance.exports as unknown as Record<string, Function>;
-        this.#memory = instance.exports["memory"] as WebAssembly.Memory;
+        this.#memory = shared ?? instance.exports["memory"] as WebAssembly.Memory;
+        this.#shared = shared !== undefined;
         this.remake();
         this.function("_initialize")();
         this.#error = this.allocate(ERROR.size);
@@ -111,7 +114,7 @@ export class Memory {
 
     /** After whatever may have made the memory grow. */
     refresh(): void {
-        if (this.u8.length === 0)
+        if (this.#shared ? this.#memory.buffer !== this.u8.buffer : this.u8.length === 0) // shared views do not detach
             this.remake();
     }
 

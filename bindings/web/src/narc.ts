@@ -3,9 +3,10 @@
 import { type Body, type BoxOptions, type CastOptions, type ChainEntry, type Contact, type ContactsSettingsOptions, type Distance,
     type IndexOptions, layouts, type Manifold, type MotionsOptions, type PairFilterOptions, type PairsOptions, type PointsOptions,
     type QueryOptions, type RaysOptions, type RayOptions, type Box as BoxRow, type Impact, type RayHit, type RefinedContact, version } from "./layouts.js";
-import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows, rowsOf } from "./memory.js";
+import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows, rowsOf, whole } from "./memory.js";
 import { type NamedShape, Outlines, readShapes, Shapes, writeShapes } from "./outlines.js";
 import { Contacts, Index } from "./scene.js";
+import { type Range, Threads } from "./threads.js";
 
 export * from "./layouts.js";
 export { type Bodies, type ByteColumn, Column, Cursor, type FloatColumn, type IndexColumn, type Items, NarcError, Numbers, Owned, type PositionColumn, Rows,
@@ -19,8 +20,11 @@ export type PairList = Uint32Array | Numbers<Uint32Array> | (PairsOptions & { co
 export interface LoadOptions {
     /** The fast one needs simd128, the small one has no chains and no compounds. By default what runs here. */
     build?: "fast" | "small";
-    /** The module's bytes, or itself compiled; by default the file beside this one. */
+    /** The module's bytes, or itself compiled; by default the file beside this one. With threads it is narc_threads.wasm. */
     module?: BufferSource | WebAssembly.Module;
+    /** So many workers take parts of large batches of pairs: 0, none, by default. They need shared memory, which pages have that are
+     * isolated (crossOriginIsolated), and the fast build. */
+    threads?: number;
 }
 
 const BODIES = rowsOf(layouts.Body);
@@ -50,9 +54,19 @@ export async function load(options: LoadOptions = {}): Promise<Narc> {
     const build = options.build ?? (hasSimd() ? "fast" : "small");
     if (build !== "fast" && build !== "small")
         throw new TypeError(`build: "fast" or "small" is wanted`);
-    const given = options.module ?? await fetchModule(build === "fast" ? new URL("./narc.wasm", import.meta.url) : new URL("./narc_small.wasm", import.meta.url));
+    const threads = whole(options.threads ?? 0, "threads", 65);
+    if (threads > 0 && build === "small")
+        throw new TypeError("threads: the small build has none");
+    if (threads > 0 && typeof SharedArrayBuffer !== "function")
+        throw new Error("threads: there is no shared memory here; the page is to be isolated (crossOriginIsolated)");
+    const given = options.module ?? await fetchModule(threads > 0 ? new URL("./narc_threads.wasm", import.meta.url)
+        : build === "fast" ? new URL("./narc.wasm", import.meta.url) : new URL("./narc_small.wasm", import.meta.url));
     const module = given instanceof WebAssembly.Module ? given : await WebAssembly.compile(given);
-    return new Narc(new Memory(await WebAssembly.instantiate(module), build));
+    if (threads === 0)
+        return new Narc(new Memory(await WebAssembly.instantiate(module), build));
+    const shared = new WebAssembly.Memory({ initial: 64, maximum: 32768, shared: true });
+    const memory = new Memory(await WebAssembly.instantiate(module, { env: { memory: shared } }), build, shared);
+    return new Narc(memory, await Threads.start(memory, module, shared, threads));
 }
 
 /** All that the core is asked of pairs of bodies, and what makes the rest. Calls take what lies in the module's memory (Rows,
@@ -70,7 +84,7 @@ export class Narc {
     #skipped = 0;
 
     /** @internal */
-    constructor(readonly memory: Memory) {
+    constructor(readonly memory: Memory, readonly threads?: Threads) {
         this.outlines = new Outlines(memory);
         this.#boxes = new Rows(memory, layouts.Box, 64);
         memory.check(memory.function("narc_create_broad_phase")(0, memory.out));
@@ -78,6 +92,11 @@ export class Narc {
         this.#contact = new Rows(memory, layouts.Contact, 1, 1);
         this.#manifold = new Rows(memory, layouts.Manifold, 1, 1);
         this.#one = memory.allocate(layouts.Query.size);
+    }
+
+    /** Ends the workers, if there are any. */
+    end(): void {
+        this.threads?.end();
     }
 
     get build(): "fast" | "small" {
@@ -190,6 +209,18 @@ export class Narc {
         for (;;) {
             memory.begin();
             const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
+            const parts = this.#divide(shapes, count, options);
+            if (parts) {
+                const { size } = out.layout, starts = parts.map(({ first }) => out.pointer + (dense ? 0 : first * size));
+                const found = this.#spread(name, shapes, given, asked, query, parts, starts, parts.map((part) => dense ? out.capacity : part.count));
+                if (found) {
+                    let rows = found[0]!; // the first part's lie where they are to be
+                    for (let k = 1; k < parts.length && !dense; rows += found[k++]!)
+                        memory.u8.copyWithin(out.pointer + rows * size, starts[k]!, starts[k]! + found[k]! * size);
+                    out.count = dense ? count : rows;
+                    return out;
+                }
+            }
             const status = memory.function(name)(memory.place(shapes, "shapes", "Shapes"), given, asked, query, out.pointer, out.capacity, memory.out, memory.error);
             const fits = memory.fits(status), found = memory.u32[memory.out >> 2]!;
             if (fits) {
@@ -199,6 +230,32 @@ export class Narc {
             }
             out.reserve(found);
         }
+    }
+    /** The parts of a batch for threads; none where one thread is to do it. */
+    #divide(shapes: Shapes, count: number, options: QueryOptions | undefined): Range[] | undefined {
+        if (!this.threads || shapes.mayHaveChains || options?.selection !== undefined || options?.first !== undefined || options?.count !== undefined || options?.rowStride !== undefined)
+            return undefined;
+        const parts = this.threads.divide(count);
+        return parts.length > 1 ? parts : undefined;
+    }
+    /** Asks for all parts at once: how many rows each has; nothing on an error, which one thread then tells. */
+    #spread(name: string, shapes: Shapes, bodies: number, pairs: number, query: number, parts: Range[], outs: number[], rooms?: number[]): number[] | undefined {
+        const { memory } = this, { first, count, outSkipped } = layouts.Query.members, store = memory.place(shapes, "shapes", "Shapes");
+        const lists = parts.map((part, k) => {
+            const own = memory.take(layouts.Query.size), told = memory.clear(16), error = memory.clear(layouts.Error.size); // told: rows, skipped
+            memory.u8.copyWithin(own, query, query + layouts.Query.size);
+            memory.u32[(own + first.offset) >> 2] = part.first;
+            memory.u32[(own + count.offset) >> 2] = part.count;
+            memory.u32[(own + outSkipped.offset) >> 2] = told + 4;
+            return [store, bodies, pairs, own, outs[k]!, ...(rooms ? [rooms[k]!, told] : []), error, told];
+        });
+        const status = this.threads!.run(name, lists.map((list) => list.slice(0, -1)));
+        memory.refresh();
+        if (status.some((one) => one !== 0))
+            return undefined;
+        const told = lists.map((list) => list.at(-1)! >> 2);
+        this.#skipped = told.reduce((sum, at) => sum + memory.u32[at + 1]!, 0);
+        return told.map((at) => memory.u32[at]!);
     }
     #query(options: QueryOptions | undefined, count: number): number {
         const { memory } = this, query = memory.clear(layouts.Query.size);
@@ -254,7 +311,10 @@ export class Narc {
         memory.room(bits, "out", "Uint32Array", words).count = words;
         memory.begin();
         const given = memory.bodies(bodies), asked = this.#pairs(pairs);
-        memory.call("narc_find_overlaps", memory.place(shapes, "shapes", "Shapes"), given, asked, this.#query(options, count), bits.pointer);
+        const query = this.#query(options, count), parts = this.#divide(shapes, count, options);
+        if (parts && this.#spread("narc_find_overlaps", shapes, given, asked, query, parts, parts.map(() => bits.pointer)))
+            return bits;
+        memory.call("narc_find_overlaps", memory.place(shapes, "shapes", "Shapes"), given, asked, query, bits.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return bits;
     }
@@ -266,6 +326,9 @@ export class Narc {
         const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
         if (options?.margin === undefined)
             memory.f32[(query + layouts.Query.members.margin.offset) >> 2] = Infinity;
+        const parts = this.#divide(shapes, count, options);
+        if (parts && this.#spread("narc_find_separations", shapes, given, asked, query, parts, parts.map(() => floats.pointer)))
+            return floats;
         memory.call("narc_find_separations", memory.place(shapes, "shapes", "Shapes"), given, asked, query, floats.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return floats;

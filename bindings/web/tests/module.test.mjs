@@ -153,6 +153,33 @@ test("what is of another module is refused", async () => {
     }
 });
 
+// Rows, bits and errors of batches that threads divide are those of one thread, whatever their number; memory that grows is seen by all.
+test("threads give the same bytes", async () => {
+    for (const count of [1, 3]) {
+        const threads = await load({ threads: count }), pair = [fast, threads].map((narc) => scene(narc, 6000, 5));
+        for (const round of [0, 1]) {
+            const answers = pair.map(({ narc, shapes, bodies }) => {
+                const pairs = narc.pairs(shapes, bodies, { margin: 0.1 }), query = { margin: 0.05 };
+                assert(pairs.count > 40000);
+                bodies.at(17).cosine = round === 0 ? bodies.at(18).cosine : NaN; // a broken body: pairs that are skipped
+                const made = [narc.contacts(shapes, bodies, pairs, query), narc.manifolds(shapes, bodies, pairs, query), narc.contacts(shapes, bodies, pairs, { ...query, dense: true }),
+                    narc.overlaps(shapes, bodies, pairs), narc.separations(shapes, bodies, pairs)].map((rows) => [narc.skipped, rows.count, bytesOf(rows)]);
+                assert(round === 0 || narc.skipped > 0);
+                const bad = pairs.array.slice(0, pairs.count);
+                bad[bad.length - 2] = 6001;
+                assert.throws(() => narc.contacts(shapes, bodies, bad), (error) => error instanceof NarcError && error.index === bad.length / 2 - 1);
+                return made;
+            });
+            assert.deepEqual(answers[1], answers[0]);
+            if (round === 0)
+                pair[1].narc.floats(3e6);
+        }
+        threads.end();
+        assert.equal(threads.contacts(pair[1].shapes, pair[1].bodies, Uint32Array.of(0, 1), { margin: Infinity }).count, 1);
+    }
+    await assert.rejects(load({ build: "small", threads: 2 }), /small build has none/);
+});
+
 // Whatever is called with whatever: an error that has a name, or an answer; nothing traps, and the module goes on to work.
 test("random calls never trap", () => {
     const next = random(7), odd = [0, 1, -1, 0.5, NaN, Infinity, 1e30, undefined, null, "a", {}, [], 2 ** 32, new Float32Array(3), new Uint32Array(4), new Float64Array(10), 3n];
