@@ -21,7 +21,8 @@ const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 class Engine {
     constructor(name, start) {
         this.name = name;
-        this.child = fork(fileURLToPath(new URL("./engines.mjs", import.meta.url)), [name, modules, packed, page, start], { serialization: "advanced" });
+        this.child = fork(fileURLToPath(new URL("./engines.mjs", import.meta.url)), [name, modules, packed, page, start], 
+            { serialization: "advanced", execArgv: ["--no-liftoff", "--no-wasm-tier-up"] }); // compiled well from the first step on
     }
     answer() {
         return new Promise((done, fail) => {
