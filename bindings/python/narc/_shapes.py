@@ -56,6 +56,12 @@ class Shapes(_narc.Handle):
         _narc.add_shape(self, _arcs(arcs), out)
         return int(out[0])
 
+    def half_plane(self) -> int:
+        """All that is not above its own x axis: ground without end, which a body's position and rotation place."""
+        out = np.zeros(1, np.uint32)
+        _narc.add_half_plane(self, out)
+        return int(out[0])
+
     def circle(self, radius: float) -> int:
         """A circle around the origin."""
         return self.add(_built(_narc.build_circle, radius))

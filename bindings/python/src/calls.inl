@@ -36,6 +36,7 @@ CALL(compute_distance, "arcs:<narc_arc points:<narc_point@Q out:>8@Q", COUNT, fi
 CALL(contains_point, "arcs:<narc_arc points:<narc_point@Q out:>1@Q", COUNT, find_inside(p[0], n[0], p[1], n[1], p[2]))
 CALL(flatten_arcs, "arcs:<narc_arc closed:size body:<narc_body tolerance:double out:>narc_point", COUNT, narc_flatten_arcs(p[0], n[0], n[1] != 0, n[2] ? p[2] : NULL, d[3], p[4], n[4], &f->count, e))
 CALL(add_shape, "shapes:Shapes! arcs:<narc_arc out:>4*1", COUNT, narc_add_shape(p[0], p[1], n[1], p[2], e))
+CALL(add_half_plane, "shapes:Shapes! out:>4*1", COUNT, narc_add_half_plane(p[0], p[1], e))
 CALL(add_shape_at, "shapes:Shapes! shape:size arcs:<narc_arc", COUNT, narc_add_shape_at(p[0], number(n[1]), p[2], n[2], e))
 CALL(replace_shape, "shapes:Shapes! shape:size arcs:<narc_arc", COUNT, narc_replace_shape(p[0], number(n[1]), p[2], n[2], e))
 CALL(remove_shape, "shapes:Shapes! shape:size", COUNT, narc_remove_shape(p[0], number(n[1]), e))
