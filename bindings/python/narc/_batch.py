@@ -109,7 +109,8 @@ def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies
     if others is None:
         return box_pairs(around, threads=threads, **(filters or {}))
     index = _narc.Handle("Index")
-    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads, **options), {"workers": threads, **options})
+    theirs = boxes(shapes, others, margin=margin / 2, threads=threads, **options)
+    _narc.build_index(index, theirs, {"workers": threads, **options})
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
@@ -134,7 +135,8 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
     return given, {**(given if isinstance(given, dict) else {"ab": given}), "other_bodies": others}, rest
 
 
-def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any, count: int) -> None:
+def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any,
+          count: int) -> None:
     """Something for each pair, where its number says."""
     if count <= SLICE or {"selection", "first", "count"} & query.keys():
         call(shapes, bodies, told, query, out)
@@ -253,7 +255,7 @@ def _hold_turns(shapes: Shapes, bodies: Bodies, around: Rows) -> None:
     shape = np.asarray(own["shape"] if "shape" in names else 0)
     scale = np.asarray(own["scale"] if "scale" in names else 1.0, np.float64)
     numbers, which = np.unique(shape, return_inverse=True)
-    extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max() for arcs in map(shapes.arcs, numbers)])
+    extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max(initial=0) for arcs in map(shapes.arcs, numbers)])
     grow = np.nextafter((2 * scale * extents[which].reshape(shape.shape)).astype(np.float32), np.float32(np.inf))
     around["min"] = np.nextafter(around["min"] - np.atleast_1d(grow)[:, None], np.float32(-np.inf))
     around["max"] = np.nextafter(around["max"] + np.atleast_1d(grow)[:, None], np.float32(np.inf))
@@ -275,7 +277,8 @@ def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: PairsLike | 
     if pairs is None and count_of(bodies):
         filters, rest = split(options, "narc_pair_filter")
         reach = {"origin": rest.pop("origin")} if "origin" in rest else {}
-        around = boxes(shapes, bodies, margin=max(float(rest.get("target", 0.0)), 0.0), motion=ways["xy"], threads=threads, **reach)
+        margin = max(float(rest.get("target", 0.0)), 0.0)
+        around = boxes(shapes, bodies, margin=margin, motion=ways["xy"], threads=threads, **reach)
         if angle is not None:
             _hold_turns(shapes, bodies, around)
         found = told = box_pairs(around, threads=threads, **(filters or {}))

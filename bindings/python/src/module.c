@@ -207,7 +207,7 @@ static narc_status copy_user(const handle *contacts, const uint32_t *slots, size
 static narc_status get_arcs(const narc_shapes *shapes, size_t shape, narc_arc *out, size_t *out_count,
                             narc_error *error) {
     *out_count = narc_get_arcs(shapes, number(shape), out);
-    if (*out_count)
+    if (*out_count || narc_shape_flags(shapes, number(shape)) & NARC_SHAPE_HALF_PLANE)
         return NARC_OK;
     snprintf(error->message, sizeof error->message, "there is no shape %zu", shape);
     error->index = shape;

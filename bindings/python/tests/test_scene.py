@@ -144,6 +144,17 @@ def test_ground_holds_balls(random):
     assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
 
 
+def test_half_planes_are_ground_without_end():
+    shapes = narc.Shapes()
+    ground, ball = shapes.half_plane(), shapes.circle(0.5)
+    assert len(shapes.arcs(ground)) == 0 and shapes.flags(ground) == narc.CONSTANTS["NARC_SHAPE_HALF_PLANE"]
+    bodies = narc.bodies([[0, 0], [1e6, 0.4], [3, 2]], shape=[ground, ball, ball])
+    rows, pairs = narc.contacts(shapes, bodies)
+    assert pairs[rows["pair"]].tolist() == [[0, 1]] and rows["separation"] == pytest.approx(-0.1, abs=1e-6)
+    hits, pairs = narc.casts(shapes, bodies, [[0, 0], [0, 0], [0, -3]], angle=[0, 0, 1])
+    assert pairs[hits["count"] > 0].tolist() == [[0, 1], [0, 2]] and hits["fraction"][-1] == pytest.approx(0.5, abs=1e-3)
+
+
 def circle_scene(random, count=400):
     shapes = narc.Shapes()
     bodies = narc.bodies(random.random((count, 2)) * 60, shape=shapes.circle(1.0))
