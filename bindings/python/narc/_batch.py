@@ -145,6 +145,17 @@ def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, q
         call(shapes, bodies, told, {**query, "first": part.start, "count": part.stop - part.start}, out)
 
 
+def _in_slices(call: Callable[..., int], room: int) -> Callable[..., int]:
+    """A call that lists rows, for some of the pairs at a time."""
+    def ask(shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any] | None, rows: Rows) -> int:
+        count = 0
+        for part in slices(room):
+            some = {**(query or {}), "first": part.start, "count": part.stop - part.start}
+            count += call(shapes, bodies, told, some, rows[count:])
+        return count
+    return ask
+
+
 def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bodies: Bodies, given: Any, margin: float,
           others: Bodies | None, out: Rows | None, threads: int, options: dict[str, Any]) -> Any:
     found = told = given
@@ -156,17 +167,13 @@ def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bod
         rows = np.zeros(room, kind)
     elif (rows := out).dtype is not kind and rows.dtype != kind:
         raise TypeError(f"out: rows of {kind} are wanted")
-    if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys():
-        count = call(shapes, bodies, told, query, rows)
-    else:
-        count = 0
-        for part in slices(room):
-            count += call(shapes, bodies, told, {**(query or {}), "first": part.start, "count": part.stop - part.start},
-                          rows[count:])
+    ask = call if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys() else _in_slices(call, room)
+    count = ask(shapes, bodies, told, query, rows)
     if count > len(rows):
         if out is not None:
             raise ValueError(f"out has {len(rows)} rows, {count} are needed")
-        return _rows(call, kind, shapes, bodies, given, margin, others, np.zeros(count, kind), threads, options)
+        rows = np.zeros(count, kind)
+        ask(shapes, bodies, told, query, rows)
     if options and options.get("dense"):
         count = room
     if count != len(rows):

@@ -135,8 +135,8 @@ class Index(_narc.Handle):
 
     def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
         """The bodies nearest to each point of `xy` (n, 2), or to one: rows of narc.DISTANCE, `count` 0 where there is none;
-        (n, most) where more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is
-        within."""
+        (n, most) where more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that
+        the point is within."""
         points = _places(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
         search, options = _search(options, threads)

@@ -144,6 +144,16 @@ def test_ground_holds_balls(random):
     assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
 
 
+def test_steps_that_are_kept_stay_what_they_were(scene):
+    contacts, kept = narc.Contacts(), []
+    for _ in range(8):
+        scene.bodies["xy"] += 0.05 * (np.arange(600).reshape(-1, 2) % 7)
+        step = contacts.update(scene.shapes, scene.bodies, margin=0.1)
+        kept.append((step.rows[1:], step.rows[1:].copy(), step.pairs, step.pairs.copy()))
+        del step
+    assert all((rows == own).all() and (pairs == same).all() for rows, own, pairs, same in kept)
+
+
 def test_half_planes_are_ground_without_end():
     shapes = narc.Shapes()
     ground, ball = shapes.half_plane(), shapes.circle(0.5)
