@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import Any, cast, overload
 
 import numpy as np
@@ -16,7 +16,7 @@ from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodi
 # Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
 SLICE = 1 << 18
 _ARRAY = np.ndarray  # looked up often
-PairsLike = ArrayLike | Mapping[str, Any]
+PairsLike = ArrayLike | dict[str, Any]
 
 
 def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: ArrayLike = 1.0) -> Rows:

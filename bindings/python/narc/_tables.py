@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from . import _narc
 
 Rows = NDArray[np.void]  # rows of a structure, such as narc.CONTACT
 Pairs = NDArray[np.uint32]  # (m, 2)
-Bodies = NDArray[Any] | memoryview | Mapping[str, Any]  # rows of BODY, other records with these fields, or columns by name
+Bodies = NDArray[Any] | memoryview | dict[str, Any]  # rows of BODY, other records with these fields, or columns by name
 
 _NUMBERS = {"float": "f4", "double": "f8", "uint8_t": "u1", "uint16_t": "u2", "uint32_t": "u4", "uint64_t": "u8", "size_t": "u8"}
 _LAYOUTS = _narc.layouts()
