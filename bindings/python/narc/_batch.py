@@ -264,8 +264,10 @@ def _hold_turns(shapes: Shapes, bodies: Bodies, around: Rows) -> None:
     numbers, which = np.unique(shape, return_inverse=True)
     extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max(initial=0) for arcs in map(shapes.arcs, numbers)])
     grow = np.nextafter((2 * scale * extents[which].reshape(shape.shape)).astype(np.float32), np.float32(np.inf))
-    around["min"] = np.nextafter(around["min"] - np.atleast_1d(grow)[:, None], np.float32(-np.inf))
-    around["max"] = np.nextafter(around["max"] + np.atleast_1d(grow)[:, None], np.float32(np.inf))
+    most = np.finfo(np.float32).max  # as far as boxes of half-planes reach
+    with np.errstate(over="ignore"):
+        around["min"] = np.maximum(np.nextafter(around["min"] - np.atleast_1d(grow)[:, None], np.float32(-np.inf)), -most)
+        around["max"] = np.minimum(np.nextafter(around["max"] + np.atleast_1d(grow)[:, None], np.float32(np.inf)), most)
 
 
 @overload
