@@ -550,9 +550,10 @@ make_wheel() {
     build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
     (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
     say "examples"
-    for example in drawing lidar packing worlds; do
+    for example in dem drawing lidar packing worlds; do
         build/python/bin/python bindings/python/examples/$example.py out/python/$example.png || fail "$example.py failed"
     done
+    build/python/bin/python -m narc pages out/python/pages || fail "writing help pages failed"
     say "written"
     ls -l out/python
 }
