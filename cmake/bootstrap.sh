@@ -569,7 +569,7 @@ npm_packages() {
 # The package, packed in out/web, and the page, out/web/page.
 make_web() {
     require_packages $web_packages
-    build wasm32 narc_module narc_small narc_layouts narc_page
+    build wasm32 narc_module narc_threads narc_small narc_layouts narc_page
     say "build/web"
     npm_packages bindings/web/tools build/web-tools
     rm -rf build/web out/web
@@ -581,7 +581,7 @@ make_web() {
     $tsc -p build/web || fail "compiling bindings/web failed"
     version=$(sed -n 's/^export const version = "\(.*\)";/\1/p' build/web/src/layouts.ts)
     sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
-    cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
+    cp build/wasm32/narc.wasm build/wasm32/narc_threads.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
     (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
     mkdir -p out/web/page/narc
     cp build/web/page/*.html build/web/page/*.css build/web/page/*.js build/wasm32/page.wasm out/web/page
