@@ -195,7 +195,15 @@ check_golden() {
     ctest --preset "$1" -R '^((method_)?golden_.*|stored_bits)$' || fail "tests failed in build/$1"
 }
 
-# WebAssembly, by check or check_golden.
+# What of bindings/web needs no npm: its modules, and the page's engine, whose bits are those of build/bare.
+check_modules() {
+    check_golden "$1"
+    build "$1" narc_module narc_threads narc_page
+    ctest --preset "$1" -R '^narc_(module|threads)$' || fail "tests failed in build/$1"
+    node bindings/web/tests/engine.mjs "build/$1/page.wasm" build/bare/tests/examples/example_world || fail "the page's engine is not as it should be"
+}
+
+# WebAssembly, by check or check_modules.
 check_wasm() {
     if optional_packages $wasm_packages; then
         $1 wasm32
@@ -492,7 +500,7 @@ gate() {
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
     fi
     check_processors
-    check_wasm check_golden
+    check_wasm check_modules
     say "all tests passed$skipped"
 }
 
