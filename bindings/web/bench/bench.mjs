@@ -15,7 +15,9 @@ const { values, positionals: [modules, packed, page, out] } = parseArgs({ allowP
     settle: { type: "string", default: "240" }, warm: { type: "string", default: "20" }, limit: { type: "string", default: "20" },
     engines: { type: "string", default: "narc,rapier,box2d,planck,matter,detect-collisions" } } });
 const { load } = await import(pathToFileURL(resolve(packed, "narc.js"))), narc = await load();
-const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+const at = (list, part) => [...list].sort((a, b) => a - b)[Math.floor(part * list.length)], median = (list) => at(list, 0.5);
+/** What a step takes that nothing else disturbs. */
+const quick = (list) => at(list, 0.1);
 
 /** Process and what it answers. */
 class Engine {
@@ -99,8 +101,8 @@ async function scene(kind, count, falling) {
     first.end();
     settled.forEach(([x, y, angle], k) => Object.assign(start.bodies[k], { x, y, angle })); // from rest: engines do not begin with impulses
     writeFileSync(file, JSON.stringify(start));
-    const at = judge(start, settled.map(([x, y, angle]) => [x, y, angle, 0, 0, 0])), engines = [];
-    say(`\n### ${count.toLocaleString("en")} ${kind}, ${falling ? "falling" : "settled"}: ${at.contacts.toLocaleString("en")} contacts, deepest ${(1000 * at.deepest).toFixed(2)} mm at the start\n`);
+    const before = judge(start, settled.map(([x, y, angle]) => [x, y, angle, 0, 0, 0])), engines = [];
+    say(`\n### ${count.toLocaleString("en")} ${kind}, ${falling ? "falling" : "settled"}: ${before.contacts.toLocaleString("en")} contacts, deepest ${(1000 * before.deepest).toFixed(2)} mm at the start\n`);
     for (const name of values.engines.split(",")) {
         const engine = new Engine(name, file);
         Object.assign(engine, await engine.answer(), { ms: [] });
@@ -120,11 +122,11 @@ async function scene(kind, count, falling) {
         for (const engine of engines)
             if (engine.steps && spent(engine) < 1000 * Number(values.limit))
                 engine.ms.push(...await engine.ask("steps", { count: Math.min(chunk, steps - k), limit: 1000 * Number(values.limit) }));
-    say("| engine | ms a step | of narc's | steps | contacts | deepest, mm | energy, mJ a body |\n|---|--:|--:|--:|--:|--:|--:|");
-    const own = median(engines.find(({ name }) => name === "narc")?.ms ?? [NaN]);
+    say("| engine | ms a step, quickest tenth | of narc's | median | steps | contacts | deepest, mm | energy, mJ a body |\n|---|--:|--:|--:|--:|--:|--:|--:|");
+    const own = quick(engines.find(({ name }) => name === "narc")?.ms ?? [NaN]);
     for (const engine of engines.filter((one) => one.steps)) {
-        const told = judge(start, await engine.ask("poses")), ms = median(engine.ms);
-        say(`| ${engine.name} ${engine.version} | ${ms.toFixed(2)} | ${(ms / own).toFixed(2)} | ${engine.warm + engine.ms.length} | ${told.contacts} | ${(1000 * told.deepest).toFixed(2)} | ${(1000 * told.energy).toFixed(2)} |`);
+        const told = judge(start, await engine.ask("poses")), ms = quick(engine.ms);
+        say(`| ${engine.name} ${engine.version} | ${ms.toFixed(2)} | ${(ms / own).toFixed(2)} | ${median(engine.ms).toFixed(2)} | ${engine.warm + engine.ms.length} | ${told.contacts} | ${(1000 * told.deepest).toFixed(2)} | ${(1000 * told.energy).toFixed(2)} |`);
     }
     for (const engine of engines)
         engine.end();
@@ -149,7 +151,7 @@ async function scene(kind, count, falling) {
             }
     say("\n| engine | µs a ray | mean fraction | µs a region | bodies a region |\n|---|--:|--:|--:|--:|");
     for (const engine of asked) {
-        const tell = (list, digits) => list.length ? [(1000 * median(list.map(({ ms }) => ms)) / list[0].out.length).toFixed(2), (list[0].out.reduce((a, b) => a + b, 0) / list[0].out.length).toFixed(digits)] : ["–", "–"];
+        const tell = (list, digits) => list.length ? [(1000 * quick(list.map(({ ms }) => ms)) / list[0].out.length).toFixed(2), (list[0].out.reduce((a, b) => a + b, 0) / list[0].out.length).toFixed(digits)] : ["–", "–"];
         say(`| ${engine.name} ${engine.version} | ${tell(engine.all.rays, 4).join(" | ")} | ${tell(engine.all.regions, 2).join(" | ")} |`);
         engine.end();
     }
