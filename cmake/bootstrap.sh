@@ -284,11 +284,12 @@ bench() {
     case "$*" in
     *--benchmark_filter=*) bench_rows asked "$@" ;;
     *)
-        bench_rows pairs --benchmark_filter='^(overlap|contact|manifold|boxes|pairs|plain|stay)' "$@"
+        bench_rows pairs --benchmark_filter='^(overlap|contact|manifold|boxes|pairs|plain|stay|worlds)' "$@"
         bench_rows rays --benchmark_filter='^ray' "$@"
         bench_rows regions --benchmark_filter='^region' "$@"
-        bench_rows nearest --benchmark_filter='^(nearest|distance)' "$@"
-        bench_rows index --benchmark_filter='^(index|impact|ground)' "$@"
+        bench_rows points --benchmark_filter='^(nearest|distance|inside|named)' "$@"
+        bench_rows outlines --benchmark_filter='^(hull|polyline)' "$@"
+        bench_rows index --benchmark_filter='^(index|move|impact|ground)' "$@"
         ;;
     esac
     say "plot"
