@@ -250,6 +250,9 @@ void find_any_touch(const touch_grain *a, const touch_grain *b, double x, double
 /* Shares of a part's size: surfaces that near are one; so are ends; and how far beyond an end another part goes on. */
 static const double FLUSH = 1e-4, SAME = 1e-3, BEYOND = 0.02;
 
+/* Depths that differ by less than this share of a part's size are equal: then the order of contacts decides, not rounding. */
+static const double TIE = 1e-9;
+
 /* How far a point is outside of an outline; below 0: inside. */
 static double find_gap(const touch_grain *g, vec point) {
     const double inverse = 1 / g->scale;
@@ -339,7 +342,7 @@ static void keep_end(surface *s, const bool *in, vec along, double place, double
                 for (int side = 0; side < 2; side++)
                     goes_on[side] |= s->number[j] == s->number[i] &&
                                      lies_in(&s->parts[i], e, &s->parts[j], side, times(sign * BEYOND, along));
-            if (high - low > longest) {
+            if (high - low > longest + slack) {
                 longest = high - low;
                 best = i;
                 end = e;
@@ -370,6 +373,12 @@ static void join_stretch(surface *s, size_t seed, vec along, bool *done) {
     keep_end(s, in, along, high, 1, slack);
 }
 
+/* Is contact j, so deep, before contact i? */
+static bool goes_before(const surface *s, size_t j, double depth, size_t i, double other) {
+    const double slack = TIE * find_size(&s->parts[i].a);
+    return depth > other + slack || (j < i && depth >= other - slack);
+}
+
 /* Does all of the contact lie in the part of a deeper one? So it is with points that are one; and with a side of a part that
  * another part covers. */
 static bool is_beaten(const surface *s, size_t i) {
@@ -377,7 +386,7 @@ static bool is_beaten(const surface *s, size_t i) {
     bool beaten = false;
     for (size_t j = 0; j < s->count; j++) {
         const double own = t->end[0].depth, other = s->parts[j].at.end[0].depth;
-        beaten |= (other > own || (other == own && j < i)) && lies_beside(&s->parts[i], 0, &s->parts[j]) &&
+        beaten |= goes_before(s, j, other, i, own) && lies_beside(&s->parts[i], 0, &s->parts[j]) &&
                   (t->count == 1 || lies_beside(&s->parts[i], 1, &s->parts[j]));
     }
     return beaten;
@@ -448,7 +457,7 @@ void join_touches(touch_parts *parts, size_t count) {
         const bool pressed = square[s.number[i]] > 0;
         const double depth = pressed ? sqrt(square[s.number[i]]) : t->depth, scale = pressed ? t->depth / depth : 1;
         for (size_t j = 0; j < s.count; j++)
-            t->leads &= s.number[j] != s.number[i] || deepest[j] < deepest[i] || (deepest[j] == deepest[i] && j >= i);
+            t->leads &= j == i || s.number[j] != s.number[i] || !goes_before(&s, j, deepest[j], i, deepest[i]);
         for (int e = 0; e < t->count; e++)
             t->end[e].share *= scale;
         if (t->count == 2) {
