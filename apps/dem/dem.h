@@ -214,6 +214,7 @@ typedef struct dem_memory {
     double slide;                /* of the tangential spring */
     double spring;               /* its force */
     double damping, power;       /* of the normal dashpot: its force, and that times the speed */
+    double early;                /* how much more than once that force counted, for the contact was to end */
     double roll, rolling_spring; /* used only if there is rolling friction */
     uint64_t step;
 } dem_memory;

@@ -350,8 +350,9 @@ INLINE bool apply_law(dem *d, size_t pair, dem_contact *out_row, bool hertz, boo
 
     dem_force ends = {{0, 0}, 0, 0};
     const double spring = t.end[0].share * kn * depth, brake = t.end[0].share * dashpot_n;
-    const double mean = is_old ? c.vn_ahead + 0.5 * dt * (spring - brake * c.vn_ahead) / mass : c.vn_ahead;
-    const double ramp = find_ramp(t.end[0].depth, mean, dt, is_old, hertz);
+    const double mean = is_old ? c.vn + dt * (spring - brake * c.vn_ahead) / mass : c.vn_ahead;
+    const double whole = find_ramp(t.end[0].depth, mean, dt, is_old, hertz), ramp = whole - memory.early;
+    memory.early = is_old ? whole - 1 : 0; /* it goes on, perhaps, by what it is braked more */
     damper slow = {.force = -brake * ramp * c.vn_ahead};
     double push = spring + slow.force, along = push, work = 0.5 * (slow.force + memory.damping) * c.vn;
     slow.power = slow.force * c.vn_ahead;
