@@ -192,9 +192,9 @@ static void meet_hollow(const touch_grain *a, const touch_grain *b, vec way, tou
         const touch_side *s = &a->sides[i], *next = &a->sides[i + 1 < a->count ? i + 1 : 0];
         const vec u = minus(c.at, round.at);
         const double length = sqrt(dot(u, u)), depth = length + c.radius + round.radius;
-        if (!(depth > end[1].depth) || !(length > 0) ||
-            !faces_hollow(hollow, rotate((vec){b->cosine, -b->sine}, u)) ||
-            (a->count > 1 && !is_between(turn(a, s->normal_x, s->normal_y), u, turn(a, next->normal_x, next->normal_y))))
+        if (!(depth > end[1].depth) || !(length > 0) || !faces_hollow(hollow, rotate((vec){b->cosine, -b->sine}, u)) ||
+            (a->count > 1 &&
+             !is_between(turn(a, s->normal_x, s->normal_y), u, turn(a, next->normal_x, next->normal_y))))
             continue;
         const vec n = times(1 / length, u), p = plus(c.at, times(c.radius - 0.5 * depth, n));
         end[1] = (touch_end){p.x, p.y, n.x, n.y, depth, 1};
@@ -448,9 +448,7 @@ void join_touches(touch_parts *parts, size_t count) {
         for (int e = 0; e < parts[i].at.count; e++)
             own[i] += s.stays[i][e] ? find_square(&parts[i].at, e) : 0;
         square[s.number[i]] += own[i];
-        deepest[i] = s.stays[i][0]   ? parts[i].at.end[0].depth
-                     : s.stays[i][1] ? parts[i].at.end[1].depth
-                                     : -INFINITY;
+        deepest[i] = s.stays[i][0] ? parts[i].at.end[0].depth : s.stays[i][1] ? parts[i].at.end[1].depth : -INFINITY;
     }
     for (size_t i = 0; i < s.count; i++) {
         touch *t = &parts[i].at;

@@ -108,7 +108,8 @@ void find_any_touch(const touch_grain *a, const touch_grain *b, double x, double
 static inline void find_touch(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature,
                               touch *out) {
     const touch_side *s = &a->sides[feature & 0x3f], *r = &b->sides[feature >> 8 & 0x3f];
-    if ((feature & (NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8)) != 0 || (s->has_edge && r->has_edge) || signbit(r->radius)) {
+    if ((feature & (NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8)) != 0 || (s->has_edge && r->has_edge) ||
+        signbit(r->radius)) {
         find_any_touch(a, b, x, y, feature, out);
         return;
     }

@@ -11,8 +11,8 @@ static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec p
     const dem_shape *shape = &d->shapes[shape_index];
     const dem_outline *outline = &d->outlines[shape->first_outline];
     const touch_side *side = outline->sides;
-    const bool is_disc = shape->outline_count == 1 && !shape->is_chain && outline->side_count == 1 && side->x == 0 &&
-                         side->y == 0;
+    const bool is_disc =
+        shape->outline_count == 1 && !shape->is_chain && outline->side_count == 1 && side->x == 0 && side->y == 0;
     const double s = (double)(float)scale;
     dem_grow(&d->bodies, d->body_count + 1, sizeof *d->bodies);
     dem_grow(&d->parts, d->part_count + shape->outline_count, sizeof *d->parts);

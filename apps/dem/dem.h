@@ -254,7 +254,7 @@ typedef struct dem_block {
     size_t count; /* of contacts */
     dem_account account;
     dem_account old; /* what the springs of these contacts held in the last step, and their dashpots' power */
-    size_t too_deep;    /* the first pair that is, or SIZE_MAX */
+    size_t too_deep; /* the first pair that is, or SIZE_MAX */
 } dem_block;
 
 /* Arrays grow by dem_grow(). */
@@ -421,7 +421,7 @@ const char *dem_explain_depth(const dem *d); /* why bodies overlap too far */
 void dem_set_rates(dem *d, dem_rates rates);
 
 void dem_wrap_bodies(dem *d);
-void dem_deform_cell(dem *d);                            /* by a step */
+void dem_deform_cell(dem *d);                             /* by a step */
 vec dem_find_drift(const dem *d, const dem_image *image); /* the velocity of the image's cell */
 
 /* ---------------------------------------------------------------------------------------------------------- filling.c */

@@ -258,13 +258,15 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     char shapes[DEM_PATH_SIZE];
     uint64_t random = 1; /* the generator's state */
     vec x = {0, 1}, y = {0, 1};
-    json_value materials, contact, grains, stages, walls = {.item = NULL}, groups = {.item = NULL}, output = {.item = NULL};
+    json_value materials, contact, grains, stages, walls = {.item = NULL}, groups = {.item = NULL},
+                                                   output = {.item = NULL};
     json_value strain = {.item = NULL};
     dem_side sides[2] = {{0}, {0}};
     dem_servo *servos;
     double shear = NAN;
     *input = (dem_input){.output = {.every = UINT64_MAX, .restart_every = UINT64_MAX}};
-    json_key boundary[] = {{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &shear}, {"strain", ANY, &strain}, {NULL}};
+    json_key boundary[] = {
+        {"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &shear}, {"strain", ANY, &strain}, {NULL}};
     json_read(&root, (json_key[]){{"comment", ANY},
                                   {"materials", MUST | LIST, &materials, 1, DEM_MAX_MATERIALS},
                                   {"shapes", MUST | TEXT, shapes, 0, sizeof shapes},

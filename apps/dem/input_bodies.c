@@ -59,12 +59,11 @@ void dem_read_shapes(const json_value *name, const char *path, dem *d) {
         dem_quit("%s: %s", path, error.message);
     dem_release(text);
     dem_go_to(d, name);
-    for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++) {
+    for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++)
         if (s->form == NARC_FORM_SHAPE)
             dem_add_shape(d, s->name, s->arcs, s->arc_count);
         else
             dem_add_chain(d, s->name, s->arcs, s->arc_count, s->form == NARC_FORM_CLOSED_CHAIN);
-    }
     for (size_t k = 0; k < shapes->count; k++) {
         const char *slash = strrchr(shapes->items[k].name, '/');
         if (slash && strcmp(slash, "/1") == 0)

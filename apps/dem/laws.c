@@ -96,12 +96,12 @@ typedef struct motion {
 typedef struct contact {
     dem_body *a, *b;
     double depth;
-    vec normal, point;    /* of all ends */
-    vec arm_b;            /* from the centre of B to the point */
-    vec drift;            /* what B's image is faster */
-    double vn, vt, turn;  /* relative velocities: apart, along the tangent, rotation */
+    vec normal, point;   /* of all ends */
+    vec arm_b;           /* from the centre of B to the point */
+    vec drift;           /* what B's image is faster */
+    double vn, vt, turn; /* relative velocities: apart, along the tangent, rotation */
     double vn_ahead, vt_ahead;
-    size_t before;        /* the pair that bore this surface's load until now, or SIZE_MAX */
+    size_t before; /* the pair that bore this surface's load until now, or SIZE_MAX */
 } contact;
 
 /* 1 / R is the sum of 1 / R_i, of the discs of equal area. A wall's has no end. */
@@ -180,8 +180,13 @@ static size_t join_pairs(const dem *d, size_t index, touch *t) {
         const vec way = find_way(d, dem_image_b(d, k), a, b);
         own = k == index ? count : own;
         pairs[count] = k;
-        parts[count] = (touch_parts){
-            look_at(d, d->pairs[k].a, a), look_at(d, d->pairs[k].b, b), way.x, way.y, d->pairs[k].a, d->pairs[k].b, {0}};
+        parts[count] = (touch_parts){look_at(d, d->pairs[k].a, a),
+                                     look_at(d, d->pairs[k].b, b),
+                                     way.x,
+                                     way.y,
+                                     d->pairs[k].a,
+                                     d->pairs[k].b,
+                                     {0}};
         find_pair_touch(d, k, way, &parts[count].at);
         count += parts[count].at.depth > -d->range;
         if (k == index && count == own)

@@ -142,9 +142,9 @@ uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size) {
 uint64_t dem_hash(const dem *d) {
     const dem_account *a = &d->account;
     const dem_settings *s = &d->settings;
-    const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,  a->normal,
-                           a->tangential,   a->rolling, d->offset,  d->shear_work,
-                           s->low.x,        s->low.y,   s->high.x,  s->high.y,   a->power};
+    const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,   a->normal,
+                           a->tangential,   a->rolling, d->offset,  d->shear_work, s->low.x,
+                           s->low.y,        s->high.x,  s->high.y,  a->power};
     uint64_t hash = dem_hash_bytes(DEM_HASH_START, d->bodies, d->body_count * sizeof *d->bodies);
     for (size_t k = 0; k < d->contact_count; k++)
         hash = dem_hash_bytes(hash, dem_memory_of(d, d->contacts[k].pair), sizeof(dem_memory));

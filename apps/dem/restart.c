@@ -61,8 +61,9 @@ static void pass_wall(stream *s, dem *d, size_t index) {
     const int count = (int)d->wall_count;
     PASS(now);
     const int first = now.servo.between[0], second = now.servo.between[1];
-    s->ok = s->ok && strncmp(now.name, wall->name, sizeof now.name) == 0 && now.kind == wall->kind && now.group == wall->group && first >= -1 &&
-            second >= -1 && first < count && second < count && (first < 0) == (second < 0);
+    s->ok = s->ok && strncmp(now.name, wall->name, sizeof now.name) == 0 && now.kind == wall->kind &&
+            now.group == wall->group && first >= -1 && second >= -1 && first < count && second < count &&
+            (first < 0) == (second < 0);
     *wall = s->ok ? now : *wall;
 }
 

@@ -22,7 +22,8 @@ static inline bool has_moved(const dem_body *b, double limit) {
 }
 
 static inline void kick(dem_body *b, double half, vec gravity) {
-    const vec by = {half * (b->force.x * b->inverse_mass + gravity.x), half * (b->force.y * b->inverse_mass + gravity.y)};
+    const vec by = {half * (b->force.x * b->inverse_mass + gravity.x),
+                    half * (b->force.y * b->inverse_mass + gravity.y)};
     const double turn = half * (b->torque * b->inverse_inertia);
     b->velocity = plus(b->velocity, by);
     b->spin += turn;

@@ -75,8 +75,8 @@ void dem_start(dem *d) {
     d->shear_work = 0; /* grains begin so */
     const dem_region all = dem_bound(d, true);
     d->diagonal = hypot(all.high.x - all.low.x, all.high.y - all.low.y);
-    d->margin = 4 * NARC_ERROR_BOUND * d->grain_reach + (d->wall_count > 0 ? 2e-7 * d->diagonal : 0) /* along plates */ +
-                d->range;
+    d->margin = 4 * NARC_ERROR_BOUND * d->grain_reach +
+                (d->wall_count > 0 ? 2e-7 * d->diagonal : 0) /* along plates */ + d->range;
     dem_renew_images(d);
     dem_find_first_forces(d);
 }

@@ -24,8 +24,8 @@ struct ContactLaw {
     double friction = 0;
     double damping =
         0; /* above 0: dashpots are this times sqrt(stiffness mass), and gamma_t the share of the tangential */
-    double rolling = 0;         /* the torque against rolling is at most this times radius times force */
-    bool limit_damping = false; /* never pull */
+    double rolling = 0;             /* the torque against rolling is at most this times radius times force */
+    bool limit_damping = false;     /* never pull */
     double cohesion = 0, range = 0; /* a force that falls to 0 over that distance */
 };
 
@@ -47,8 +47,8 @@ struct Motion {
 
 /* A contact of A with B in the plane. */
 struct Contact {
-    touch_end end; /* of one; of two the deeper one */
-    double depth, part;  /* as of touch.h */
+    touch_end end;      /* of one; of two the deeper one */
+    double depth, part; /* as of touch.h */
     bool leads;
     const touch *ends;   /* of two; else null */
     double way_x, way_y; /* from A to B */
@@ -70,7 +70,8 @@ struct Force {
  * tangential one is. The number of arguments read, 0 if they are no law. `pressure_unit` is
  * LAMMPS' force->nktv2p, by which Hertz' stiffnesses are divided. `number` reads an argument. */
 template <class Number>
-int read_law(ContactLaw &law, bool hertz, bool rescaled, double pressure_unit, int count, char **arguments, Number number) {
+int read_law(ContactLaw &law, bool hertz, bool rescaled, double pressure_unit, int count, char **arguments,
+             Number number) {
     if (count < 6)
         return 0;
     const auto is_null = [](const char *text) { return std::string(text) == "NULL"; };
@@ -201,9 +202,11 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
     find_velocity(c, arm_a, arm_b, velocity);
     const double approach = velocity[0] * normal_x + velocity[1] * normal_y;
     const double tangent_x = velocity[0] - approach * normal_x, tangent_y = velocity[1] - approach * normal_y;
-    const double depth = std::max(c.depth, 0.0), stiffening = depth == 0 ? 0 : law.hertz ? std::sqrt(depth * c.radius) : 1;
-    const double dashpot = law.damping > 0 && depth > 0 ? law.damping * std::sqrt(law.kn * c.mass / stiffening)
-                                                        : c.mass * law.gamma_n;
+    const double depth = std::max(c.depth, 0.0), stiffening = depth == 0  ? 0
+                                                              : law.hertz ? std::sqrt(depth * c.radius)
+                                                                          : 1;
+    const double dashpot =
+        law.damping > 0 && depth > 0 ? law.damping * std::sqrt(law.kn * c.mass / stiffening) : c.mass * law.gamma_n;
     Force sum = {};
     double push, along = 0; /* along: the part of it that acts here, and not at two ends */
     if (c.ends) {

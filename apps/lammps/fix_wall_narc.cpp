@@ -30,7 +30,8 @@ FixWallNarc::FixWallNarc(LAMMPS *lammps, int count, char **arguments) : Fix(lamm
     if (kind != "hooke/history" && kind != "hertz/history" && kind != "mindlin/rescale")
         error->all(FLERR, "fix wall/narc: no such law: " + kind);
     const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
-    int i = narc_lammps::read_law(law, kind != "hooke/history", kind == "mindlin/rescale", force->nktv2p, count - 4, arguments + 4, number);
+    int i = narc_lammps::read_law(law, kind != "hooke/history", kind == "mindlin/rescale", force->nktv2p, count - 4,
+                                  arguments + 4, number);
     if (i == 0 || 4 + i >= count)
         error->all(FLERR, std::string("fix wall/narc: a coefficient is negative or out of range, or no wall is named"));
     i = read_wall(4 + i, count, arguments);
@@ -247,8 +248,8 @@ void FixWallNarc::find_piece_contacts() {
     for (const narc_contact &row : found_rows) {
         const Contact &of = asked[row.pair];
         const Piece &piece = pieces[of.parts.part_b];
-        const touch_grain wall = {piece.sides.data(), std::signbit(piece.sides[0].radius) ? 1 : piece.sides.size(), cosine,
-                                  sine, 1};
+        const touch_grain wall = {piece.sides.data(), std::signbit(piece.sides[0].radius) ? 1 : piece.sides.size(),
+                                  cosine, sine, 1};
         add_contact(of.grain, of.parts.part_a, of.parts.part_b, wall, wall_x - atom->x[of.grain][0],
                     wall_y - atom->x[of.grain][1], row.feature);
     }
@@ -282,9 +283,8 @@ void FixWallNarc::join_contacts() {
         for (size_t i = 0; i < parts.size(); i++)
             contacts[k + i].parts.at = parts[i].at;
     }
-    contacts.erase(
-        std::remove_if(contacts.begin(), contacts.end(), [](const Contact &c) { return !c.parts.at.count; }),
-        contacts.end());
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(), [](const Contact &c) { return !c.parts.at.count; }),
+                   contacts.end());
 }
 
 void FixWallNarc::apply_contact(const Contact &contact, double step) {

@@ -84,7 +84,8 @@ class FixWallNarc : public Fix {
     size_t find_memory(const Contact &contact);
     int read_wall(int i, int count, char **arguments);
     void read_chain(const char *path, const char *name);
-    void add_contact(int i, size_t part, size_t piece, const touch_grain &wall, double way_x, double way_y, unsigned feature);
+    void add_contact(int i, size_t part, size_t piece, const touch_grain &wall, double way_x, double way_y,
+                     unsigned feature);
     void join_contacts();
     int read_motion(int i, int count, char **arguments);
     void place_pieces();
@@ -96,25 +97,24 @@ class FixWallNarc : public Fix {
     narc_lammps::ContactLaw law;
     FixNarcShapes *shapes = nullptr;
     bool plate = false;
-    double place_x = 0, place_y = 0, normal_x = 0,
-           normal_y = 0;                    /* at the start; else of its angle, cosine and sine */
-    double pivot[2] = {0, 0};               /* at the start */
-    double reach = 0;                       /* from its place to its furthest point; of a plate 0 */
-    double velocity[3] = {0, 0, 0};         /* the third is the spin */
+    double place_x = 0, place_y = 0, normal_x = 0, normal_y = 0; /* at the start; else of its angle, cosine and sine */
+    double pivot[2] = {0, 0};                                    /* at the start */
+    double reach = 0;               /* from its place to its furthest point; of a plate 0 */
+    double velocity[3] = {0, 0, 0}; /* the third is the spin */
     int every = 1;
     std::string variables[3]; /* equal-style ones that give them; empty: constant */
     double moved[3] = {0, 0, 0};
-    std::vector<Piece> pieces;     /* of a plate a segment, which lies under each grain */
-    uint32_t forms = 0;            /* parts of grains */
-    narc_shapes *store = nullptr;  /* all parts of grains, and the pieces behind them */
+    std::vector<Piece> pieces;                           /* of a plate a segment, which lies under each grain */
+    uint32_t forms = 0;                                  /* parts of grains */
+    narc_shapes *store = nullptr;                        /* all parts of grains, and the pieces behind them */
     double wall_x = 0, wall_y = 0, cosine = 1, sine = 0; /* where it is now */
-    narc_lammps::Motion motion = {0, 0, 0}; /* of the wall, at the middle of a box */
+    narc_lammps::Motion motion = {0, 0, 0};              /* of the wall, at the middle of a box */
 
     std::vector<Contact> contacts;
-    std::vector<Memory> memories; /* of each atom */
-    std::vector<char> touched;    /* of these: in the last step */
-    double mine[4] = {0, 0, 0, 0};             /* force on the wall, torque, energy: of this rank */
-    double total[4] = {0, 0, 0, 0};            /* and of all, if summed */
+    std::vector<Memory> memories;   /* of each atom */
+    std::vector<char> touched;      /* of these: in the last step */
+    double mine[4] = {0, 0, 0, 0};  /* force on the wall, torque, energy: of this rank */
+    double total[4] = {0, 0, 0, 0}; /* and of all, if summed */
     bool summed = false;
 };
 

@@ -240,8 +240,8 @@ void PairNarc::find_contacts() {
     narc_openmp_workers(static_cast<unsigned>(comm->nthreads), &workers);
     size_t skipped = 0;
     narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
-    query.margin = static_cast<float>(
-        range + 4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
+    query.margin =
+        static_cast<float>(range + 4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
     query.workers = &workers;
     query.out_skipped = &skipped;
     narc_error failure = {};
@@ -322,7 +322,8 @@ void PairNarc::apply_others(double step) {
             const uint32_t pair = contacts[next].pair, p = row_a[pair], q = row_b[pair];
             if (shapes->row_atom[p] != static_cast<uint32_t>(a) || shapes->row_atom[q] != static_cast<uint32_t>(b))
                 break;
-            parts.push_back({shapes->outline(a, shapes->row_part(p)), shapes->outline(b, shapes->row_part(q)), x, y, p, q, {}});
+            parts.push_back(
+                {shapes->outline(a, shapes->row_part(p)), shapes->outline(b, shapes->row_part(q)), x, y, p, q, {}});
             touch_parts &now = parts.back();
             find_touch(&now.a, &now.b, x, y, contacts[next].feature, &now.at);
             if (!(now.at.depth > -range))
@@ -334,9 +335,9 @@ void PairNarc::apply_others(double step) {
         for (size_t i = 0; i < parts.size(); i++) {
             const touch &at = parts[i].at;
             if (at.count > 0)
-                apply_contact(static_cast<uint32_t>(disc_pairs) + contacts[k + i].pair, a, b,
-                              {at.end[0], at.depth, at.part, at.leads, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0},
-                              step);
+                apply_contact(
+                    static_cast<uint32_t>(disc_pairs) + contacts[k + i].pair, a, b,
+                    {at.end[0], at.depth, at.part, at.leads, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0}, step);
         }
     }
 }

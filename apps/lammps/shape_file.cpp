@@ -103,7 +103,8 @@ uint32_t store_parts(const std::vector<Form> &forms, narc_shapes **out_store) {
     return next;
 }
 
-std::vector<ChainPiece> read_chain(const std::string &path, const std::string &name, narc_shapes *store, double &reach) {
+std::vector<ChainPiece> read_chain(const std::string &path, const std::string &name, narc_shapes *store,
+                                   double &reach) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
     text << file.rdbuf();
@@ -121,8 +122,7 @@ std::vector<ChainPiece> read_chain(const std::string &path, const std::string &n
     narc_chain_options options = {};
     options.closed = chain.form == NARC_FORM_CLOSED_CHAIN;
     size_t count = 0;
-    narc_status status =
-        narc_add_chain(store, chain.arcs, chain.arc_count, &options, nullptr, 0, &count, &error);
+    narc_status status = narc_add_chain(store, chain.arcs, chain.arc_count, &options, nullptr, 0, &count, &error);
     std::vector<narc_chain_entry> entries(count);
     if (status == NARC_ERROR_CAPACITY)
         status = narc_add_chain(store, chain.arcs, chain.arc_count, &options, entries.data(), count, &count, &error);
@@ -147,7 +147,8 @@ std::vector<ChainPiece> read_chain(const std::string &path, const std::string &n
     }
     reach = 0;
     for (size_t i = 0; i < chain.arc_count; i++)
-        reach = std::fmax(reach, std::hypot(chain.arcs[i].center_x, chain.arcs[i].center_y) + std::fabs(chain.arcs[i].radius));
+        reach = std::fmax(reach,
+                          std::hypot(chain.arcs[i].center_x, chain.arcs[i].center_y) + std::fabs(chain.arcs[i].radius));
     return pieces;
 }
 

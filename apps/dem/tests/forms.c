@@ -21,7 +21,8 @@ static uint32_t add_bar(dem *d, bool round, int parts) {
         assert_int_equal((round ? narc_build_capsule(length, 0.4, one, &counts[i], &error)
                                 : narc_build_box(length, 0.8, 0, one, &counts[i], &error)),
                          NARC_OK);
-        assert_int_equal(narc_move_arcs(one, counts[i], parts == 1 ? 0.35 : 0.7 * i, 0, 0, 1, arcs + used, &error), NARC_OK);
+        assert_int_equal(narc_move_arcs(one, counts[i], parts == 1 ? 0.35 : 0.7 * i, 0, 0, 1, arcs + used, &error),
+                         NARC_OK);
     }
     return dem_add_compound(d, "bar", arcs, counts, (size_t)parts);
 }
@@ -57,13 +58,15 @@ TEST(test_cut_is_whole) {
     for (int k = 0; k < 400; k++) {
         const uint32_t round = (uint32_t)k / 2 % 2, whole = ELL + 1 + round, cut = ELL + 3 + round;
         const bool disc = k % 2;
-        const double turn = 2 * PI * dem_draw_size(&unit, &seed), way = turn + PI / 2 + 2 * (dem_draw_size(&unit, &seed) - 0.5);
+        const double turn = 2 * PI * dem_draw_size(&unit, &seed),
+                     way = turn + PI / 2 + 2 * (dem_draw_size(&unit, &seed) - 0.5);
         const double turns[2] = {turn, disc ? 0 : turn + 0.01 * (dem_draw_size(&unit, &seed) - 0.5)};
         const double far = disc ? 1.39 + 0.9 * dem_draw_size(&unit, &seed) : 0.79 / sin(way - turn);
         const load one = press((uint32_t[]){whole, disc ? DISC : whole}, far * cos(way), far * sin(way), turns);
         const load two = press((uint32_t[]){cut, disc ? DISC : cut}, far * cos(way), far * sin(way), turns);
         touched += one.energy > 0;
-        wrong += fabs(one.energy - two.energy) > 1e-5 * one.energy + 1e-12 || fabs(one.force - two.force) > 1e-4 * one.force + 1e-9;
+        wrong += fabs(one.energy - two.energy) > 1e-5 * one.energy + 1e-12 ||
+                 fabs(one.force - two.force) > 1e-4 * one.force + 1e-9;
         if (disc)
             assert_true(fabs(one.energy - two.energy) <= 1e-5 * one.energy + 1e-12);
     }
@@ -126,8 +129,13 @@ TEST(test_hertz_with_friction_gives_no_energy) {
         dem_contact_law law = plain_law();
         law.friction = friction;
         dem d = make_world(settings, law);
-        const dem_filling filling = {.region = {true, {0, 0}, {24, 24}}, .shapes = {DISC}, .shape_count = 1,
-                                     .sizes = {DEM_UNIFORM, 0, 0, 1.6, 2}, .spacing = {2.1, 2.1}, .speed = 5, .spin = 5};
+        const dem_filling filling = {.region = {true, {0, 0}, {24, 24}},
+                                     .shapes = {DISC},
+                                     .shape_count = 1,
+                                     .sizes = {DEM_UNIFORM, 0, 0, 1.6, 2},
+                                     .spacing = {2.1, 2.1},
+                                     .speed = 5,
+                                     .spin = 5};
         uint64_t random = 3;
         dem_fill_lattice(&d, &filling, &random);
         dem_start(&d);
@@ -140,7 +148,8 @@ TEST(test_hertz_with_friction_gives_no_energy) {
             before = e.friction + d.account.tangential;
             assert_true(e.damping == 0);
         }
-        print_message("friction %g: lost %.3f, off by %.2g\n", friction, before / energy, total_energy(&d) / energy - 1);
+        print_message("friction %g: lost %.3f, off by %.2g\n", friction, before / energy,
+                      total_energy(&d) / energy - 1);
         assert_true(before > 0 && fabs(total_energy(&d) / energy - 1) < 2e-3);
         dem_destroy(&d);
     }
@@ -258,7 +267,8 @@ TEST(test_pendulum_in_a_bowl) {
         dem_wall wall = {.name = "bowl", .kind = DEM_BOX, .scale = 1};
         wall.shape = dem_add_chain(&d, "bowl", &bowl, 1, false);
         dem_add_wall(&d, wall);
-        const double length = 4, begin = 0.05, theory = 2 * PI * sqrt((rolls ? 1.5 : 1) * length) * (1 + begin * begin / 16);
+        const double length = 4, begin = 0.05,
+                     theory = 2 * PI * sqrt((rolls ? 1.5 : 1) * length) * (1 + begin * begin / 16);
         add_grain(&d, DISC, length * sin(begin), -length * cos(begin), 0, 0);
         dem_start(&d);
         double crossed[3] = {0}, last = 1;
