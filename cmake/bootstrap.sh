@@ -30,6 +30,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              biaxial tests, hoppers besides. apps/dem/README.md says what they mean
   python     the Python package: a wheel and pictures of its examples in out/python/, installed into the environment
              build/python and tested
+  bench-web  the example's engine in WebAssembly beside Rapier, Box2D 3, Planck, Matter and detect-collisions from npm, in node:
+             out/bench-web.md. Options are those of bindings/web/bench/bench.mjs
   web        the package for JavaScript, in out/web/, and its page: built, tested in node and in Chromium. web --serve shows the
              page on 127.0.0.1
   docs       the reference of the public headers, out/api/index.html
@@ -274,11 +276,12 @@ bench() {
     case "$*" in
     *--benchmark_filter=*) bench_rows asked "$@" ;;
     *)
-        bench_rows pairs --benchmark_filter='^(overlap|contact|manifold|boxes|pairs|plain|stay)' "$@"
+        bench_rows pairs --benchmark_filter='^(overlap|contact|manifold|boxes|pairs|plain|stay|worlds)' "$@"
         bench_rows rays --benchmark_filter='^ray' "$@"
         bench_rows regions --benchmark_filter='^region' "$@"
-        bench_rows nearest --benchmark_filter='^(nearest|distance)' "$@"
-        bench_rows index --benchmark_filter='^(index|impact|ground)' "$@"
+        bench_rows points --benchmark_filter='^(nearest|distance|inside|named)' "$@"
+        bench_rows outlines --benchmark_filter='^(hull|polyline)' "$@"
+        bench_rows index --benchmark_filter='^(index|move|impact|ground)' "$@"
         ;;
     esac
     say "plot"
@@ -554,14 +557,22 @@ make_wheel() {
     ls -l out/python
 }
 
-# TypeScript and what drives Chromium come from npm, for this build and its tests alone.
-web() {
-    require_packages $web_packages
+# npm_packages FOLDER WHERE: those of a lockfile, for a build, its tests or benchmarks alone.
+npm_packages() {
     command -v npm >/dev/null || require_packages npm
+    mkdir -p "$2"
+    cmp -s "$1/package-lock.json" "$2/installed.json" && return
+    cp "$1/package.json" "$1/package-lock.json" "$2"
+    npm ci --prefix "$2" --no-audit --no-fund || fail "npm does not have the packages of $1"
+    cp "$1/package-lock.json" "$2/installed.json"
+}
+
+# The package, packed in out/web, and the page, out/web/page.
+make_web() {
+    require_packages $web_packages
     build wasm32 narc_module narc_small narc_layouts narc_page
     say "build/web"
-    npm install --prefix build/web-tools --no-audit --no-fund --no-save typescript@5 puppeteer-core@24 ||
-        fail "npm has no typescript or puppeteer-core"
+    npm_packages bindings/web/tools build/web-tools
     rm -rf build/web out/web
     mkdir -p build/web out/web
     cp -r bindings/web/src bindings/web/tests bindings/web/page bindings/web/tsconfig.json build/web
@@ -573,8 +584,20 @@ web() {
     sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
     cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
     (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
-    mkdir out/web/page
-    cp build/web/page/index.html build/web/page/page.css build/web/page/page.js build/wasm32/page.wasm out/web/page
+    mkdir -p out/web/page/narc
+    cp build/web/page/*.html build/web/page/*.css build/web/page/*.js build/wasm32/page.wasm out/web/page
+    cp build/web/package/*.js build/web/package/*.wasm out/web/page/narc
+}
+
+bench_web() {
+    make_web
+    npm_packages bindings/web/bench build/web-bench
+    node bindings/web/bench/bench.mjs build/web-bench build/web/package out/web/page out "$@" || fail "the engines could not be compared"
+    say "written: out/bench-web.md"
+}
+
+web() {
+    make_web
     if [ "${1:-}" = --serve ]; then
         node bindings/web/tests/serve.mjs out/web/page
         return
@@ -612,6 +635,10 @@ coverage) coverage ;;
 python) make_wheel ;;
 docs) reference ;;
 web) web "${2:-}" ;;
+bench-web)
+    shift
+    bench_web "$@"
+    ;;
 bench)
     shift
     bench "$@"

@@ -37,6 +37,8 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                const narc_query *query, uint64_t *out_bits, narc_error *error) {
+    if (narc_overlap_few(shapes, bodies, pairs, query, out_bits))
+        return NARC_OK;
     narc_batch batch;
     const narc_kernel_table *kernels = NULL;
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);

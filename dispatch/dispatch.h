@@ -71,10 +71,12 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
 /* Row kernels for a few pairs, of which each is asked by itself: NARC_FEW at most. */
 narc_row_kernel narc_find_few_contacts, narc_find_few_manifolds, narc_find_few_separations;
 
-/* The rows of a call that has a few pairs, and a query that asks for nothing else than a margin: false if it is another call,
+/* The answers of a call that has a few pairs, and a query that asks for nothing else than a margin: false if it is another call,
  * or something is wrong, or the pair kernel leaves a pair. Then a batch is to be begun. */
 bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                      const narc_query *query, bool manifold, void *out_rows, size_t capacity, size_t *out_count);
+bool narc_overlap_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                      const narc_query *query, uint64_t *out_bits);
 
 /* The rows of narc_find_contacts() and narc_find_manifolds() of a batch that was begun. */
 narc_status narc_answer_contacts(narc_batch *batch, narc_contact *out_rows, size_t capacity, size_t *out_count,

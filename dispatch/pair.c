@@ -60,15 +60,28 @@ static size_t find_few(const narc_batch *batch, size_t first, size_t count, size
     return found;
 }
 
+/* Begins a batch of a call that has a few pairs, and a query that asks for nothing else than a margin and dense rows; its
+ * checks that are left are those of the bodies that are named. */
+static bool begin_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                      const narc_query *query, narc_batch *out) {
+    const narc_query *const q = out->query = query ? query : &defaults;
+    if (!narc_are_few(shapes, bodies, pairs) || q->selection.base || q->selection.stride || q->selection_count ||
+        q->first || q->count || q->row_stride || (query && narc_check_asking(query, NULL) != NARC_OK))
+        return false;
+    out->shapes = shapes;
+    out->a = bodies;
+    out->b = pairs->other_bodies ? pairs->other_bodies : bodies;
+    out->pairs = pairs;
+    return true;
+}
+
 bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                      const narc_query *query, bool manifold, void *out_rows, size_t capacity, size_t *out_count) {
     narc_batch batch; /* an initialiser would clear all of it */
-    const narc_query *const q = batch.query = query ? query : &defaults;
     narc_status status = NARC_OK;
-    if (!narc_are_few(shapes, bodies, pairs) || !out_rows || !out_count || capacity < pairs->count ||
-        q->selection.base || q->selection.stride || q->selection_count || q->first || q->count || q->row_stride ||
-        (query && narc_check_asking(query, NULL) != NARC_OK))
+    if (!out_rows || !out_count || !begin_few(shapes, bodies, pairs, query, &batch) || capacity < pairs->count)
         return false;
+    const narc_query *const q = batch.query;
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
     const size_t row_size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
     const bool own = narc_have_own_bodies(pairs);
@@ -76,10 +89,6 @@ bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     size_t found = 0;
     if (!kernels)
         return false;
-    batch.shapes = shapes;
-    batch.a = bodies;
-    batch.b = pairs->other_bodies ? pairs->other_bodies : bodies;
-    batch.pairs = pairs;
     batch.flat_sine = manifold ? narc_find_flat_sine(q->flat_angle) : -1;
     for (uint32_t k = 0; k < pairs->count; k++) {
         char *const row = (char *)rows + (q->dense ? k : found) * row_size;
@@ -94,6 +103,32 @@ bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     if (q->out_skipped)
         *q->out_skipped = 0;
     *out_count = found;
+    return true;
+}
+
+/* A pair overlaps where its contact with a margin of 0 has a row. */
+bool narc_overlap_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                      const narc_query *query, uint64_t *out_bits) {
+    narc_batch batch;
+    narc_status status = NARC_OK;
+    uint64_t bits = 0;
+    if (!out_bits || !begin_few(shapes, bodies, pairs, query, &batch))
+        return false;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    for (uint32_t k = 0; k < pairs->count; k++) {
+        narc_gathered pair;
+        narc_contact row;
+        if (!kernels || !narc_gather_pair(shapes, batch.a, batch.b, pairs, narc_have_own_bodies(pairs), k, &pair))
+            return false;
+        const narc_one_pair asked = {&batch, &pair.a, &pair.b, &row, 0, k, false};
+        const int answered = kernels->pair(&asked);
+        if (answered < 0)
+            return false;
+        bits |= (uint64_t)answered << k;
+    }
+    *out_bits = bits;
+    if (batch.query->out_skipped)
+        *batch.query->out_skipped = 0;
     return true;
 }
 

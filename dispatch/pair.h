@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * pair.h - the pairs of a call that has a few: they are gathered from the caller's columns and asked one by one. Internal.
+ * pair.h - calls that have a few items, whose checks are short: pairs are gathered from the caller's columns and asked one
+ * by one. Internal.
  */
 #ifndef NARC_PAIR_H
 #define NARC_PAIR_H
@@ -18,12 +19,24 @@ typedef struct narc_gathered {
     narc_body a, b;
 } narc_gathered;
 
+/* Are positions there, of a known type? */
+static inline bool narc_has_positions(const narc_position_column *x, const narc_position_column *y) {
+    return x->base && y->base && x->precision == y->precision &&
+           (x->precision == NARC_FLOAT32 || x->precision == NARC_FLOAT64);
+}
+
 /* Has a set all columns, and nothing that this version does not know? */
 static inline bool narc_has_columns(const narc_bodies *set) {
-    const bool there = set->x.base && set->y.base && set->cosine.base && set->sine.base && set->shape.base;
-    const bool known =
-        set->x.precision == set->y.precision && (set->x.precision == NARC_FLOAT32 || set->x.precision == NARC_FLOAT64);
-    return there && known && !set->reserved[0] && !set->reserved[1];
+    return narc_has_positions(&set->x, &set->y) && set->cosine.base && set->sine.base && set->shape.base &&
+           !set->reserved[0] && !set->reserved[1];
+}
+
+/* Has a call one ray or point, whose body is there? Else the call's checks say what is wrong. */
+static inline bool narc_is_one(const narc_shapes *shapes, const narc_bodies *bodies, size_t count,
+                               const narc_index_column *body) {
+    const size_t named = body && body->base ? narc_index_at(*body, 0) : 0;
+    return count == 1 && narc_has_columns(bodies) && named < bodies->count &&
+           narc_index_at(bodies->shape, named) < shapes->count;
 }
 
 /* Does a call have a few pairs, whose columns are as most are? Else a batch is begun, which says what is wrong. */

@@ -50,6 +50,7 @@ typedef struct circle {
 typedef struct edge {
     circle before, behind;
     narc_point normal; /* outwards */
+    bool endless;      /* a half-plane's */
 } edge;
 
 static size_t count_arcs(const narc_shape_header *header) {
@@ -107,11 +108,15 @@ static circle place_arc(const placed *p, size_t arc) {
 }
 
 static edge place_edge(const placed *p, size_t number) {
-    edge e = {.before = place_arc(p, number > 0 ? number - 1 : p->count - 1), .behind = place_arc(p, number)};
+    edge e = {.endless = narc_is_plane(p->header),
+              .before = place_arc(p, number > 0 ? number - 1 : p->count - 1),
+              .behind = place_arc(p, number)};
     const narc_point u = narc_subtract(e.behind.center, e.before.center);
     const double square = narc_dot(u, u), rise = e.before.radius - e.behind.radius;
     const double length = sqrt(fmax(square - rise * rise, 0));
-    e.normal = scale_by(1 / square, narc_add_scaled(scale_by(rise, u), length, (narc_point){u.y, -u.x}));
+    e.normal = e.endless
+                   ? scale_by(1 / p->scale, (narc_point){-p->turn.y, p->turn.x}) /* also where centres are far away */
+                   : scale_by(1 / square, narc_add_scaled(scale_by(rise, u), length, (narc_point){u.y, -u.x}));
     return e;
 }
 
@@ -154,14 +159,16 @@ static double find_height(const edge *a, const edge *b, narc_point n) {
 static void find_ends(const edge *e, narc_point tangent, double *out_ends) {
     const double before = narc_dot(tangent, narc_add_scaled(e->before.center, e->before.radius, e->normal));
     const double behind = narc_dot(tangent, narc_add_scaled(e->behind.center, e->behind.radius, e->normal));
-    out_ends[0] = fmin(before, behind);
-    out_ends[1] = fmax(before, behind);
+    out_ends[0] = e->endless ? -INFINITY : fmin(before, behind);
+    out_ends[1] = e->endless ? INFINITY : fmax(before, behind);
 }
 
-/* The separation is the larger one along both normals, the point the middle of the common stretch. */
+/* The separation is the larger one along both normals, or along that of an edge without end, the point the middle of the
+ * common stretch. */
 static narc_refined_contact meet_edges(edge a, edge b) {
     const narc_point opposite = scale_by(-1, b.normal);
-    const double along_a = find_height(&a, &b, a.normal), along_b = find_height(&a, &b, opposite);
+    const double along_a = b.endless ? -INFINITY : find_height(&a, &b, a.normal),
+                 along_b = a.endless ? -INFINITY : find_height(&a, &b, opposite);
     const narc_point n = along_a >= along_b ? a.normal : opposite, tangent = {-n.y, n.x};
     const double separation = fmax(along_a, along_b);
     const double top =

@@ -145,6 +145,35 @@ static void build_bullets(world *w, uint64_t seed) {
     }
 }
 
+/* A plate of 1 cm, and eight shots of 400 m/s from either side, that fly on, and would hit each other, if one passed. */
+static void build_plates(world *w, uint64_t seed) {
+    add_block(w, 24, 1, 0, -0.5f);
+    add_block(w, 0.01, 7, 0, 3.5f);
+    for (int k = 0; k < 16; k++) {
+        const float side = k % 2 ? 1 : -1;
+        world_body body = make_body(add_kind(w, k % 8, 0.4), 10 * side, 0.6f + 0.8f * (float)(k / 2), 0);
+        body.velocity = (vec){-400 * side, random_between(&seed, -1, 1)};
+        body.spin = random_between(&seed, -30, 30);
+        body.restitution = 0.02f;
+        add_body(w, body);
+    }
+}
+
+/* Every two seconds they fly again. */
+static narc_status act_plates(world *w, long step) {
+    for (size_t k = 2; k < w->body_count && step % 120 == 0; k++) {
+        world_body *const body = &w->bodies[k];
+        const uint32_t shape = body->shape;
+        if (body->id > 18) /* what somebody has added */
+            continue;
+        body->position = body->start;
+        body->velocity = (vec){body->start.x > 0 ? -400 : 400, 0};
+        body->spin = 20 - 5 * (float)(shape % 8);
+        world_wake_body(body);
+    }
+    return NARC_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------ rain */
 
 /* A sensor below a table, and the shapes that fall on it. */
@@ -204,13 +233,27 @@ static world_body *add_ball(world *w, double radius, double x, double y, float f
     return &w->bodies[w->body_count - 1];
 }
 
+/* A car at rest on the ground at (x, y): its hull, then its wheels. The scene's first bodies. */
+void add_car(world *w, double x, double y) {
+    const narc_point hull[] = {{-1.2, -0.3}, {1.2, -0.3}, {1.3, 0}, {0.5, 0.5}, {-0.7, 0.5}, {-1.3, 0.1}};
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_build_polygon(hull, sizeof hull / sizeof hull[0], 0.1, arcs, &count, &w->error);
+    add_body(w, make_body(add_shape(w, arcs, count), (float)x, (float)y + 0.9f, 0));
+    for (int k = 0; k < 2; k++)
+        add_ball(w, 0.4, x + (k ? 0.85 : -0.85), y + 0.4, 1);
+    for (int k = 0; k < 3; k++) {
+        w->bodies[k].owner = 0;
+        w->bodies[k].velocity.x = 5;
+    }
+    for (int k = 1; k < 3 && w->error.status == NARC_OK; k++)
+        world_pin(w, &w->bodies[0], &w->bodies[k], w->bodies[k].position);
+}
+
 /* Hills as {angle of the slopes, radius of the valleys, radius of the crest}, and a car. */
 static void build_car(world *w, uint64_t seed) {
     static const double hills[][3] = {{0.5, 4, 7}, {0.7, 3, 2.5}, {0.5, 4, 4}};
-    const narc_point hull[] = {{-1.2, -0.3}, {1.2, -0.3}, {1.3, 0}, {0.5, 0.5}, {-0.7, 0.5}, {-1.3, 0.1}};
     track t = {.x = 0, .normal = pi / 2};
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
     put_arc(&t, 0, 0);
     put_edge(&t, 3);
     for (size_t k = 0; k < sizeof hills / sizeof hills[0]; k++) {
@@ -222,21 +265,11 @@ static void build_car(world *w, uint64_t seed) {
     put_edge(&t, 4);
     put_arc(&t, 0, 0);
     add_ground(w, &t);
-    narc_build_polygon(hull, sizeof hull / sizeof hull[0], 0.1, arcs, &count, &w->error);
-    const float x = (float)t.x + 2 + random_between(&seed, 0, 0.1f);
-    add_body(w, make_body(add_shape(w, arcs, count), x, 0.9f, 0));
-    for (int k = 0; k < 2; k++)
-        add_ball(w, 0.4, (double)x + (k ? 0.85 : -0.85), 0.4, 1);
-    for (int k = 0; k < 3; k++) {
-        w->bodies[k].owner = 0;
-        w->bodies[k].velocity.x = 5;
-    }
-    for (int k = 1; k < 3 && w->error.status == NARC_OK; k++)
-        world_pin(w, &w->bodies[0], &w->bodies[k], w->bodies[k].position);
+    add_car(w, (double)((float)t.x + 2 + random_between(&seed, 0, 0.1f)), 0);
 }
 
 /* The motor turns the wheels against the car, with at most 6 N m each, towards 6 m/s. */
-static narc_status act_car(world *w, long step) {
+narc_status act_car(world *w, long step) {
     const float most = 6 * w->settings.time_step, wanted = -6 / 0.4f;
     for (int k = 1; k < 3; k++) {
         world_body *wheel = &w->bodies[k];
@@ -406,6 +439,7 @@ const scene scenes[] = {
     {"well", "1,000 bodies fall into a half circle", 20, 2048, build_well, NULL},
     {"wheels", "an n-arc of eight arcs and a polygon of eight corners roll", 6, 64, build_wheels, NULL},
     {"bullets", "120 m/s against a thin wall", 3, 16, build_bullets, NULL},
+    {"plates", "400 m/s against a plate of 1 cm", 6, 32, build_plates, act_plates},
     {"rain", "bodies come, pile up on a table, fall off, and go", 60, 256, build_rain, act_rain},
     {"car", "drives over hills", 6, 128, build_car, act_car},
     {"looping", "a marble comes through it, another one does not", 3.2f, 64, build_looping, NULL},

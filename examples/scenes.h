@@ -39,6 +39,10 @@ void add_platform(world *w, double left, double right, double height);
 /* A looping of radius 2 around (x, 2), a ramp on its left, and on the ramp a marble, so far above its lowest place. */
 void add_looping(world *w, double x, double height);
 
+/* A car at rest on the ground at (x, y): its hull, then its wheels, the scene's first bodies; and its motor. */
+void add_car(world *w, double x, double y);
+narc_status act_car(world *w, long step);
+
 typedef struct scene_state {
     double energy;       /* J */
     double displacement; /* the largest distance of a body from where it was added, m */

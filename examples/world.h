@@ -204,6 +204,10 @@ static inline vec scale(float s, vec a) { return (vec){s * a.x, s * a.y}; }
 static inline float dot(vec a, vec b) { return a.x * b.x + a.y * b.y; }
 static inline float cross(vec a, vec b) { return a.x * b.y - a.y * b.x; }
 static inline float length(vec a) { return sqrtf(dot(a, a)); }
+/* Not fminf() and fmaxf(): where NaN has to be minded these are calls. */
+static inline float smaller(float a, float b) { return a < b ? a : b; }
+static inline float larger(float a, float b) { return a > b ? a : b; }
+
 static inline vec quarter_turn(vec a) { return (vec){-a.y, a.x}; }
 
 /* From a body's axes to the world's, and back. */

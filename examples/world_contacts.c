@@ -55,7 +55,7 @@ narc_status world_update_contacts(world *w) {
  * such a pair could meet in this step it has a contact now. */
 static void find_depth(const world *w, world_contact *c) {
     const float way = length(subtract(c->b->motion, c->a->motion)) + c->a->turn_reach + c->b->turn_reach;
-    const float depth = 0.25f * fminf(w->shapes[c->a->shape].thickness, w->shapes[c->b->shape].thickness);
+    const float depth = 0.25f * smaller(w->shapes[c->a->shape].thickness, w->shapes[c->b->shape].thickness);
     c->depth = way > depth ? depth : 0;
     c->margin = w->settings.margin + (way > depth ? way : 0);
 }
@@ -94,7 +94,7 @@ static void make_point(const world_contact *c, const narc_manifold *m, unsigned 
 static void make_contact(world_contact *c, const narc_manifold *row, const narc_manifold *more, size_t more_count) {
     const world_point last[2] = {c->points[0], c->points[1]};
     c->friction = sqrtf(c->a->friction * c->b->friction);
-    c->restitution = fmaxf(c->a->restitution, c->b->restitution);
+    c->restitution = larger(c->a->restitution, c->b->restitution);
     c->point_count = 0;
     for (size_t k = 0; k <= more_count; k++, row = more++)
         for (unsigned i = 0; i < row->count; i++) {
@@ -124,7 +124,7 @@ static bool passes(const world *w, const world_contact *c, const narc_manifold *
         return false;
     for (size_t k = 0; k <= more_count; k++, row = more++)
         for (unsigned i = 0; i < row->count; i++)
-            nearest = fminf(nearest, row->point[i].separation);
+            nearest = smaller(nearest, row->point[i].separation);
     const bool is_new = c->point_count == 0 && (dot(motion, normal) > 0 || nearest < -w->settings.margin - way);
     return c->a->drops || c->b->drops || ((c->passes || is_new) && nearest < 0);
 }
@@ -132,7 +132,8 @@ static bool passes(const world *w, const world_contact *c, const narc_manifold *
 /* Has the normal of a row that followed its bodies turned? They turned together, as in a column that falls over. */
 static bool has_turned(const world *w, const world_contact *c, const narc_manifold *row) {
     const vec turned = subtract((vec){row->normal_x, row->normal_y}, c->points[0].normal);
-    return length(turned) * fminf(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach) >= w->settings.recycling;
+    return length(turned) * smaller(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach) >=
+           w->settings.recycling;
 }
 
 /* A contact whose row was kept, or followed its bodies, serves again: normal and anchors stay as they are in world axes, and
@@ -179,9 +180,9 @@ narc_status world_stop_bullets(world *w) {
         const uint32_t slot = w->result->order[k];
         const world_contact *const c = world_contact_of(w, k);
         const uint32_t pair[2] = {w->result->pairs.a.base[slot], w->result->pairs.b.base[slot]};
-        const float deepest = fminf(c->points[0].separation, c->points[1].separation);
+        const float deepest = smaller(c->points[0].separation, c->points[1].separation);
         const narc_pairs one = {.count = 1, .a = {&pair[0], 0}, .b = {&pair[1], 0}};
-        const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest),
+        const narc_cast_options options = {.target = -larger(c->depth, 0.03f * c->depth - deepest),
                                            .tolerance = 0.01f * c->depth,
                                            .front_only = w->platform_count > 0};
         narc_impact hit = {.count = 0};
@@ -189,7 +190,7 @@ narc_status world_stop_bullets(world *w) {
             narc_cast_pairs(w->store, &before, &motions, &one, NULL, &options, &hit, 1, &w->error) != NARC_OK)
             return w->error.status;
         if (hit.count > 0)
-            c->a->stop = c->b->stop = fminf(hit.fraction, fminf(c->a->stop, c->b->stop));
+            c->a->stop = c->b->stop = smaller(hit.fraction, smaller(c->a->stop, c->b->stop));
     }
     for (world_body *body = w->bodies; body < end; body++)
         if (body->stop < 1) {

@@ -34,8 +34,8 @@ void world_list_events(world *w) {
         const unsigned kinds = c->a->kind | c->b->kind;
         float nearest = INFINITY, pressed = 0;
         for (unsigned i = 0; i < c->point_count; i++) {
-            nearest = fminf(nearest, c->points[i].separation);
-            pressed = fmaxf(pressed, c->points[i].greatest_impulse);
+            nearest = smaller(nearest, c->points[i].separation);
+            pressed = larger(pressed, c->points[i].greatest_impulse);
         }
         if (kinds & NARC_SENSOR)
             set_touching(w, c, w->result->state[w->result->order[k]] & NARC_TOUCHING, true);
@@ -82,7 +82,7 @@ void world_sleep(world *w) {
         join(w->joints[k].a, w->joints[k].b);
     for (world_body *body = w->bodies; body < end; body++) { /* a root's rest: that of its island's least quiet body */
         world_body *const root = find_root(body);
-        root->rest = fminf(root->rest, body->rest);
+        root->rest = smaller(root->rest, body->rest);
     }
     for (world_body *body = w->bodies; body < end; body++) {
         if (body->inverse_mass == 0)

@@ -59,10 +59,10 @@ static void apply_rotation(const world_contact *c, float impulse) {
 
 /* The impulse along the normal becomes another one, which pushes or is 0. */
 static void change_normal_impulse(const world_contact *c, world_point *p, float change) {
-    const float impulse = fmaxf(0, p->normal_impulse + change);
+    const float impulse = larger(0, p->normal_impulse + change);
     apply(c, p, scale(impulse - p->normal_impulse, p->normal));
     p->normal_impulse = impulse;
-    p->greatest_impulse = fmaxf(p->greatest_impulse, impulse);
+    p->greatest_impulse = larger(p->greatest_impulse, impulse);
 }
 
 static void prepare(world_contact *c) {
@@ -134,7 +134,7 @@ static void solve_joints(world *w, const spring *soft) {
 static void solve_rolling(world_contact *c, float arm) {
     const float limit = arm * (c->points[0].normal_impulse + c->points[1].normal_impulse);
     const float spin = c->b->spin - c->a->spin, inverse_inertia = c->a->inverse_inertia + c->b->inverse_inertia;
-    const float impulse = fmaxf(-limit, fminf(c->rolling_impulse - spin / inverse_inertia, limit));
+    const float impulse = larger(-limit, smaller(c->rolling_impulse - spin / inverse_inertia, limit));
     apply_rotation(c, impulse - c->rolling_impulse);
     c->rolling_impulse = impulse;
 }
@@ -144,7 +144,7 @@ static void solve_friction(const world_contact *c, world_point *p) {
     const vec tangent = quarter_turn(p->normal);
     const float limit = c->friction * p->normal_impulse;
     const float wanted = p->tangent_impulse - p->tangent_mass * dot(find_velocity(c, p), tangent);
-    const float impulse = fmaxf(-limit, fminf(wanted, limit));
+    const float impulse = larger(-limit, smaller(wanted, limit));
     apply(c, p, scale(impulse - p->tangent_impulse, tangent));
     p->tangent_impulse = impulse;
 }
@@ -156,7 +156,7 @@ static void solve_normal(const world_contact *c, world_point *p, const spring *s
     if (separation > 0)
         change_normal_impulse(c, p, -p->normal_mass * (speed + separation / time));
     else {
-        const float wanted = speed + fmaxf(soft->rate * separation, -greatest_push);
+        const float wanted = speed + larger(soft->rate * separation, -greatest_push);
         change_normal_impulse(c, p, -p->normal_mass * soft->strength * wanted - soft->loss * p->normal_impulse);
     }
 }
@@ -185,7 +185,7 @@ static void integrate_velocities(world *w, float time) {
         if (body->inverse_mass == 0 || body->kind & NARC_ASLEEP)
             continue;
         body->velocity = add(body->velocity, scale(time, w->settings.gravity));
-        body->spin = fmaxf(-limit, fminf(body->spin, limit));
+        body->spin = larger(-limit, smaller(body->spin, limit));
     }
 }
 

@@ -474,6 +474,7 @@ class shapes : public detail::owner<narc_shapes, narc_create_shapes, narc_destro
     result<uint32_t> add(const result<outline> &shape) {
         return shape ? add(shape.value()) : result<uint32_t>(shape.error());
     }
+    result<uint32_t> add_half_plane() { return detail::ask<uint32_t>(narc_add_half_plane, get()); }
     result<void> add_at(uint32_t index, arcs shape) {
         return detail::ask<void>(narc_add_shape_at, get(), index, shape.data(), shape.size());
     }

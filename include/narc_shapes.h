@@ -376,6 +376,7 @@ enum {
     NARC_SHAPE_CENTERS_INSIDE = 8, /* every arc's centre lies in the shape */
     NARC_SHAPE_RUN = 16,           /* a part of a convex run of a chain (narc_chains.h) */
     NARC_SHAPE_CONCAVE = 32,       /* a concave arc of a chain */
+    NARC_SHAPE_HALF_PLANE = 64,    /* narc_add_half_plane(); no other flag */
 };
 
 /* An empty store. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY. */
@@ -398,6 +399,15 @@ NARC_API narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count
  * is unchanged then. */
 NARC_API narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
                                     narc_error *error);
+
+/* Adds a half-plane: all that is not above its own x axis, ground without end. A body's position and rotation place it, its
+ * scale says nothing, but must be in range. Contacts, manifolds, separations, overlaps, casts, rays, points, boxes and
+ * indices take it as any other body. It touches with edge 0, along its normal (0, 1); what is 1e12 deep or deeper has no
+ * answer. Errors count from the nearest place of the boundary, wherever its position is. Its boxes reach as far as floats
+ * do, but where its sides are those of the axes. It has no arcs (narc_get_arcs() returns 0), no box about its origin and no
+ * mass; with another half-plane or a piece of a chain it has no contact; in a cast it may move, but not turn; no method of
+ * narc_methods.h takes it. There is one in a store, as equal shapes are one. Errors: those of narc_add_shape(). */
+NARC_API narc_status narc_add_half_plane(narc_shapes *shapes, uint32_t *out_shape, narc_error *error);
 
 /* Validates a shape and puts it at an index of the caller's choice, below NARC_MAX_SHAPES, where there is none: also if
  * the store has an equal one, which keeps its own index. (narc_add_shape() of one more returns one of the two.) Indices

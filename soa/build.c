@@ -162,13 +162,14 @@ static narc_status check_polygon(const narc_point *points, size_t count, double 
 static narc_status round_corners(const narc_point *points, const side *sides, size_t count, double radius, double inset,
                                  narc_arc *out_arcs, size_t *out_count, narc_error *error) {
     narc_arc arcs[NARC_MAX_ARCS];
+    double start = narc_atan2(sides[count - 1].normal_y, sides[count - 1].normal_x);
     for (size_t i = 0; i < count; i++) {
         const side *before = &sides[(i + count - 1) % count], *after = &sides[i];
-        double move = inset / (1 + narc_cos(after->turn));
-        arcs[i] =
-            (narc_arc){points[i].x - move * (before->normal_x + after->normal_x),
-                       points[i].y - move * (before->normal_y + after->normal_y), radius,
-                       narc_atan2(before->normal_y, before->normal_x), narc_atan2(after->normal_y, after->normal_x)};
+        const double move = inset > 0 ? inset / (1 + narc_cos(after->turn)) : 0;
+        const double end = narc_atan2(after->normal_y, after->normal_x);
+        arcs[i] = (narc_arc){points[i].x - move * (before->normal_x + after->normal_x),
+                             points[i].y - move * (before->normal_y + after->normal_y), radius, start, end};
+        start = end;
     }
     return finish(arcs, count, out_arcs, out_count, error);
 }

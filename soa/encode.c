@@ -268,6 +268,22 @@ narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const n
     return NARC_OK;
 }
 
+narc_status narc_encode_plane(narc_encoded_shape *out_shape, narc_error *error) {
+    static const narc_point corners[] = {{-1, 0}, {-1, -1}, {1, -1}, {1, 0}}; /* edge 0 is the boundary */
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    if (!NARC_PIECES)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "this module has no half-planes");
+    narc_status status = narc_build_polygon(corners, sizeof corners / sizeof *corners, 0, arcs, &count, error);
+    if (status == NARC_OK)
+        status = narc_encode_shape(arcs, count, out_shape, error);
+    if (status == NARC_OK) {
+        out_shape->header.first_arc |= NARC_PIECE_PLANE;
+        *find_solid(out_shape) = (narc_solid){0};
+    }
+    return status;
+}
+
 static bool has_same_bits(float a, float b) {
     uint32_t bits[2];
     memcpy(&bits[0], &a, sizeof a);
@@ -480,6 +496,22 @@ static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error)
     return NARC_OK;
 }
 
+/* There is one half-plane. */
+static narc_status restore_plane(narc_encoded_shape *shape, narc_error *error) {
+    narc_encoded_shape plane;
+    const size_t first = offsetof(narc_shape_header, first_record) + sizeof(uint32_t);
+    const narc_status status = narc_encode_plane(&plane, error);
+    if (status != NARC_OK)
+        return status;
+    const size_t angles = narc_angle_records(plane.header.count);
+    memcpy(shape->records, plane.records, angles * sizeof *plane.records);
+    if (memcmp((const char *)&shape->header + first, (const char *)&plane.header + first,
+               sizeof plane.header - first) ||
+        memcmp(shape->records, plane.records, narc_count_records(&plane.header) * sizeof *plane.records))
+        return fail_stored(error, "a half-plane that is none");
+    return NARC_OK;
+}
+
 /* Are both ends and the far side of a closed run corners? */
 static bool is_closed_run(const narc_outline *o) {
     bool corners = o->count >= 6;
@@ -494,7 +526,9 @@ narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
     double extent = 0;
     narc_shape_header header = shape->header;
     const uint8_t mark = NARC_PIECES ? header.first_arc & NARC_PIECE_RUN : 0;
-    if (NARC_PIECES && header.first_arc & NARC_PIECE_CONCAVE)
+    if (narc_is_plane(&header))
+        return restore_plane(shape, error);
+    if (narc_is_concave(&header))
         return restore_concave(shape, error);
     header.first_arc ^= mark;
     if (header.count < 2 || header.count > NARC_MAX_ARCS || header.first_arc >= header.count)

@@ -27,6 +27,9 @@ narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_solid
 narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_solid *solid,
                                 narc_encoded_shape *out_shape, narc_error *error);
 
+/* A half-plane. NARC_ERROR_ARGUMENT: the small module has none. */
+narc_status narc_encode_plane(narc_encoded_shape *out_shape, narc_error *error);
+
 /* The form of a shape that is a box or a capsule, else one with info 0. */
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape);
 

@@ -15,7 +15,7 @@ enum narc_front { NARC_FRONT_NONE, NARC_FRONT_POINT, NARC_FRONT_ARC };
 
 static inline enum narc_front narc_find_front(const narc_shape_header *header, size_t stored) {
     const size_t count = header->count, arc = (stored + (header->first_arc & NARC_FIRST_ARC)) % count;
-    if (!(header->first_arc & NARC_PIECE_RUN) || (arc >= 1 && arc + 6 <= count))
+    if ((header->first_arc & NARC_PIECE_MARKS) != NARC_PIECE_RUN || (arc >= 1 && arc + 6 <= count))
         return NARC_FRONT_ARC;
     return arc == 0 || arc + 5 == count ? NARC_FRONT_POINT : NARC_FRONT_NONE;
 }

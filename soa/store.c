@@ -258,6 +258,12 @@ static void note_change(narc_shapes *shapes, uint32_t shape, uint32_t hash) {
     shapes->history = mix(shapes->history, change, sizeof change);
 }
 
+/* A shape comes (1) or goes (-1). */
+static void count_piece(narc_shapes *shapes, const narc_shape_header *header, int by) {
+    shapes->piece_count += narc_is_piece(header) ? (size_t)by : 0;
+    shapes->plane_count += narc_is_plane(header) ? (size_t)by : 0;
+}
+
 /* Keeps the form of a shape's box, or that it is none. */
 static void put_box(narc_shapes *shapes, uint32_t shape, narc_box_form box) {
     shapes->box_count += narc_has_form(&box) - (size_t)narc_has_form(&shapes->boxes[shape]);
@@ -293,7 +299,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     }
     narc_open_indices(shapes, count);
     if (narc_has_shape(shapes, shape)) {
-        shapes->piece_count -= narc_is_piece(&shapes->headers[shape]);
+        count_piece(shapes, &shapes->headers[shape], -1);
         unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
     } else {
         unlink_shape(shapes, shape, &shapes->last_removed);
@@ -301,7 +307,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     }
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
-    shapes->piece_count += narc_is_piece(&encoded->header);
+    count_piece(shapes, &encoded->header, 1);
     if (shapes->largest_ratio < encoded->header.extent_ratio)
         shapes->largest_ratio = encoded->header.extent_ratio;
     put_box(shapes, shape, narc_find_box_form(encoded));
@@ -336,6 +342,14 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     if (!shapes)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "shapes is NULL");
     const narc_status status = narc_encode_shape(arcs, count, &encoded, error);
+    return status == NARC_OK ? narc_share_encoded_shape(shapes, &encoded, out_shape, error) : status;
+}
+
+narc_status narc_add_half_plane(narc_shapes *shapes, uint32_t *out_shape, narc_error *error) {
+    narc_encoded_shape encoded;
+    if (!shapes)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "shapes is NULL");
+    const narc_status status = narc_encode_plane(&encoded, error);
     return status == NARC_OK ? narc_share_encoded_shape(shapes, &encoded, out_shape, error) : status;
 }
 
@@ -386,7 +400,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
         return status;
     narc_shape_header *header = &shapes->headers[shape];
     shapes->used_records -= narc_count_records(header);
-    shapes->piece_count -= narc_is_piece(header);
+    count_piece(shapes, header, -1);
     header->bound_radius = 0;
     put_box(shapes, shape, (narc_box_form){.info = 0});
     unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
@@ -410,6 +424,8 @@ unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
         return 0;
     const narc_shape_header *header = &shapes->headers[shape];
     const unsigned marks = NARC_PIECES ? (header->first_arc & NARC_PIECE_MARKS) >> 2 : 0;
+    if (narc_is_plane(header))
+        return NARC_SHAPE_HALF_PLANE;
     return header->flags % (1u << NARC_SIZE_CLASS_SHIFT) | marks;
 }
 
@@ -418,9 +434,8 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
         return 0;
     narc_shape_header header = shapes->headers[shape];
     const narc_record *arcs = narc_arcs_of(shapes, &header);
-    const bool is_circle = header.flags & NARC_SHAPE_CIRCLE,
-               is_concave = NARC_PIECES && header.first_arc & NARC_PIECE_CONCAVE;
-    size_t count = is_circle ? 1 : header.count;
+    const bool is_circle = header.flags & NARC_SHAPE_CIRCLE, is_concave = narc_is_concave(&header);
+    size_t count = is_circle ? 1 : narc_is_plane(&header) ? 0 : header.count;
     header.first_arc = NARC_PIECES ? header.first_arc & NARC_FIRST_ARC : header.first_arc;
     for (size_t i = 0; out_arcs && i < count; i++) {
         const narc_stored_arc *r = &arcs[(i + header.count - header.first_arc) % header.count].arc;
@@ -470,7 +485,7 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
     const narc_record *arcs = narc_arcs_of(shapes, header);
     double length = narc_hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
     double factor = (double)scale;
-    if (!(length > 0) || !isfinite(length))
+    if (!(length > 0) || !isfinite(length) || narc_is_plane(header))
         return false;
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
     *out_aabb = (narc_aabb){.min_x = factor * -find_stored_height(header, arcs, -c, s),

@@ -71,24 +71,37 @@ typedef struct narc_shape_header {
  *                       bottom of a valley; `start` and `end` are the outward normals (they point to the centre) at its
  *                       ends, so that end lies counter-clockwise of start by less than half a turn, and so a point of
  *                       the arc is centre + radius * normal. The circle around it is that of the arc alone, the inner
- *                       radius is -infinity, the extent ratio that of centre and radius. */
+ *                       radius is -infinity, the extent ratio that of centre and radius.
+ *   NARC_PIECE_PLANE    Both marks, of no chain: a half-plane, all that is not above its own x axis. What is stored is the
+ *                       box below that from -1 to 1 whose side edge 0 is; of a half-plane it is a part as good as one of
+ *                       any other size, or further along (kernels/base/planes.inl). */
 #define NARC_PIECE_RUN     0x40u
 #define NARC_PIECE_CONCAVE 0x80u
-#define NARC_PIECE_MARKS   (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)
+#define NARC_PIECE_PLANE   0xc0u
+#define NARC_PIECE_MARKS   0xc0u
 #define NARC_FIRST_ARC     0x3fu
 
 /* Is a feature, as rows have it, one that may touch? Of a run those of its closure may not. */
 static inline bool narc_touches(const narc_shape_header *header, unsigned feature) {
     const unsigned number = feature & (NARC_FEATURE_EDGE - 1), behind = feature & NARC_FEATURE_EDGE ? 5 : 6;
-    return !(header->first_arc & NARC_PIECE_RUN) || (number > 0 && number + behind <= header->count);
+    return (header->first_arc & NARC_PIECE_MARKS) != NARC_PIECE_RUN || (number > 0 && number + behind <= header->count);
 }
 
+/* A half-plane is one, too. */
 static inline bool narc_is_piece(const narc_shape_header *header) {
     return NARC_PIECES && (header->first_arc & NARC_PIECE_MARKS) != 0;
 }
 
 static inline bool narc_is_concave(const narc_shape_header *header) {
-    return NARC_PIECES && (header->first_arc & NARC_PIECE_CONCAVE) != 0;
+    return NARC_PIECES && (header->first_arc & NARC_PIECE_MARKS) == NARC_PIECE_CONCAVE;
+}
+
+static inline bool narc_is_plane(const narc_shape_header *header) {
+    return NARC_PIECES && (header->first_arc & NARC_PIECE_MARKS) == NARC_PIECE_PLANE;
+}
+
+static inline bool narc_is_of_chain(const narc_shape_header *header) {
+    return narc_is_piece(header) && !narc_is_plane(header);
 }
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
@@ -199,7 +212,7 @@ struct narc_shapes {
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
     size_t box_count;                     /* shapes with a form of a box, a capsule or a circle */
-    size_t piece_count;                   /* shapes that are pieces of chains */
+    size_t piece_count, plane_count;      /* shapes that are pieces of chains or half-planes, and the latter */
     uint8_t largest_ratio;                /* the largest extent_ratio that a shape has had */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */

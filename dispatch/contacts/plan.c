@@ -35,17 +35,18 @@ float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b) {
     return s->step->margin + (ahead.base ? narc_float_at(ahead, a) + narc_float_at(ahead, b) : 0);
 }
 
-/* Twice 2^-18 of a body's extent; infinite where it is not known. */
+/* Twice 2^-18 of a body's extent; infinite where it is not known, or has no end. */
 static float find_room(const narc_contact_step *s, uint32_t body) {
     const narc_shape_header *const header = header_of(s, body);
     const float scale = narc_float_or(s->step->bodies->scale, body, 1);
-    return header->extent_ratio == UINT8_MAX ? INFINITY
-                                             : 0x1p-17f * (float)header->extent_ratio * header->bound_radius * scale;
+    return header->extent_ratio == UINT8_MAX || narc_is_plane(header)
+               ? INFINITY
+               : 0x1p-17f * (float)header->extent_ratio * header->bound_radius * scale;
 }
 
 static uint8_t find_ground(const narc_contact_step *s, uint32_t body) {
     const bool of_run = s->step->run.base && narc_index_at(s->step->run, body) != NARC_NO_RUN;
-    return (uint8_t)((narc_is_piece(header_of(s, body)) ? NARC_IS_PIECE : 0) | (of_run ? NARC_IS_OF_RUN : 0));
+    return (uint8_t)((narc_is_of_chain(header_of(s, body)) ? NARC_IS_PIECE : 0) | (of_run ? NARC_IS_OF_RUN : 0));
 }
 
 /* What is looked at of each pair, in one place: the loop over all pairs is as long as much of what follows. */

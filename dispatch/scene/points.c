@@ -6,6 +6,7 @@
 #include "dispatch.h"
 #include "error.h"
 #include "index.h"
+#include "pair.h"
 
 #include <math.h>
 
@@ -37,6 +38,19 @@ static narc_status check_points(const narc_shapes *shapes, const narc_bodies *bo
                                                   : status;
 }
 
+/* A batch of one point, if nothing is wrong. */
+static bool begin_one(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                      const narc_index_column *body, narc_point_batch *out) {
+    if (!shapes || !bodies || !points || !narc_is_one(shapes, bodies, points->count, body) ||
+        !narc_has_positions(&points->x, &points->y) || points->reserved[0] || points->reserved[1])
+        return false;
+    out->shapes = shapes;
+    out->bodies = bodies;
+    out->points = points;
+    out->body = body ? *body : (narc_index_column){NULL, 0};
+    return true;
+}
+
 /* The kernels for so many points. */
 static const narc_kernel_table *find_kernels(size_t count, narc_status *out_status, narc_error *error) {
     const narc_kernel_table *const kernels = narc_kernels(out_status, error);
@@ -48,7 +62,17 @@ static const narc_kernel_table *find_kernels(size_t count, narc_status *out_stat
 narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                 const narc_index_column *body, const narc_workers *workers, narc_distance *out_rows,
                                 narc_error *error) {
-    narc_status status = check_points(shapes, bodies, points, error);
+    narc_status status = NARC_OK;
+    narc_point_batch one; /* an initialiser would clear all of it */
+    if (out_rows && begin_one(shapes, bodies, points, body, &one)) {
+        const narc_kernel_table *const kernels = find_kernels(1, &status, error);
+        if (!kernels)
+            return status;
+        one.out = out_rows;
+        kernels->distance(&one, 0, 1);
+        return NARC_OK;
+    }
+    status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
         status = narc_check_set(bodies, error);
     if (status != NARC_OK || points->count == 0)
@@ -79,7 +103,16 @@ static void answer_bits(void *argument, size_t part, size_t first, size_t end) {
 narc_status narc_find_inside(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                              const narc_index_column *body, const narc_workers *workers, uint64_t *out_bits,
                              narc_error *error) {
-    narc_status status = check_points(shapes, bodies, points, error);
+    narc_status status = NARC_OK;
+    narc_point_batch one;
+    if (out_bits && begin_one(shapes, bodies, points, body, &one)) {
+        const narc_kernel_table *const kernels = narc_kernels(&status, error);
+        if (!kernels)
+            return status;
+        kernels->inside(&one, 0, 1, out_bits);
+        return NARC_OK;
+    }
+    status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
         status = narc_check_set(bodies, error);
     if (status != NARC_OK || points->count == 0)

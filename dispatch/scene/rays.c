@@ -9,6 +9,7 @@
 #include "index.h"
 #include "leaves.h"
 #include "narc_scene.h"
+#include "pair.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -157,12 +158,39 @@ static void cast_pairs_part(void *argument, size_t part, size_t first, size_t en
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
+/* A ray by itself; false if something is wrong. */
+static bool cast_one(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
+                     const narc_index_column *body, const narc_ray_options *options, narc_ray_hit *out_row,
+                     size_t capacity) {
+    narc_status status = NARC_OK;
+    if (!shapes || !bodies || !rays || !out_row || capacity == 0 || !narc_is_one(shapes, bodies, rays->count, body) ||
+        !narc_has_positions(&rays->x, &rays->y) || !rays->motion_x.base || !rays->motion_y.base || rays->reserved[0] ||
+        rays->reserved[1] || check_options(NULL, options, NULL) != NARC_OK)
+        return false;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    if (!kernels)
+        return false;
+    narc_ray_batch batch; /* an initialiser would clear all of it */
+    batch.shapes = shapes;
+    batch.bodies = bodies;
+    batch.rays = rays;
+    batch.options = options;
+    batch.out = out_row;
+    batch.body = body ? *body : (narc_index_column){NULL, 0};
+    const size_t skipped = kernels->ray_pairs(&batch, 0, 1);
+    if (options->out_skipped)
+        *options->out_skipped = skipped;
+    return true;
+}
+
 narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
                                 const narc_index_column *body, const narc_ray_options *options, narc_ray_hit *out_rows,
                                 size_t capacity, narc_error *error) {
     static const narc_ray_options defaults = {0};
     const narc_ray_options *const o = options ? options : &defaults;
     const narc_index_column column = body ? *body : (narc_index_column){NULL, 0};
+    if (cast_one(shapes, bodies, rays, body, o, out_rows, capacity))
+        return NARC_OK;
     if (!shapes || !bodies || !rays)
         return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "rays");
     narc_status status = check_rays(rays, error);
@@ -183,8 +211,7 @@ narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bo
     status = narc_check_named(shapes, bodies, column, rays->count, "ray", o->search.workers, error);
     if (status != NARC_OK)
         return status;
-    struct ray_job job = {
-        {NULL, shapes, bodies, rays, o, 1, out_rows, column}, NARC_KERNELS_FOR(rays->count, kernels), 0};
+    struct ray_job job = {{NULL, shapes, bodies, rays, o, 1, out_rows, column}, kernels, 0};
     narc_run_ranges(o->search.workers, rays->count, PART, cast_pairs_part, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);

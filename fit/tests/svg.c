@@ -333,6 +333,28 @@ TEST(leaves_out_faint_shadows) {
 }
 
 /* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
+/* A pixel of strong ink at a side of the page, and faint ink next to it: all within eight pixels counts, and is one. */
+TEST(keeps_faint_ink_at_sides) {
+    narc_contours whole = read_contours("viewBox='0 0 100 100'", "<rect width='100' height='1'/>");
+    const double pixel = whole.flatness;
+    narc_release_contours(&whole);
+    for (int side = 0; side < 4; side++) {
+        char body[300];
+        snprintf(body, sizeof body,
+                 "<g transform='rotate(%d 50 50)'><rect width='100' height='%.12f'/>"
+                 "<rect width='100' height='%.12f' opacity='0.02'/></g>",
+                 90 * side, pixel, 12 * pixel);
+        narc_contours contours = read_contours("viewBox='0 0 100 100'", body);
+        assert_true(contours.flatness == pixel);
+        assert_int_equal(contours.count, 1);
+        const double across = (side + 1) * PI / 2;
+        const double depth = find_support(contours.points, contours.point_count, across) +
+                             find_support(contours.points, contours.point_count, across + PI);
+        assert_true(depth >= 8 * pixel && depth <= 11 * pixel);
+        narc_release_contours(&contours);
+    }
+}
+
 TEST(keeps_strong_ink_at_any_threshold) {
     static const char body[] = "<path d='M20 20H80L50 76z'/><path d='M10 90L90 79V90z'/>";
     for (double threshold = 0.05; threshold < 1; threshold += 0.15 * (double)stride(4)) {

@@ -24,7 +24,7 @@ struct call {
     struct rows *rows;               /* the others: the same */
     const struct question *question; /* theirs */
     struct box_queue *boxes;         /* pairs of forms that wait (box/box_detour.inl), or NULL */
-    bool pieces;                     /* are there pieces of chains? */
+    bool pieces, planes;             /* are there pieces of chains; half-planes? */
     struct queue *concave;           /* rows, with pieces: where pairs with a concave arc wait; else NULL */
 };
 
@@ -32,6 +32,8 @@ struct call {
 static inline bool has_pieces(const narc_batch *batch) {
     return NARC_PIECES && !batch->of_casts && batch->shapes->piece_count > 0;
 }
+
+static inline bool has_planes(const narc_batch *batch) { return NARC_PIECES && batch->shapes->plane_count > 0; }
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */
 INLINE char *choose(bool first, char *a, char *b) {

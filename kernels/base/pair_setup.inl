@@ -27,6 +27,7 @@
 
 #include "base/bodies.inl"
 #include "base/call.inl"
+#include "base/planes.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -95,13 +96,26 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
                                   const struct placement *placement, vm which, int32_t number, vf item[FIELDS]) {
     const narc_batch *batch = call->batch;
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
-    const struct pose pose = placement->pose;
-    const vf margin = placement->margin, scale_a = pose.scale_a, scale_b = pose.scale_b;
-    const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
-    const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
+    struct pose pose = placement->pose;
+    const vf margin = placement->margin;
+    struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
+    struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
     struct filter filter = {.margin = margin};
-    const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
-    const vm in_range = vm_and(placement->in_range, vm_and(is_size_in_range(size_a), is_size_in_range(size_b)));
+    vf size_a = v_mul(pose.scale_a, a.bound_radius), size_b = v_mul(pose.scale_b, b.bound_radius);
+    vm in_range = vm_and(placement->in_range, vm_and(is_size_in_range(size_a), is_size_in_range(size_b)));
+    if (NARC_PIECES && BLOCK > 1 && !LIKELY(!call->planes)) { /* copies, so that the others stay in registers */
+        struct pose laid = pose;
+        struct headers of_a = a, of_b = b;
+        vm ground;
+        in_range = vm_and(in_range, lay_planes(call, in, k, &laid, &of_a, &of_b, &ground));
+        which = vm_and_not(which, ground);
+        pose = laid;
+        a = of_a;
+        b = of_b;
+        size_a = v_mul(pose.scale_a, a.bound_radius);
+        size_b = v_mul(pose.scale_b, b.bound_radius);
+    }
+    const vf scale_a = pose.scale_a, scale_b = pose.scale_b;
     filter.valid = vm_and(which, in_range);
     filter.invalid = vm_and_not(which, in_range);
 

@@ -267,7 +267,8 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
                          .count = count,
                          .skipped = skipped,
                          .bits = out_bits,
-                         .pieces = has_pieces(batch)};
+                         .pieces = has_pieces(batch),
+                         .planes = has_planes(batch)};
 }
 
 #endif

@@ -14,6 +14,7 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/plane_pairs.inl"
 #include "base/question.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
@@ -51,7 +52,8 @@ static inline struct call begin_rows(const struct question *question, const narc
                          .margins = batch->query->margins,
                          .question = question,
                          .rows = rows,
-                         .pieces = has_pieces(batch)};
+                         .pieces = has_pieces(batch),
+                         .planes = has_planes(batch)};
 }
 
 /* The place of a call's pair. */
@@ -251,9 +253,38 @@ INLINE size_t close_gaps(const struct call *call, size_t size) {
     return count;
 }
 
+/* Moves the points of a call's rows there, `listed` of them, or of `count` dense ones. */
+NOINLINE void move_plane_points(const narc_batch *batch, size_t first, size_t count, const narc_rows *out,
+                                size_t listed, bool manifold) {
+    const bool dense = batch->query->dense != 0;
+    for (size_t k = 0; k < (dense ? count : listed); k++) {
+        const size_t place = dense ? narc_pair_at(batch, first + k) : k;
+        char *const row = out->base + (ptrdiff_t)place * out->stride;
+        union {
+            uint32_t pair;
+            narc_contact contact;
+            narc_manifold manifold;
+        } of;
+        double x, y;
+        memcpy(&of, row, manifold ? sizeof of.manifold : sizeof of.contact);
+        const size_t points = manifold ? of.manifold.count : of.contact.count;
+        if (points == 0 || !find_plane_way(batch, of.pair, &x, &y))
+            continue;
+        for (size_t i = 0; i < points; i++) {
+            move_coordinate(manifold ? &of.manifold.point[i].x : &of.contact.point_x, x);
+            move_coordinate(manifold ? &of.manifold.point[i].y : &of.contact.point_y, y);
+        }
+        memcpy(row, &of, manifold ? sizeof of.manifold : sizeof of.contact);
+    }
+}
+
 /* Ends a call. The size is a constant, so that a row is copied by a few instructions. */
 INLINE size_t end_rows(const struct call *call, size_t size) {
-    return call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
+    const size_t count = call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
+    if (NARC_PIECES && !LIKELY(!call->planes) && call->question->kind != SEPARATION_ROWS)
+        move_plane_points(call->batch, call->first, call->count, &call->rows->out, count,
+                          call->question->kind == MANIFOLD_ROWS);
+    return count;
 }
 
 #endif

@@ -36,6 +36,11 @@ INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set
 
 INLINE vm has_flag(vi info, int flag) { return vi_lt(vi_set(0), vi_and(info, vi_set(flag << 16))); }
 
+/* The marks of a chain's piece, or of a half-plane, of which none is larger. */
+INLINE vi get_marks(vi info) { return vi_and(info, vi_set((int32_t)(NARC_PIECE_MARKS << 8))); }
+
+INLINE vm is_plane(vi info) { return vi_lt(vi_set((int32_t)(NARC_PIECE_PLANE << 8) - 1), get_marks(info)); }
+
 /* A shape's straight parts that are no longer than this, in its own unit, are no edges (store.h, the size class). */
 INLINE vf find_least_edge(vi info) {
     const vi size_class = vi_and(vi_shift_right(info, 20), vi_set(15));

@@ -287,6 +287,11 @@ INLINE struct circle_contact find_circle_contact(const struct circle_pair *pair,
         c.start = place_form_normal(pair, of, pair->number);
         u = v2_sub(choose_side_vec2(of, pair->is_a, c.corner, c.center),
                    choose_side_vec2(of, pair->is_a, c.center, c.corner));
+        if (BLOCK == 1 && vm_any(pair->edge)) { /* no root, and no quotient */
+            c.separation = v_sub(v2_dot(u, c.start), radii);
+            c.normal = c.start;
+            return c;
+        }
     }
     const vf length = v2_length(u);
     c.separation = v_sub(of == TWO_CIRCLES ? length : v_select(pair->edge, v2_dot(u, c.start), length), radii);

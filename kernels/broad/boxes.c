@@ -178,6 +178,17 @@ NOINLINE void put_piece_heights(const narc_shapes *shapes, const int32_t shape[V
     }
 }
 
+/* Half-planes have no end but along the boundary's normal (-sine, cosine), where that is an axis. */
+NOINLINE void open_planes(vi info, vec2 rotation, struct reaches *r) {
+    const vf c = rotation.x, s = rotation.y, zero = v_set(0);
+    const vf along[AXES] = {v_neg(s), c, s, v_neg(c)}, across[AXES] = {c, s, c, s};
+    vf *const side[AXES] = {&r->right, &r->up, &r->left, &r->down};
+    for (int k = 0; k < AXES; k++) {
+        const vm bounded = vm_and(v_le(v_abs(across[k]), zero), v_lt(zero, along[k]));
+        *side[k] = v_select(vm_and_not(is_plane(info), bounded), v_set(FLT_MAX), *side[k]);
+    }
+}
+
 INLINE struct reaches find_reaches(const narc_shapes *shapes, const int32_t shape[V_WIDTH],
                                    const struct headers *headers, const struct placed_bodies *bodies, vec2 rotation,
                                    vf margin) {
@@ -243,6 +254,11 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, const uint32_t *list, size_t
         }
         valid = vm_and(
             valid, vm_and(vm_and(is_finite(r.right), is_finite(r.up)), vm_and(is_finite(r.left), is_finite(r.down))));
+        if (NARC_PIECES && !LIKELY(batch->shapes->plane_count == 0)) {
+            struct reaches opened = r;
+            open_planes(headers.info, placed.rotation, &opened);
+            r = opened;
+        }
         const vf sides[4] = {v_select(valid, v_neg(r.left), none), v_select(valid, v_neg(r.down), none),
                              v_select(valid, r.right, v_neg(none)), v_select(valid, r.up, v_neg(none))};
         v_put_rows(to, 0, sides);

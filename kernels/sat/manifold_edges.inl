@@ -314,9 +314,20 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
 INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
                                                    const struct sides *s) {
     const struct edge *const a = &s->a, *const b = &s->b;
+    const vm offered = vm_and(a->offered, b->offered);
+    if (!vm_any(offered)) {
+        const vi id = find_touching_id(a, b, s->place.y, s->number_a, s->number_b);
+        const vf zero = v_set(0);
+        return (struct manifold_points){vi_set(1),
+                                        answer->radius_a,
+                                        answer->radius_b,
+                                        {answer->point.x, answer->point.y, answer->separation,
+                                         v_of_bits(vi_select(s->named, id, answer->feature))},
+                                        {zero, zero, zero, zero}};
+    }
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
     const vm stretch = is_stretch(&low, &high, answer->separation, s->n, s->position_b);
-    const vm faces = vm_and(vm_and(a->offered, b->offered), stretch);
+    const vm faces = vm_and(offered, stretch);
     const struct end_point exact = get_deepest(a, b, s->place.y, s->place.x, answer->separation);
     struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, s->margin));
     struct manifold_points m = {.radius_a = p.deepest.radius_a, .radius_b = p.deepest.radius_b};

@@ -221,9 +221,11 @@ void NARC_NAMED(keep)(const narc_batch *batch, size_t first, size_t count, const
             const vf radius_b = v_select(vm_and_not(finite_b, row.second), row.radii[1], v_set(0));
             const vf diameter_a = v_mul(v_mul(v_set(2), a.bound_radius), bodies.scale_a);
             const vf diameter_b = v_mul(v_mul(v_set(2), b.bound_radius), bodies.scale_b);
+            /* Half-planes may be far away, where what is kept in single precision says little: no row follows them. */
+            const vm planes = vm_or(is_plane(a.info), is_plane(b.info));
             const vf head[4] = {relative.x, relative.y, in_a.x, in_a.y};
             const vf rest[4] = {radius_a, radius_b, v_add(v_add(row.point[0][2], radius_a), radius_b),
-                                v_min(diameter_a, diameter_b)};
+                                v_select(planes, v_set(INFINITY), v_min(diameter_a, diameter_b))};
             find_places((char *)out, sizeof *out, number, vm_bits(vm_front(n - k)), room, place);
             v_put_rows(place, 0, head);
             UNROLL

@@ -62,10 +62,13 @@ INLINE bool load_body_frame(const narc_shapes *shapes, const narc_bodies *bodies
     return narc_is_rotation(cosine, sine) && narc_is_size(scale * header->bound_radius);
 }
 
-/* Is the shape a piece of a chain, with one of these marks (store.h)? */
-INLINE bool has_any_mark(const struct body_frame *frame, unsigned marks) {
-    return NARC_PIECES && (frame->header->first_arc & marks) != 0;
+/* Is the shape a piece of a chain, or a half-plane, with this mark (store.h)? */
+INLINE bool has_mark_of(const struct body_frame *frame, unsigned mark) {
+    return NARC_PIECES && (frame->header->first_arc & NARC_PIECE_MARKS) == mark;
 }
+
+/* Of a half-plane the arc, as stored, that its boundary lies before. */
+enum { PLANE_ARC = 1 };
 
 /* A direction of the world in the shape's axes, and back. */
 INLINE place turn_to_shape(const struct body_frame *frame, place a) {

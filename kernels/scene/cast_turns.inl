@@ -246,7 +246,10 @@ INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, co
     for (int side = 0; side < 2; side++)
         axes.met[side].part = find_part(&casts->side[side], k, side, live, touch);
     const vf of_b = v_select(axes.met[1].part.on_edge, angle_b, zero);
-    const vf rate = v_select(vm_and(axes.met[0].part.on_edge, v_lt(zero, v_abs(angle_a))), angle_a, of_b);
+    const vf of_edges = v_select(vm_and(axes.met[0].part.on_edge, v_lt(zero, v_abs(angle_a))), angle_a, of_b);
+    const vm planes =
+        vm_or(is_plane(vi_bits(v_load(casts->side[0].info + k))), is_plane(vi_bits(v_load(casts->side[1].info + k))));
+    const vf rate = v_select(planes, zero, of_edges); /* of a half-plane no other axis says anything */
     v_store(axes.rate, rate);
     for (int side = 0; side < 2; side++)
         find_held(shapes, casts, touch, k, side, live, v_sub(rate, side == 0 ? angle_a : angle_b), &axes.met[side]);

@@ -24,6 +24,7 @@
 #include "scene/cast_lanes.inl"
 #include "scene/cast_lines.inl"
 #include "scene/cast_places.inl"
+#include "scene/cast_planes.inl"
 #include "scene/cast_start.inl"
 #include "scene/cast_turns.inl"
 #include "simd/doubles.h"
@@ -60,7 +61,12 @@ static bool is_late(const narc_cast_batch *given, const narc_casts *casts, size_
 /* Writes the row of a pair. */
 static void write_row(const narc_cast_batch *given, const narc_casts *casts, size_t slot, int outcome) {
     const struct impact impact = {casts->pair[slot], casts->body[slot], casts->time[slot], outcome};
-    write_impact(&impact, &casts->contact[slot], given->nearest, find_row(given, impact.pair));
+    narc_contact contact = casts->contact[slot];
+#if NARC_PIECES
+    if (given->batch->shapes->plane_count > 0)
+        move_to_plane(given, casts, slot, &contact);
+#endif
+    write_impact(&impact, &contact, given->nearest, find_row(given, impact.pair));
 }
 
 /* The caller's target of a cast. */
@@ -77,7 +83,7 @@ static bool is_in_front(const narc_shape_header *a, const narc_shape_header *b, 
     const narc_contact *const c = &casts->contact[slot];
     const bool starts = !(casts->time[slot] > 0), deep = c->separation < 0 && (starts || casts->target[slot] < 0);
     return narc_touches(a, c->feature & 0xff) && narc_touches(b, c->feature >> 8) &&
-           !(deep && (narc_is_piece(a) || narc_is_piece(b)));
+           !(deep && (narc_is_of_chain(a) || narc_is_of_chain(b)));
 }
 
 /* Goes on alone with a cast of pieces, where it must: with a concave arc from the start, or where it hits what may not be
@@ -251,8 +257,12 @@ NOINLINE void begin_casts(struct cast_call *call, size_t first, size_t count, na
         float outcome[V_WIDTH];
         struct loaded loaded;
         load_casts(call, &in, k, casts, to, &loaded);
+        if (NARC_PIECES && call->shapes->plane_count > 0)
+            measure_planes(call->shapes, casts, to, &loaded);
         for (int h = 0; h < V_WIDTH; h += D_WIDTH)
             begin_half(call->given->tolerance, casts, to + (size_t)h, h, &loaded, outcome + h);
+        if (NARC_PIECES && call->shapes->plane_count > 0)
+            begin_at_planes(call->shapes, casts, to, &loaded, outcome);
         const vi found = vi_select(loaded.fine, vi_truncate(v_load(outcome)), vi_set(CAST_BROKEN));
         casts->count += keep_casts(call, casts, to, vm_front((int)count - k), found, to);
     }

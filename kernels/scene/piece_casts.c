@@ -280,21 +280,23 @@ static double find_meeting(const struct scene *scene, place motion) {
 }
 
 /* When does an arc that moves along a line come to be where it may touch, and is beyond the target then? It has come
- * past an end. */
+ * past an end: into a sector, as what leaves one may still be told of just behind that time, by rounding. */
 static double find_entering(const struct scene *scene, int arc, double target, place motion, double meeting) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc),
                 start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
                 end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
     const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
+    const double inward[4] = {-1, 1, 1,
+                              -1}; /* of what is across a side, if its arc comes in; the ground's normals are -u */
     const double along = ALONG_A_SIDE * sqrt(find_dot(motion, motion));
     double least = INFINITY;
     for (int k = 0; k < 5; k++) {
-        const double across = k < 4 ? find_cross(sides[k], motion) : INFINITY;
-        const double time = (k < 4 ? -find_cross(sides[k], u) / across : meeting) + JUST_BEHIND;
+        const double across = k < 4 ? inward[k] * find_cross(sides[k], motion) : INFINITY;
+        const double time = (k < 4 ? -inward[k] * find_cross(sides[k], u) / across : meeting) + JUST_BEHIND;
         struct scene then = *scene;
         struct nearest nearest = {.separation = INFINITY};
-        if (!(fabs(across) > along && time >= 0 && time < least))
+        if (!(across > along && time >= 0 && time < least))
             continue;
         then.body.position.x += time * motion.x;
         then.body.position.y += time * motion.y;

@@ -246,7 +246,14 @@ INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_d
         put_nothing(row, point);
         return;
     }
-    if (has_any_mark(&frame, NARC_PIECE_CONCAVE)) {
+    if (has_mark_of(&frame, NARC_PIECE_PLANE)) {
+        struct piece_place nearest;
+        put_nothing(row, point);
+        if (find_piece_place(&frame, load_point(batch->points, point), &nearest))
+            *row = make_piece_row(&frame, &nearest, point, (uint32_t)body);
+        return;
+    }
+    if (has_mark_of(&frame, NARC_PIECE_CONCAVE)) {
         answer_concave(&frame, load_point(batch->points, point), (uint32_t)point, (uint32_t)body, row);
         return;
     }
@@ -327,7 +334,12 @@ void NARC_NAMED(inside)(const narc_point_batch *batch, size_t first, size_t end,
         struct body_frame frame;
         for (next = k + 1; next < end && column.base && narc_index_at(column, next) == body;)
             next++;
-        if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) || narc_is_piece(frame.header))
+        if (!load_body_frame(batch->shapes, batch->bodies, body, &frame))
+            continue;
+        for (struct piece_place at; has_mark_of(&frame, NARC_PIECE_PLANE) && k < next; k++)
+            out_bits[k / 64] |=
+                (uint64_t)(find_piece_place(&frame, load_point(batch->points, k), &at) && at.separation < 0) << k % 64;
+        if (narc_is_piece(frame.header))
             continue;
         for (int lanes; k < next; k += (size_t)lanes) {
             const size_t left = next - k;

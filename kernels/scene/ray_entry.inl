@@ -211,7 +211,7 @@ INLINE bool enter_concave(const struct body_frame *frame, place foot, place v, s
 /* The same as find_entry() for any shape. Of a run only what lies in front is met (store.h). */
 INLINE bool find_first_entry(const struct body_frame *frame, const struct line *line, struct entry *out) {
     const narc_shape_header *const header = frame->header;
-    if (has_any_mark(frame, NARC_PIECE_CONCAVE))
+    if (has_mark_of(frame, NARC_PIECE_CONCAVE))
         return enter_concave(frame, line->foot, line->direction, out);
     if (!find_entry(frame, line, out))
         return false;
@@ -237,11 +237,33 @@ struct meeting {
     bool is_start;   /* and stops there */
 };
 
+/* The same as find_meeting() of a half-plane, which a ray leaves only where it goes up. */
+NOINLINE bool find_plane_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
+                                 struct meeting *out) {
+    const place from = {ray->origin.x - frame->position.x, ray->origin.y - frame->position.y};
+    const place v = turn_to_shape(frame, ray->direction), start = turn_to_shape(frame, from);
+    const bool above = start.y > 0, leaves = v.y > 0;
+    const double distance = start.y / -v.y;
+    *out = (struct meeting){.foot = {start.x * frame->inverse_scale, start.y * frame->inverse_scale},
+                            .direction = v,
+                            .entry = {.normal = {0, 1}, .arc = PLANE_ARC, .on_edge = true},
+                            .distance = distance};
+    if (above && !passes)
+        return v.y < 0;
+    if (inside == NARC_INSIDE_IGNORES)
+        return false;
+    out->is_within = true;
+    out->is_start = inside == NARC_INSIDE_STOPS;
+    return out->is_start ? !above : leaves && distance >= 0;
+}
+
 /* False if it does not. A ray that starts in the ground does not meet it. `passes`: where it leaves counts, wherever it
  * starts. */
 INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
                          struct meeting *out) {
     const narc_shape_header *const header = frame->header;
+    if (has_mark_of(frame, NARC_PIECE_PLANE))
+        return find_plane_meeting(frame, ray, inside, passes, out);
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
     const place v = turn_to_shape(frame, ray->direction), turned = turn_to_shape(frame, way);
     const place middle = {(double)header->bound_x, (double)header->bound_y};

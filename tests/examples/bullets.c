@@ -30,6 +30,22 @@ TEST(test_wall_holds) {
     }
 }
 
+/* From both sides, again and again, 7 m a step: what flew from the left stays there, but above the plate. */
+TEST(test_plate_of_a_centimetre_holds) {
+    for (uint64_t seed = 1; seed <= test_trials(20); seed++) {
+        run r = begin_run("plates", world_defaults, seed);
+        for (int steps = 0; steps < 360; steps++) {
+            continue_run(&r, 1 / 60.0f);
+            for (size_t k = 2; k < r.world.body_count; k++) {
+                const vec at = r.world.bodies[k].position;
+                if (at.y < 7 && (at.x > 0) != (r.world.bodies[k].start.x > 0))
+                    fail_msg("seed %d: body %d came through", (int)seed, (int)k);
+            }
+        }
+        end_run(&r);
+    }
+}
+
 /* The test can fail: where nothing is thin nothing is fast, and most fly through. */
 TEST(test_can_fail) {
     size_t through = 0;

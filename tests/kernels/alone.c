@@ -43,7 +43,24 @@ static narc_ray_hit cast_at(const struct room *room, const narc_bodies *bodies, 
     return hit;
 }
 
-/* Any bodies, broken ones among them, any rays, also those without an answer: the rows are those of an index. */
+/* A call of one ray has the row of a batch. */
+static void check_one_ray(const struct room *room, const narc_bodies *bodies, const struct test_ray *ray,
+                          uint32_t number, uint32_t body, const narc_ray_options *options, narc_ray_hit right) {
+    const narc_rays one = view_rays(ray, 1);
+    const narc_index_column named = {&body, 0};
+    size_t skipped = 99;
+    narc_ray_options own = *options;
+    narc_ray_hit hit;
+    narc_error error;
+    own.out_skipped = &skipped;
+    expect_ok(narc_cast_ray_pairs(room->scene.store, bodies, &one, &named, &own, &hit, 1, &error), &error);
+    assert_true(skipped <= (right.count == 0));
+    hit.ray = number;
+    assert_memory_equal(&hit, &right, sizeof right);
+}
+
+/* Any bodies, broken ones among them, any rays, also those without an answer: the rows are those of an index, and of each
+ * ray by itself. */
 TEST(rays_hit_one_body_as_by_an_index) {
     struct test_random random = test_random_named("rays alone");
     for (size_t trial = 0; trial < test_trials(8); trial++) {
@@ -75,6 +92,7 @@ TEST(rays_hit_one_body_as_by_an_index) {
                 size_t own = 0;
                 const narc_ray_hit right = cast_at(&room, &bodies, &rays[k], k, body[k], (narc_inside)inside, &own);
                 assert_memory_equal(&rows[k], &right, sizeof right);
+                check_one_ray(&room, &bodies, &rays[k], k, body[k], &options, right);
                 expected += own;
                 hits += right.count;
             }
@@ -88,6 +106,22 @@ TEST(rays_hit_one_body_as_by_an_index) {
 }
 
 /* ------------------------------------------------------------------------------------------------ points */
+
+/* A call of one point has the row of a batch. */
+static void check_one_point(const struct room *room, const narc_bodies *bodies, const struct test_ray *at,
+                            uint32_t number, uint32_t body, const narc_distance *right) {
+    const narc_rays view = view_rays(at, 1);
+    const narc_points one = {.count = 1, .x = view.x, .y = view.y};
+    const narc_index_column named = {&body, 0};
+    narc_distance row;
+    uint64_t bits;
+    narc_error error;
+    expect_ok(narc_find_distances(room->scene.store, bodies, &one, &named, NULL, &row, &error), &error);
+    expect_ok(narc_find_inside(room->scene.store, bodies, &one, &named, NULL, &bits, &error), &error);
+    row.point = number;
+    assert_memory_equal(&row, right, sizeof row);
+    assert_true(bits == (right->separation < 0));
+}
 
 /* Points near and far, on outlines, of bodies in any order and runs: each bit is that of a separation, and where that is not near 0
  * that of the reference. */
@@ -124,6 +158,7 @@ TEST(points_are_within_where_separations_are_below_0) {
         for (size_t k = 0; k < count; k++) {
             const bool is_in = bit_is_set(bits, k);
             assert_int_equal(is_in, rows[k].separation < 0);
+            check_one_point(&room, &bodies, &at[k], (uint32_t)k, trial % 5 ? body[k] : body[count - 1], &rows[k]);
             within += is_in;
             if (rows[k].count == 0)
                 continue;

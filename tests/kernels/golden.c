@@ -20,7 +20,10 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
 #ifndef NARC_SMALL
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
 static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0xd2f7a23d8eddfd23u,
-                                         0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
+                                         0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0xb4a3abf158b36377u};
+/* Beside half-planes: contacts and manifolds, straight and turning casts, boxes, points, rays. */
+static const uint64_t golden_planes[] = {0x4a1dc3d782503138u, 0x0331649346ae24dcu, 0xb2ecef259e6c11d4u,
+                                         0x04186dcea4816287u, 0x78033af980cb9b5bu, 0xdce13962d86ce8f6u};
 /* Hulls, their polylines. */
 static const uint64_t golden_outlines[] = {0x063a84d40a282487u, 0x8b695e716cf6b629u};
 #endif
@@ -525,6 +528,27 @@ TEST(test_ground) {
 #endif
 
 #ifndef NARC_SMALL
+/* Every seventh body is a half-plane. */
+TEST(test_half_planes) {
+    struct scene scene = make_golden_scene(NARC_FLOAT64);
+    uint32_t plane;
+    assert_int_equal(narc_add_half_plane(scene.store, &plane, NULL), NARC_OK);
+    for (size_t k = 0; k < BODIES; k += 7)
+        scene.bodies[k].shape = plane;
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    const narc_query query = {.margin = 0.125f, .flat_angle = 0.25f};
+    const uint64_t hashes[] = {hash_query(scene.store, &bodies, &pairs, &query),
+                               hash_casts(&scene, 0),
+                               hash_casts(&scene, 1),
+                               hash_boxes(&scene, 0),
+                               hash_points(&scene, 0),
+                               hash_alone(&scene, NARC_INSIDE_LEAVES)};
+    for (size_t k = 0; k < sizeof hashes / sizeof *hashes; k++)
+        check_hash("half-planes", hashes[k], golden_planes[k]);
+    destroy_scene(&scene);
+}
+
 /* Of clouds of points of a lattice, with a skin and without. */
 TEST(test_outlines) {
     enum { CLOUDS = 200, POINTS = 60, LINE = 4096 };

@@ -555,6 +555,43 @@ TEST(test_nearest) {
     assert_true(behind > all / 8 && behind < all && alone > all / 2);
 }
 
+/* A corner that is cut: its parts go on beyond it, by so little that a point in the air may be behind the other part. */
+TEST(test_nearest_to_cut_corners) {
+    enum { POINTS = 64 };
+    for (int sides = 3; sides <= 5; sides++) {
+        struct ground_scene *scene = create_ground_scene();
+        struct turtle t = create_turtle(0, 0, PI / 2);
+        narc_error error;
+        for (int k = 0; k < sides; k++) {
+            walk_arc(&t, 0, 2 * PI / sides);
+            walk_line(&t, 1);
+        }
+        scene->place = turned_body(0.3, 1);
+        expect_ok(add_ground(scene, end_walk(&t, true), (narc_chain_options){0}, &error), &error);
+        const narc_point corner = chain_point(&scene->chain.arcs[0], 0);
+        narc_box *boxes = malloc(scene->count * sizeof *boxes);
+        const narc_bodies bodies = view_columns(scene->bodies, scene->count);
+        narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
+        for (double away = 1e-3; away < 4; away *= 2)
+            for (int i = 0; i < POINTS; i++) {
+                const double angle = 2 * PI * (i + 0.3) / POINTS;
+                struct body there = turned_body(0, 1);
+                const narc_point point = {corner.x + away * cos(angle), corner.y + away * sin(angle)};
+                narc_distance row;
+                there.x = point.x;
+                there.y = point.y;
+                there = ground_to_world(scene, there);
+                const double x[] = {there.x}, y[] = {there.y};
+                const narc_points points = {1, NARC_POSITION_ARRAY(x), NARC_POSITION_ARRAY(y), {NULL}};
+                expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, NULL, &row, 1, &error), &error);
+                check_nearest(scene, point, &row, 1);
+            }
+        narc_destroy_index(index);
+        free(boxes);
+        destroy_ground_scene(scene);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ plain cases */
 
 /* The rows of a body of this shape in one place against all entries, as A. */

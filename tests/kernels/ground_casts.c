@@ -568,6 +568,32 @@ TEST(test_flights_past_a_concave_arc) {
     assert_true(hits > test_trials(300));
 }
 
+/* A body that comes from behind a concave arc, and leaves its sector: it hits nothing, not even as it leaves. */
+TEST(test_flight_out_of_a_sector) {
+    const narc_arc outline[] = {{0.146547115, 0.111392167, 0.5036525, -0.694716892, 0.0941235145},
+                                {0.555774061, 0.636021066, 0.0469298983, 0.0941235145, 1.50161337},
+                                {0.116196603, 0.280211831, 0.432274985, 1.50161337, 1.91964356},
+                                {-0.127117569, -0.0547349249, 0.663878654, 1.91964356, 3.45604625},
+                                {-0.537539907, -0.803390024, 0.0420244543, 3.45604625, 4.46666912},
+                                {-0.246429889, -0.478646563, 0.42782728, 4.46666912, 5.58846841}};
+    struct flyer flyer = {
+        .body = {
+            .x = -0.810711283, .y = -0.342786242, .cosine = 0.746697962f, .sine = 0.665163279f, .scale = 0.323632449f}};
+    const struct flight flight = {-0.125418f, 0.409105f, 0};
+    struct turtle t = create_turtle(0, 0, PI / 2 + 0.610032035);
+    walk_arc(&t, 0.624064951, -1.22006407);
+    struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    memcpy(flyer.shape.arcs, outline, sizeof outline);
+    flyer.shape.count = sizeof outline / sizeof *outline;
+    flyer.body.shape = store_shape(s->store, flyer.shape);
+    const struct body told = move_body(&flyer.body, &flight, 0.7);
+    assert_true(ground_separation(s, &flyer.body, (narc_query){0}) >= INFINITY);
+    assert_true(ground_separation(s, &told, (narc_query){0}) < 0);
+    for (int first = 0; first < 2; first++)
+        assert_int_equal(cast(s, &flyer.body, &flight, 0, first).count, NARC_CAST_MISS);
+    destroy_ground_scene(s);
+}
+
 /* A circle that flies along the normal at an end of a concave arc, from its centre or from anywhere on the way: by
  * rounding it may meet the arc or pass it, but what it meets is where it should be. The normal is a multiple of the
  * motion, to the last bit. */

@@ -12,12 +12,12 @@
 Answers are the same to the last bit on every processor and with any number of threads. Rows are structured arrays; bodies and
 columns stay in your arrays and are not copied. Errors are narc.Error (a ValueError) with `status`, `index`, `value`."""
 
-from ._batch import (bodies, box_pairs, boxes, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
+from ._batch import (bodies, box_pairs, boxes, casts, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
                      refine, separations, validate)
 from ._fits import Fit, NamedShape, Outline, cut, fit, fit_chains, hull, read_shapes, write_shapes
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
-from ._scene import Contacts, Index, Step, casts, distances, inside, rays
+from ._scene import Contacts, Index, Step, distances, inside, rays
 from ._shapes import (Shapes, adjust, bounding_box, bounding_circle, center, contains, depths, flatten, inscribed_circle, mass,
                       mirror, move, outlines, perimeter, radius_range, support, union_mass, validate_arcs, weld)
 from ._tables import (AABB, ARC, BODY, BOX, CHAIN_ENTRY, CIRCLE, CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, MASS, RAY_HIT,

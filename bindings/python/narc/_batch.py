@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, cast, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, MANIFOLD, REFINED_CONTACT, split
+from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, split
 
-Rows = NDArray[np.void]
-Bodies = Any  # rows of BODY, other records with fields of these names, or a mapping of columns
+# Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
+SLICE = 1 << 18
+_ARRAY = np.ndarray  # looked up often
+PairsLike = ArrayLike | Mapping[str, Any]
 
 
 def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: ArrayLike = 1.0) -> Rows:
@@ -21,7 +24,7 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
 
     Calls take other arrays, too, without copying them: records with fields of these names, or x and y, in any order and
     with others between them; or a mapping of columns, {"xy": (n, 2), "cosine": (n,), "sine": 0.0, ...}, floats of 32 bits but
-    for positions, which may have 64. A single number is that of all bodies."""
+    for positions, which may have 64. A single number is that of all bodies; without cosine and sine none is turned."""
     places = np.asarray(xy, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 2:
         raise ValueError(f"xy: the shape is to be (n, 2), not {places.shape}")
@@ -37,10 +40,22 @@ def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
     return np.unpackbits(little.view(np.uint8), count=count, bitorder="little").view(np.bool_)
 
 
-def count_of(of: Bodies) -> int:
-    if isinstance(of, dict):
-        return max((len(column) for column in of.values() if np.ndim(column)), default=1)
-    return len(of)
+def count_of(of: Any) -> int:
+    return len(of) if of.__class__ is not dict else max((len(column) for column in of.values() if np.ndim(column)), default=1)
+
+
+def slices(count: int) -> Iterator[slice]:
+    """All of it, or parts of SLICE."""
+    for k in range(0, max(count, 1), SLICE):
+        yield slice(k, min(k + SLICE, count))
+
+
+def narrow(numbers: ArrayLike) -> NDArray[np.float32]:
+    """What is asked once may come as float64, or as a list: as float32, and as it is if it is."""
+    given = np.asarray(numbers)
+    if given.dtype.kind not in "fiu" and given.size:
+        raise TypeError(f"motion, angle and fraction: numbers are wanted, not {given.dtype}")
+    return given if given.dtype == np.float32 else given.astype(np.float32)
 
 
 def validate(shapes: Shapes, bodies: Bodies) -> None:
@@ -69,8 +84,8 @@ def box_pairs(boxes: ArrayLike, *, threads: int = 1, **filters: Any) -> NDArray[
         room = count
 
 
-def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies = None, threads: int = 1,
-          **options: Any) -> NDArray[np.uint32]:
+def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies | None = None, threads: int = 1,
+          **options: Any) -> Pairs:
     """Pairs of bodies whose boxes are closer than `margin`, (m, 2), in order: of `bodies` with each other, or with `others`.
     `options`: the columns of narc_pair_filter, as in box_pairs(), for pairs with each other; `origin`, a place (x, y) near
     bodies that are far from (0, 0)."""
@@ -85,96 +100,195 @@ def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
-def _prepare(shapes: Shapes, bodies: Bodies, pairs_: Any, others: Bodies, margin: float, threads: int) -> tuple[Any, Any]:
-    """The pairs, found if there are none, and what a call is told of them."""
-    if pairs_ is None:
+def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, margin: float, threads: int,
+             options: dict[str, Any]) -> tuple[Any, Any, dict[str, Any]]:
+    """The pairs, found by boxes if there are none; what a call is told of them; and the options that are not of finding."""
+    filters, rest = split(options, "narc_pair_filter")
+    if "origin" in rest:
+        filters = {**(filters or {}), "origin": rest.pop("origin")}
+    if given is None:
         if not margin < np.inf:
             raise ValueError("margin: without pairs it must be finite")
-        pairs_ = pairs(shapes, bodies, margin=max(margin, 0.0), others=others, threads=threads)
-    if isinstance(pairs_, (list, tuple)):
-        pairs_ = np.asarray(pairs_, np.int64).reshape(-1, 2)
-    told = pairs_
-    if isinstance(pairs_, dict):
-        told = {**pairs_, "other_bodies": others}
-    elif others is not None:
-        told = {"ab": pairs_, "other_bodies": others}
-    return pairs_, told
+        given = pairs(shapes, bodies, margin=max(margin, 0.0), others=others, threads=threads, **(filters or {}))
+    elif filters:
+        raise TypeError(f"{', '.join(filters)}: this is for pairs that are found by boxes, and these are given")
+    elif isinstance(given, (list, tuple)):
+        given = as_array(given, "i8", "pairs") if len(given) else np.zeros((0, 2), np.uint32)
+    if others is None:
+        return given, given, rest
+    return given, {**(given if isinstance(given, dict) else {"ab": given}), "other_bodies": others}, rest
 
 
-def _rows(call: Any, kind: Any, shapes: Shapes, bodies: Bodies, pairs_: Any, margin: float, others: Bodies, out: Any,
-          threads: int, options: dict[str, Any]) -> Any:
-    found = told = pairs_
-    if others is not None or not isinstance(pairs_, np.ndarray):
-        found, told = _prepare(shapes, bodies, pairs_, others, margin, threads)
-    if out is not None and out.dtype is not kind and out.dtype != kind:
-        raise TypeError(f"out: rows of {kind} are wanted")
+def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any, count: int) -> None:
+    """Something for each pair, where its number says."""
+    if count <= SLICE or {"selection", "first", "count"} & query.keys():
+        call(shapes, bodies, told, query, out)
+        return
+    for part in slices(count):
+        call(shapes, bodies, told, {**query, "first": part.start, "count": part.stop - part.start}, out)
+
+
+def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bodies: Bodies, given: Any, margin: float,
+          others: Bodies | None, out: Rows | None, threads: int, options: dict[str, Any]) -> Any:
+    found = told = given
+    if others is not None or options or given.__class__ is not _ARRAY:
+        found, told, options = _prepare(shapes, bodies, given, others, margin, threads, options)
     query = {"margin": margin, "workers": threads, **options} if margin or threads != 1 or options else None
-    rows = np.zeros(count_of(found), kind) if out is None else out
-    while (count := call(shapes, bodies, told, query, rows)) > len(rows):
+    room = len(found) if found.__class__ is _ARRAY else count_of(found)
+    if out is None:
+        rows = np.zeros(room, kind)
+    elif (rows := out).dtype is not kind and rows.dtype != kind:
+        raise TypeError(f"out: rows of {kind} are wanted")
+    if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys():
+        count = call(shapes, bodies, told, query, rows)
+    else:
+        count = 0
+        for part in slices(room):
+            count += call(shapes, bodies, told, {**(query or {}), "first": part.start, "count": part.stop - part.start},
+                          rows[count:])
+    if count > len(rows):
         if out is not None:
             raise ValueError(f"out has {len(rows)} rows, {count} are needed")
-        rows = np.zeros(count, kind)
-    rows = rows[: count_of(found) if options.get("dense") else count]
-    return (rows, found) if pairs_ is None else rows
+        return _rows(call, kind, shapes, bodies, given, margin, others, np.zeros(count, kind), threads, options)
+    if options and options.get("dense"):
+        count = room
+    if count != len(rows):
+        rows = rows[:count]
+    return rows if given is not None else (rows, found)
 
 
-def contacts(shapes: Shapes, bodies: Bodies, pairs: Any = None, *, margin: float = 0.0, others: Bodies = None,
-             out: Any = None, threads: int = 1, **options: Any) -> Any:
+@overload
+def contacts(shapes: Shapes, bodies: Bodies, pairs: None = None, *, margin: float = 0.0, others: Bodies | None = None,
+             out: Rows | None = None, threads: int = 1, **options: Any) -> tuple[Rows, Pairs]: ...
+@overload
+def contacts(shapes: Shapes, bodies: Bodies, pairs: PairsLike, *, margin: float = 0.0, others: Bodies | None = None,
+             out: Rows | None = None, threads: int = 1, **options: Any) -> Rows: ...
+def contacts(shapes: Shapes, bodies: Bodies, pairs: PairsLike | None = None, *, margin: float = 0.0, others: Bodies | None = None,
+             out: Rows | None = None, threads: int = 1, **options: Any) -> Rows | tuple[Rows, Pairs]:
     """Contacts of the pairs that are closer than `margin`, rows of narc.CONTACT in their order: `pair` is the number of the
     pair, `separation` below 0 is the depth, `normal` points from the first body to the second, `point` is halfway between
     the surfaces, relative to the first body's position.
 
     `pairs`: (m, 2) of uint32 or int64, or a mapping of a, b and shift; None: found by boxes, and the answer is (rows, pairs).
     `others`: the bodies that second numbers name. `out`: rows to fill, of which those that are filled are returned.
-    `options` are those of narc_query: margins, selection, dense, front_only, first, count. Broken bodies touch nothing, and
-    are told of by the warning narc.NoAnswer. Raises narc.OutOfRange for numbers that there are not."""
-    return _rows(_narc.find_contacts, CONTACT, shapes, bodies, pairs, margin, others, out, threads, options)
+    `options` are those of narc_query: margins, selection, dense, front_only, first, count; and for pairs that are found those
+    of pairs(): kind, category, mask, owner, world, origin. Broken bodies touch nothing, and are told of by the warning
+    narc.NoAnswer. Raises narc.OutOfRange for numbers that there are not."""
+    answer: Rows = _rows(_narc.find_contacts, CONTACT, shapes, bodies, pairs, margin, others, out, threads, options)
+    return answer
 
 
-def manifolds(shapes: Shapes, bodies: Bodies, pairs: Any = None, *, margin: float = 0.0, others: Bodies = None,
-              out: Any = None, threads: int = 1, **options: Any) -> Any:
+@overload
+def manifolds(shapes: Shapes, bodies: Bodies, pairs: None = None, *, margin: float = 0.0, others: Bodies | None = None,
+              out: Rows | None = None, threads: int = 1, **options: Any) -> tuple[Rows, Pairs]: ...
+@overload
+def manifolds(shapes: Shapes, bodies: Bodies, pairs: PairsLike, *, margin: float = 0.0, others: Bodies | None = None,
+              out: Rows | None = None, threads: int = 1, **options: Any) -> Rows: ...
+def manifolds(shapes: Shapes, bodies: Bodies, pairs: PairsLike | None = None, *, margin: float = 0.0,
+              others: Bodies | None = None, out: Rows | None = None, threads: int = 1,
+              **options: Any) -> Rows | tuple[Rows, Pairs]:
     """As contacts(), with one or two points for each pair: rows of narc.MANIFOLD, what a solver wants. Further options:
     second_margin, flat_angle."""
-    return _rows(_narc.find_manifolds, MANIFOLD, shapes, bodies, pairs, margin, others, out, threads, options)
+    answer: Rows = _rows(_narc.find_manifolds, MANIFOLD, shapes, bodies, pairs, margin, others, out, threads, options)
+    return answer
 
 
-def overlaps(shapes: Shapes, bodies: Bodies, pairs: Any, *, others: Bodies = None, threads: int = 1) -> NDArray[np.bool_]:
-    """Which pairs collide: (m,) of bool."""
-    _, told = _prepare(shapes, bodies, pairs, others, 0.0, threads)
-    count = count_of(pairs)
+@overload
+def overlaps(shapes: Shapes, bodies: Bodies, pairs: None = None, *, others: Bodies | None = None, threads: int = 1,
+             **options: Any) -> tuple[NDArray[np.bool_], Pairs]: ...
+@overload
+def overlaps(shapes: Shapes, bodies: Bodies, pairs: PairsLike, *, others: Bodies | None = None, threads: int = 1,
+             **options: Any) -> NDArray[np.bool_]: ...
+def overlaps(shapes: Shapes, bodies: Bodies, pairs: PairsLike | None = None, *, others: Bodies | None = None, threads: int = 1,
+             **options: Any) -> NDArray[np.bool_] | tuple[NDArray[np.bool_], Pairs]:
+    """Which pairs collide: (m,) of bool. `pairs` None: those whose boxes touch, and the answer is (bools, pairs); `options` are
+    then those of pairs()."""
+    found, told, rest = _prepare(shapes, bodies, pairs, others, 0.0, threads, options)
+    count = count_of(found)
     words = np.zeros((count + 63) // 64, np.uint64)
-    _narc.find_overlaps(shapes, bodies, told, {"workers": threads}, words)
-    return from_bits(words, count)
+    _fill(_narc.find_overlaps, shapes, bodies, told, {"workers": threads, **rest}, words, count)
+    bits = from_bits(words, count)
+    return bits if pairs is not None else (bits, found)
 
 
-def separations(shapes: Shapes, bodies: Bodies, pairs: Any, *, margin: float = np.inf, others: Bodies = None,
-                threads: int = 1, **options: Any) -> NDArray[np.float32]:
-    """How far apart each pair is, (m,) of float32: below 0 the depth; infinity where it is `margin` or more."""
-    _, told = _prepare(shapes, bodies, pairs, others, margin, threads)
-    out = np.full(count_of(pairs), np.inf, np.float32)
-    _narc.find_separations(shapes, bodies, told, {"margin": margin, "workers": threads, **options}, out)
-    return out
+@overload
+def separations(shapes: Shapes, bodies: Bodies, pairs: None = None, *, margin: float = np.inf, others: Bodies | None = None,
+                threads: int = 1, **options: Any) -> tuple[NDArray[np.float32], Pairs]: ...
+@overload
+def separations(shapes: Shapes, bodies: Bodies, pairs: PairsLike, *, margin: float = np.inf, others: Bodies | None = None,
+                threads: int = 1, **options: Any) -> NDArray[np.float32]: ...
+def separations(shapes: Shapes, bodies: Bodies, pairs: PairsLike | None = None, *, margin: float = np.inf,
+                others: Bodies | None = None, threads: int = 1,
+                **options: Any) -> NDArray[np.float32] | tuple[NDArray[np.float32], Pairs]:
+    """How far apart each pair is, (m,) of float32: below 0 the depth; infinity where it is `margin` or more. `pairs` None: those
+    whose boxes are closer than `margin`, which must be finite, and the answer is (numbers, pairs); `options` are then those of
+    pairs(), too."""
+    found, told, rest = _prepare(shapes, bodies, pairs, others, margin, threads, options)
+    count = count_of(found)
+    out = np.full(count, np.inf, np.float32)
+    _fill(_narc.find_separations, shapes, bodies, told, {"margin": margin, "workers": threads, **rest}, out, count)
+    return out if pairs is not None else (out, found)
 
 
-def _two(call: Any, kind: Any, shapes: Shapes, a: Any, b: Any, margin: float, options: dict[str, Any]) -> Any:
+def _hold_turns(shapes: Shapes, bodies: Bodies, around: Rows) -> None:
+    """Makes boxes hold their bodies at every angle: no point is further from the position than the arcs' extent, nor, then,
+    than twice that from any other point."""
+    own: Any = bodies if isinstance(bodies, dict) else np.asarray(bodies)
+    names = own.keys() if isinstance(own, dict) else own.dtype.names or ()
+    shape = np.asarray(own["shape"] if "shape" in names else 0)
+    scale = np.asarray(own["scale"] if "scale" in names else 1.0, np.float64)
+    numbers, which = np.unique(shape, return_inverse=True)
+    extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max() for arcs in map(shapes.arcs, numbers)])
+    grow = np.nextafter((2 * scale * extents[which].reshape(shape.shape)).astype(np.float32), np.float32(np.inf))
+    around["min"] = np.nextafter(around["min"] - np.atleast_1d(grow)[:, None], np.float32(-np.inf))
+    around["max"] = np.nextafter(around["max"] + np.atleast_1d(grow)[:, None], np.float32(np.inf))
+
+
+@overload
+def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: None = None, *, angle: ArrayLike | None = None,
+          threads: int = 1, **options: Any) -> tuple[Rows, Pairs]: ...
+@overload
+def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: PairsLike, *, angle: ArrayLike | None = None,
+          threads: int = 1, **options: Any) -> Rows: ...
+def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: PairsLike | None = None, *, angle: ArrayLike | None = None,
+          threads: int = 1, **options: Any) -> Rows | tuple[Rows, Pairs]:
+    """When the bodies of each pair meet on their ways: rows of narc.IMPACT. `motion` (n, 2), `angle` (n,) in radians. `pairs`
+    None: those whose boxes meet on their ways, and the answer is (rows, pairs). `options` are those of narc_cast_options: target,
+    tolerance, targets, front_only, parting; and for pairs that are found those of pairs()."""
+    ways: dict[str, Any] = {"xy": narrow(motion), "angle": None if angle is None else narrow(angle)}
+    found, told, rest = pairs, pairs, options
+    if pairs is None and count_of(bodies):
+        filters, rest = split(options, "narc_pair_filter")
+        reach = {"origin": rest.pop("origin")} if "origin" in rest else {}
+        around = boxes(shapes, bodies, margin=max(float(rest.get("target", 0.0)), 0.0), motion=ways["xy"], threads=threads, **reach)
+        if angle is not None:
+            _hold_turns(shapes, bodies, around)
+        found = told = box_pairs(around, threads=threads, **(filters or {}))
+    out = np.zeros(count_of(found), IMPACT)
+    _narc.cast_pairs(shapes, bodies, ways, told, {"workers": threads, **rest}, out)
+    return out if pairs is not None else (out, cast(Pairs, found))
+
+
+def _two(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, a: Any, b: Any, margin: float,
+         options: dict[str, Any]) -> np.void:
     out = np.zeros(1, kind)
     call(shapes, a, b, {"margin": margin, **options} if margin or options else None, out)
-    return out[0]
+    return out[0]  # type: ignore[no-any-return]
 
 
-def contact(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+def contact(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> np.void:
     """The contact of two bodies, rows of narc.BODY: a row of narc.CONTACT, `count` 0 where there is none."""
     return _two(_narc.find_contact, CONTACT, shapes, a, b, margin, options)
 
 
-def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> Any:
+def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> np.void:
     """The manifold of two bodies, rows of narc.BODY: a row of narc.MANIFOLD, `count` 0 where there is none."""
     return _two(_narc.find_manifold, MANIFOLD, shapes, a, b, margin, options)
 
 
-def refine(shapes: Shapes, bodies: Bodies, pairs: Any, rows: Rows, *, others: Bodies = None) -> Rows:
+def refine(shapes: Shapes, bodies: Bodies, pairs: PairsLike, rows: Rows, *, others: Bodies | None = None) -> Rows:
     """Contacts of these pairs again in double precision: separation, normal, point."""
-    _, told = _prepare(shapes, bodies, pairs, others, 0.0, 1)
+    _, told, _ = _prepare(shapes, bodies, pairs, others, 0.0, 1, {})
     out = np.zeros(len(rows), REFINED_CONTACT)
     _narc.refine_contacts(shapes, bodies, told, rows, out)
     return out

@@ -43,7 +43,7 @@ def _choose(name: str, value: str, names: Sequence[str]) -> int:
     return names.index(value)
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Fit:
     """An arc shape that was fitted to an outline. Lengths are in the outline's unit."""
 
@@ -60,6 +60,9 @@ class Fit:
     clearance: float  #: of fits that bound: the least distance of the outline from the shape's, above 0
     flatness: float
     seconds: float
+
+    def __repr__(self) -> str:
+        return f"<narc.Fit: {len(self.arcs)} arcs, area {self.area:.4g}, within {self.max_distance:.3g} of the outline's hull>"
 
 
 class Outline:

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _narc
-from ._batch import Bodies, Rows, boxes, count_of, from_bits
+from ._batch import SLICE, boxes, count_of, from_bits, narrow, slices
 from ._shapes import Shapes
-from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, split)
+from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, Bodies, Pairs, Rows,
+                      split)
 
 
 def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -21,14 +23,43 @@ def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict
 
 
 def _floats(given: ArrayLike) -> Any:
-    """As they are if they are float32, or double positions; lists become float64."""
-    return given if isinstance(given, np.ndarray) else np.asarray(given, np.float64)
+    """As they are if they are floats of some kind; whole numbers and lists become float64."""
+    array = np.asarray(given)
+    return array.astype(np.float64) if array.dtype.kind in "iu" or array.size == 0 else array
 
 
-def _rays(xy: ArrayLike, motion: Any, fraction: Any) -> dict[str, Any]:
+def _rays(xy: ArrayLike, motion: ArrayLike, fraction: Any) -> dict[str, Any]:
     start = _floats(xy)
-    place = {"xy": start} if np.ndim(start) == 2 else {"x": float(start[0]), "y": float(start[1])}
-    return {**place, "motion": motion, "fraction": fraction}
+    place = {"x": float(start[0]), "y": float(start[1])} if start.shape == (2,) else {"xy": start}
+    return {**place, "motion": narrow(motion), "fraction": None if fraction is None else narrow(fraction)}
+
+
+def _of_all(name: str) -> bool:
+    return name in ("owner", "origin")
+
+
+def _cut(given: Any, part: slice, count: int, name: str) -> Any:
+    """Of columns with an item for each question those of a part of the questions."""
+    if isinstance(given, dict):
+        return {key: value if _of_all(key) else _cut(value, part, count, f"{name}.{key}") for key, value in given.items()}
+    if not np.ndim(given):
+        return given
+    if len(given) != count:
+        raise ValueError(f"{name} has {len(given)} items, where there are {count}")
+    return given[part]
+
+
+def _ask(call: Callable[..., int], fixed: tuple[Any, ...], asked: dict[str, Any], out: NDArray[Any], count: int, most: int = 1,
+         bits: int = 1) -> None:
+    """A call whose questions, by name, have answers in `out`: `most` rows each, or a bit of a word. Of many a part at a time."""
+    if count <= SLICE:
+        call(*fixed, *asked.values(), out)
+        return
+    for part in slices(count):
+        own = out[part.start * most // bits: -(-part.stop * most // bits)]
+        call(*fixed, *(_cut(given, part, count, name) for name, given in asked.items()), own)
+        if own.dtype.names:
+            own[own.dtype.names[0]] += np.uint32(part.start)  # the number of the question
 
 
 class Index(_narc.Handle):
@@ -53,7 +84,7 @@ class Index(_narc.Handle):
     def _boxes(self, bodies: Bodies, options: dict[str, Any]) -> Rows:
         return boxes(self._shapes, bodies, origin=options.get("origin"), threads=options["workers"])
 
-    def update(self, bodies: Bodies = None, changed: Any = None, **options: Any) -> None:
+    def update(self, bodies: Bodies | None = None, changed: Any = None, **options: Any) -> None:
         """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were.
         `options` are those that are others from now on, such as columns for more bodies."""
         bodies, options = self._bodies if bodies is None else bodies, {**self._options, **options}
@@ -73,72 +104,82 @@ class Index(_narc.Handle):
     def __repr__(self) -> str:
         return f"<narc.Index of {len(self)} bodies>"
 
-    def regions(self, boxes: ArrayLike, *, threads: int = 1, **options: Any) -> NDArray[np.uint32]:
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _index, (self._shapes, self._bodies, self._options)
+
+    def regions(self, boxes: ArrayLike, *, threads: int = 1, **options: Any) -> Pairs:
         """Pairs (box, body) of boxes that overlap, (m, 2). `boxes`: rows of narc.BOX, or of (min x, min y, max x, max y) as
         float32."""
         found = _narc.query_index(self, boxes, {**options, "workers": threads})
         return np.frombuffer(found, np.uint32).reshape(-1, 2)
 
-    def rays(self, xy: ArrayLike, motion: Any, *, most: int = 1, fraction: Any = None, threads: int = 1,
+    def rays(self, xy: ArrayLike, motion: ArrayLike, *, most: int = 1, fraction: ArrayLike | None = None, threads: int = 1,
              **options: Any) -> Rows:
         """What each ray hits first: rows of narc.RAY_HIT, `count` 0 where there is nothing. A ray goes from `xy` (n, 2), or
-        from one place (2,), to xy + motion, (n, 2) of float32; `most` rows for each ray, nearest first. `options` are those of
-        narc_ray_options: inside, any."""
-        out = np.zeros(len(motion) * max(most, 1), RAY_HIT)
+        from one place (2,), to xy + motion, (n, 2); of it the part up to `fraction` counts. `most` rows for each ray, nearest
+        first: (n, most). `options` are those of narc_ray_options: inside, any."""
+        given = _rays(xy, motion, fraction)
+        count = len(given["motion"])
+        out = np.zeros(count * max(most, 1), RAY_HIT)
         search, options = _search(options, threads)
-        _narc.cast_rays(self, self._shapes, self._bodies, _rays(xy, motion, fraction),
-                        {"search": search, "most": most, **options}, out)
+        _ask(_narc.cast_rays, (self, self._shapes, self._bodies), {"rays": given, "options": {"search": search, "most": most, **options}},
+             out, count, max(most, 1))
         return out.reshape(-1, most) if most > 1 else out
 
     def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
-        """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none. `distance`:
-        only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is within."""
+        """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none; (n, most) where
+        more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is
+        within."""
         points = _floats(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
         search, options = _search(options, threads)
-        _narc.find_nearest(self, self._shapes, self._bodies, points,
-                           {"search": search, "distance": distance, "most": most, **options}, out)
+        _ask(_narc.find_nearest, (self, self._shapes, self._bodies),
+             {"points": points, "options": {"search": search, "distance": distance, "most": most, **options}}, out, len(points),
+             max(most, 1))
         return out.reshape(-1, most) if most > 1 else out
 
-    def casts(self, movers: Bodies, motion: Any, angle: Any = None, *, threads: int = 1, **options: Any) -> Rows:
-        """What each mover hits first on its way, `motion` (n, 2) of float32 while it turns by `angle`: rows of narc.IMPACT.
+    def casts(self, movers: Bodies, motion: ArrayLike, angle: ArrayLike | None = None, *, threads: int = 1, **options: Any) -> Rows:
+        """What each mover hits first on its way, `motion` (n, 2) while it turns by `angle`: rows of narc.IMPACT.
         `options` are those of narc_cast_options: target, tolerance, targets, front_only, parting."""
-        out = np.zeros(count_of(movers), IMPACT)
+        count = count_of(movers)
+        out = np.zeros(count, IMPACT)
         search, options = _search(options, threads)
-        _narc.cast_shapes(self, self._shapes, self._bodies, movers, {"xy": motion, "angle": angle}, search, options or None, out)
+        _ask(_narc.cast_shapes, (self, self._shapes, self._bodies),
+             {"movers": movers, "motions": {"xy": narrow(motion), "angle": None if angle is None else narrow(angle)},
+              "search": search, "options": options or None}, out, count)
         return out
 
 
-def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *, threads: int = 1) -> Rows:
+def _index(shapes: Shapes, bodies: Bodies, options: dict[str, Any]) -> Index:
+    return Index(shapes, bodies, **{("threads" if name == "workers" else name): value for name, value in options.items()})
+
+
+def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> Rows:
     """How far each point of `xy` (n, 2) is from one body: from number `body`[k], or from body k. Rows of narc.DISTANCE."""
     points = _floats(xy)
     out = np.zeros(len(points), DISTANCE)
-    _narc.find_distances(shapes, bodies, points, body, threads, out)
+    _ask(lambda xy, body, out: int(_narc.find_distances(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
+         out, len(points))
     return out
 
 
-def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: Any = None, *, threads: int = 1) -> NDArray[np.bool_]:
+def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> NDArray[np.bool_]:
     """Which points of `xy` (n, 2) are within body number `body`[k], one number for all, or body k: (n,) of bool."""
     points = _floats(xy)
     words = np.zeros((len(points) + 63) // 64, np.uint64)
-    _narc.find_inside(shapes, bodies, points, body, threads, words)
+    _ask(lambda xy, body, out: int(_narc.find_inside(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
+         words, len(points), bits=64)
     return from_bits(words, len(points))
 
 
-def rays(shapes: Shapes, bodies: Bodies, xy: ArrayLike, motion: Any, body: Any = None, *, fraction: Any = None, threads: int = 1,
-         **options: Any) -> Rows:
+def rays(shapes: Shapes, bodies: Bodies, xy: ArrayLike, motion: ArrayLike, body: ArrayLike | None = None, *,
+         fraction: ArrayLike | None = None, threads: int = 1, **options: Any) -> Rows:
     """Where each ray, from `xy` on by `motion` as in Index.rays(), hits body number `body`[k], one for all, or body k: rows of
     narc.RAY_HIT."""
-    out = np.zeros(len(motion), RAY_HIT)
-    _narc.cast_ray_pairs(shapes, bodies, _rays(xy, motion, fraction), body, {"search": {"workers": threads}, **options}, out)
-    return out
-
-
-def casts(shapes: Shapes, bodies: Bodies, motion: Any, pairs: Any, *, angle: Any = None, threads: int = 1,
-          **options: Any) -> Rows:
-    """When the bodies of each pair meet on their ways: rows of narc.IMPACT. `motion` (n, 2) of float32, `angle` (n,)."""
-    out = np.zeros(count_of(pairs), IMPACT)
-    _narc.cast_pairs(shapes, bodies, {"xy": motion, "angle": angle}, pairs, {"workers": threads, **options}, out)
+    given = _rays(xy, motion, fraction)
+    out = np.zeros(len(given["motion"]), RAY_HIT)
+    _ask(_narc.cast_ray_pairs, (shapes, bodies), {"rays": given, "body": body,
+                                                  "options": {"search": {"workers": threads}, **options}}, out, len(out))
     return out
 
 
@@ -168,8 +209,11 @@ class Contacts(_narc.Handle):
     """Contacts that stay: update() is a step, with work only for what has moved. `rows`: "manifolds" or "contacts". `user`: the
     dtype of what you keep for each pair, such as impulses: all 0 for a new pair, and there as long as its slot is."""
 
-    _kind: Any
+    _rows: str
+    _kind: np.dtype[np.void]
     _user: np.dtype[Any]
+    _shapes: Shapes | None  # of the last step
+    _touching: int
 
     def __new__(cls, rows: str = "manifolds", user: DTypeLike = np.dtype([])) -> Contacts:
         kinds = {"manifolds": (MANIFOLD, int(CONSTANTS["NARC_MANIFOLD_ROWS"])),
@@ -180,8 +224,15 @@ class Contacts(_narc.Handle):
         if kept.hasobject or kept.itemsize % 4:
             raise TypeError(f"user is {kept}: a dtype without objects is wanted, of 4, 8, 12 ... bytes")
         self = super().__new__(cls, "Contacts", kinds[rows][1], kept.itemsize)
-        self._kind, self._user = kinds[rows][0], kept
+        self._rows, self._kind, self._user, self._shapes, self._touching = rows, kinds[rows][0], kept, None, 0
         return self
+
+    def __repr__(self) -> str:
+        kept = f", user {self._user}" if self._user.itemsize else ""
+        return f"<narc.Contacts: {self._rows}, {self._touching} of the last step{kept}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _contacts, (self._rows, self._user, self._shapes, None if self._shapes is None else self.save())
 
     def update(self, shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, skin: float = 0.0, recycling: float = 0.0,
                threads: int = 1, **options: Any) -> Step:
@@ -191,11 +242,12 @@ class Contacts(_narc.Handle):
         filters, options = split(options, "narc_pair_filter")
         step = _narc.update_contacts(self, shapes, bodies, {"margin": margin, "skin": skin, "recycling": recycling,
                                                             "filter": filters, "workers": threads, **options})
-        return self._step(step)
+        return self._step(shapes, step)
 
-    def _step(self, step: tuple[Any, ...]) -> Step:
-        kinds = (np.uint32, np.uint32, self._kind, self._kind, TOUCH_EVENT, TOUCH_EVENT, np.uint32)
+    def _step(self, shapes: Shapes, step: tuple[Any, ...]) -> Step:
+        kinds: tuple[Any, ...] = (np.uint32, np.uint32, self._kind, self._kind, TOUCH_EVENT, TOUCH_EVENT, np.uint32)
         arrays: list[Any] = [np.frombuffer(part, kind) for part, kind in zip(step, kinds)]
+        self._shapes, self._touching = shapes, len(arrays[1])
         return Step(arrays[0].reshape(-1, 2), *arrays[1:], *step[7:])
 
     def user(self, slots: ArrayLike) -> NDArray[Any]:
@@ -230,4 +282,11 @@ class Contacts(_narc.Handle):
 
     def load(self, shapes: Shapes, data: bytes) -> Step:
         """Makes contacts what they were when the bytes were saved, and returns the last step before."""
-        return self._step(_narc.load_contacts(self, shapes, np.frombuffer(data, np.uint8)))
+        return self._step(shapes, _narc.load_contacts(self, shapes, np.frombuffer(data, np.uint8)))
+
+
+def _contacts(rows: str, user: np.dtype[Any], shapes: Shapes | None, data: bytes | None) -> Contacts:
+    contacts = Contacts(rows, user)
+    if shapes is not None and data is not None:
+        contacts.load(shapes, data)
+    return contacts

@@ -56,6 +56,12 @@ class Shapes(_narc.Handle):
         _narc.add_shape(self, _arcs(arcs), out)
         return int(out[0])
 
+    def half_plane(self) -> int:
+        """All that is not above its own x axis: ground without end, which a body's position and rotation place."""
+        out = np.zeros(1, np.uint32)
+        _narc.add_half_plane(self, out)
+        return int(out[0])
+
     def circle(self, radius: float) -> int:
         """A circle around the origin."""
         return self.add(_built(_narc.build_circle, radius))
@@ -127,7 +133,7 @@ class Shapes(_narc.Handle):
         _narc.remove_shape(self, shape)
 
     def arcs(self, shape: int) -> Arcs:
-        """The arcs of a shape as they are stored, in single precision; none of a shape that is not there."""
+        """The arcs of a shape as they are stored, in single precision. Raises narc.OutOfRange where there is none."""
         return _built(_narc.get_arcs, self, shape)
 
     def flags(self, shape: int) -> int:

@@ -3,17 +3,27 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _narc
+
+Rows = NDArray[np.void]  # rows of a structure, such as narc.CONTACT
+Pairs = NDArray[np.uint32]  # (m, 2)
+Bodies = NDArray[Any] | memoryview | Mapping[str, Any]  # rows of BODY, other records with these fields, or columns by name
 
 _NUMBERS = {"float": "f4", "double": "f8", "uint8_t": "u1", "uint16_t": "u2", "uint32_t": "u4", "uint64_t": "u8", "size_t": "u8"}
 _LAYOUTS = _narc.layouts()
 CONSTANTS: dict[str, int | float] = _narc.constants()
+
+
+os.register_at_fork(before=lambda: _narc._fork(0), after_in_parent=lambda: _narc._fork(1), after_in_child=lambda: _narc._fork(2))
 
 
 def row_type(name: str) -> np.dtype[np.void]:
@@ -36,6 +46,25 @@ def _known(name: str) -> np.dtype[np.void]:
     kind = row_type(name)
     _narc.know(name, kind)
     return kind
+
+
+for _format, _number in (("f", np.float32), ("d", np.float64), ("I", np.uint32), ("Q", np.uint64), ("q", np.int64)):
+    _narc.know(_format, np.dtype(_number))
+
+
+def as_array(given: object, kind: str, name: str) -> NDArray[Any]:
+    """A list as the numbers of a column; what is not is told of by its name. Whole numbers are not rounded."""
+    try:
+        made = np.asarray(given)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    if made.size == 0:
+        made = made.astype(kind)
+    if made.dtype.kind not in ("fiub" if kind[0] == "f" else "iub"):
+        raise TypeError(f"{name}: a list of {'' if kind[0] == 'f' else 'whole '}numbers is wanted, not of {made.dtype}")
+    if kind == "u1" and made.size and not (0 <= made.min() and made.max() < 256):
+        raise ValueError(f"{name}: numbers of 0 to 255 are wanted, not {made.min()} to {made.max()}")
+    return made if kind == "i8" and made.dtype.kind != "b" else made.astype(kind)
 
 
 def warn_of_skipped(count: int) -> None:

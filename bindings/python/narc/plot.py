@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from numpy.typing import NDArray
 
-from ._batch import Rows
 from ._shapes import Shapes, outlines
+from ._tables import Rows
 
 
 def draw_bodies(axis: Axes, shapes: Shapes, bodies: Rows, tolerance: float = 1e-2, **style: Any) -> PolyCollection:

@@ -88,7 +88,7 @@ static PyObject *draw(PyObject *self, PyObject *given) {
     const uint64_t *const end = ends.buf;
     for (size_t k = 0, i = 0; k < (size_t)ends.len / sizeof *end && !status; k++)
         for (size_t first = i; i < end[k] && i < (size_t)points.len / sizeof *point && !status; i++)
-            status = (i == first ? narc_move_to : narc_line_to)(path, &point[i], &error);
+            status = i == first ? narc_move_to(path, &point[i], &error) : narc_line_to(path, &point[i], &error);
     PyBuffer_Release(&points);
     PyBuffer_Release(&ends);
     return wrap_path(path, status, &error);

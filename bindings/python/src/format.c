@@ -15,7 +15,8 @@ static const struct code {
     unsigned char size, native;
     enum family family;
     const char *name; /* of what is no whole number */
-} codes[] = {{'f', 4, 4, OTHER, "float32"},
+} codes[] = {{'I', 4, 4, UNSIGNED, NULL},
+             {'f', 4, 4, OTHER, "float32"},
              {'d', 8, 8, OTHER, "float64"},
              {'e', 2, 2, OTHER, "float16"},
              {'g', sizeof(long double), sizeof(long double), OTHER, "long double"},
@@ -25,7 +26,6 @@ static const struct code {
              {'h', 2, 2, SIGNED, NULL},
              {'H', 2, 2, UNSIGNED, NULL},
              {'i', 4, 4, SIGNED, NULL},
-             {'I', 4, 4, UNSIGNED, NULL},
              {'l', 4, sizeof(long), SIGNED, NULL},
              {'L', 4, sizeof(long), UNSIGNED, NULL},
              {'q', 8, 8, SIGNED, NULL},

@@ -25,13 +25,20 @@ static PyObject *warning_class;
 
 /* What the library creates. Calls may read it at a time, or one may change it: what would disturb another call, which is
  * under way without Python's lock, is an error. */
+enum { ROOMS = 7 };
 typedef struct handle {
     PyObject_HEAD void *pointer;
     const narc_step_result *step; /* of contacts: the last one, if it can still be read */
+    PyObject *rooms[2][ROOMS];    /* bytes of the last two: they are filled again when nobody has them any more */
+    int room;
     size_t user_size;
     int kind, readers;
     bool is_changed;
+    unsigned forks; /* of this process, when it was last used */
 } handle;
+
+/* How many forks this process is away from the first one. Threads that were reading in the parent are not here. */
+static unsigned fork_count;
 
 enum { SHAPES, INDEX, CONTACTS, BROAD_PHASE, KINDS };
 static const char *const kinds[KINDS] = {"Shapes", "Index", "Contacts", "BroadPhase"};
@@ -78,6 +85,8 @@ static PyObject *handle_new(PyTypeObject *type, PyObject *arguments, PyObject *k
 static void handle_dealloc(PyObject *object) {
     handle *const self = (handle *)object;
     PyTypeObject *const type = Py_TYPE(object);
+    for (int k = 0; k < 2 * ROOMS; k++)
+        Py_XDECREF(self->rooms[k / ROOMS][k % ROOMS]);
     switch (self->kind) {
     case SHAPES:
         narc_destroy_shapes(self->pointer);
@@ -195,6 +204,17 @@ static narc_status copy_user(const handle *contacts, const uint32_t *slots, size
     return NARC_OK;
 }
 
+static narc_status get_arcs(const narc_shapes *shapes, size_t shape, narc_arc *out, size_t *out_count,
+                            narc_error *error) {
+    *out_count = narc_get_arcs(shapes, number(shape), out);
+    if (*out_count)
+        return NARC_OK;
+    snprintf(error->message, sizeof error->message, "there is no shape %zu", shape);
+    error->index = shape;
+    error->value = (double)shape;
+    return NARC_ERROR_INDEX;
+}
+
 static narc_status forget(void *object) {
     ((handle *)object)->step = NULL;
     return NARC_OK;
@@ -226,7 +246,7 @@ typedef struct argument {
     unsigned char group;
     int kind;                  /* of a handle */
     const narc_layout *layout; /* of a structure or of rows */
-    size_t size;               /* of items without a layout */
+    size_t size, alignment;    /* of rows */
     Py_ssize_t least;          /* rows to be filled, whatever the call */
     bool is_bits;              /* words of 64 bits, one bit for each item of the group */
     char column[32];
@@ -240,6 +260,17 @@ typedef struct signature {
 
 static signature signatures[CALLS];
 
+/* Of the widest number in a structure. */
+static size_t find_alignment(const narc_layout *layout) {
+    size_t widest = 1;
+    for (size_t k = 0; k < layout->member_count; k++) {
+        const narc_layout *const inner = narc_find_layout(layout->members[k].type);
+        const size_t here = inner ? find_alignment(inner) : layout->members[k].size;
+        widest = here > widest ? here : widest;
+    }
+    return widest;
+}
+
 static bool read_argument(const char *text, argument *out) {
     char kind[48];
     const size_t name = strcspn(text, ":"), end = strcspn(text, " ");
@@ -247,7 +278,7 @@ static bool read_argument(const char *text, argument *out) {
     const size_t length = (mark ? (size_t)(mark - text) : end) - name - 1;
     PyOS_snprintf(out->name, sizeof out->name, "%.*s", (int)name, text);
     PyOS_snprintf(kind, sizeof kind, "%.*s", (int)length, text + name + 1);
-    out->group = at ? (unsigned char)at[1] : 0;
+    out->group = at ? group_number(at[1]) : 0;
     out->least = star ? (Py_ssize_t)strtol(star + 1, NULL, 10) : 0;
     const bool rows = kind[0] == '<' || kind[0] == '>', changed = kind[length - 1] == '!';
     if (rows) {
@@ -255,6 +286,7 @@ static bool read_argument(const char *text, argument *out) {
         out->layout = narc_find_layout(kind + 1);
         out->is_bits = strcmp(kind + 1, "bits") == 0;
         out->size = out->layout ? out->layout->size : out->is_bits ? sizeof(uint64_t) : (size_t)(kind[1] - '0');
+        out->alignment = out->layout ? find_alignment(out->layout) : out->size;
         return out->layout || out->is_bits || (kind[1] >= '1' && kind[1] <= '8');
     }
     if ((out->kind = find_kind(kind, length - changed)) >= 0) {
@@ -291,6 +323,9 @@ static bool take_handle(frame *f, const argument *a, PyObject *given, int slot) 
         return false;
     }
     handle *const h = (handle *)given;
+    if (h->forks != fork_count)
+        h->readers = 0;
+    h->forks = fork_count;
     if (h->is_changed || (a->type == CHANGED_HANDLE && h->readers > 0)) {
         PyErr_Format(PyExc_RuntimeError, "%s is in use by another call", a->name);
         return false;
@@ -318,7 +353,8 @@ static void give_handles_back(const frame *f, const signature *s) {
 }
 
 static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
-    f->argument = a->name;
+    f->names[0] = a->name;
+    f->depth = 1;
     switch (a->type) {
     case HANDLE:
     case CHANGED_HANDLE:
@@ -334,7 +370,7 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
                                  : frame_fill(f, a->layout, f->p[k], given, a->group);
     case ROWS_IN:
     case ROWS_OUT:
-        if (!frame_rows(f, a->layout, a->size, a->type == ROWS_OUT, given, &f->p[k], &f->n[k]))
+        if (!frame_rows(f, a->layout, a->size, a->alignment, a->type == ROWS_OUT, given, &f->p[k], &f->n[k]))
             return false;
         break;
     case DOUBLE:
@@ -371,8 +407,27 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
 
 /* ------------------------------------------------------------------------------------------------ results */
 
-static PyObject *copy_pairs(const narc_pairs *pairs, const uint32_t *slots, size_t count) {
-    PyObject *const made = PyByteArray_FromStringAndSize(NULL, (Py_ssize_t)(count * 8));
+/* Bytes to fill: in the room, if it has some that nobody else has, and then it keeps them. Fresh memory takes longer than what is
+ * written there. */
+static PyObject *make_bytes(PyObject **room, size_t size) {
+    if (room && *room && Py_REFCNT(*room) == 1) {
+        if (PyByteArray_Resize(*room, (Py_ssize_t)size) == 0) {
+            Py_INCREF(*room);
+            return *room;
+        }
+        PyErr_Clear();
+    }
+    PyObject *const made = PyByteArray_FromStringAndSize(NULL, (Py_ssize_t)size);
+    if (room) {
+        Py_XINCREF(made);
+        Py_XDECREF(*room);
+        *room = made;
+    }
+    return made;
+}
+
+static PyObject *copy_pairs(PyObject **room, const narc_pairs *pairs, const uint32_t *slots, size_t count) {
+    PyObject *const made = make_bytes(room, count * 8);
     narc_error error = {0};
     if (!made)
         return NULL;
@@ -385,27 +440,34 @@ static PyObject *copy_pairs(const narc_pairs *pairs, const uint32_t *slots, size
 }
 
 /* Rows of slots, or the first ones. */
-static PyObject *copy_rows(const void *rows, size_t size, const uint32_t *slots, size_t count) {
-    PyObject *const made = PyByteArray_FromStringAndSize(NULL, (Py_ssize_t)(count * size));
+static PyObject *copy_rows(PyObject **room, const void *rows, size_t size, const uint32_t *slots, size_t count) {
+    PyObject *const made = make_bytes(room, count * size);
     if (!made)
         return NULL;
     char *const out = PyByteArray_AsString(made);
-    for (size_t k = 0; k < count; k++)
-        memcpy(out + k * size, (const char *)rows + (slots ? slots[k] : k) * size, size);
+    if (!slots && count)
+        memcpy(out, rows, count * size);
+    else if (size == sizeof(narc_contact)) /* as structures they are copied without a call for each */
+        for (size_t k = 0; k < count; k++)
+            ((narc_contact *)(void *)out)[k] = ((const narc_contact *)rows)[slots[k]];
+    else
+        for (size_t k = 0; k < count; k++)
+            ((narc_manifold *)(void *)out)[k] = ((const narc_manifold *)rows)[slots[k]];
     return made;
 }
 
 /* (pairs, slots, rows of what touches, further rows, began, ended, slots of sensors, all pairs, skipped, asked) */
-static PyObject *copy_step(const narc_step_result *r) {
+static PyObject *copy_step(handle *contacts, const narc_step_result *r) {
     const size_t row = r->manifolds ? sizeof *r->manifolds : sizeof *r->contacts;
     const void *const rows = r->manifolds ? (const void *)r->manifolds : r->contacts;
-    PyObject *const parts[] = {copy_pairs(&r->pairs, r->touching, r->touching_count),
-                               copy_rows(r->touching, 4, NULL, r->touching_count),
-                               copy_rows(rows, row, r->touching, r->touching_count),
-                               copy_rows(r->more, row, NULL, r->more_count),
-                               copy_rows(r->began, sizeof *r->began, NULL, r->began_count),
-                               copy_rows(r->ended, sizeof *r->ended, NULL, r->ended_count),
-                               copy_rows(r->sensors, 4, NULL, r->sensor_count),
+    PyObject **const rooms = contacts->rooms[contacts->room ^= 1];
+    PyObject *const parts[] = {copy_pairs(&rooms[0], &r->pairs, r->touching, r->touching_count),
+                               copy_rows(&rooms[1], r->touching, 4, NULL, r->touching_count),
+                               copy_rows(&rooms[2], rows, row, r->touching, r->touching_count),
+                               copy_rows(&rooms[3], r->more, row, NULL, r->more_count),
+                               copy_rows(&rooms[4], r->began, sizeof *r->began, NULL, r->began_count),
+                               copy_rows(&rooms[5], r->ended, sizeof *r->ended, NULL, r->ended_count),
+                               copy_rows(&rooms[6], r->sensors, 4, NULL, r->sensor_count),
                                PyLong_FromSize_t(r->count),
                                PyLong_FromSize_t(r->skipped),
                                PyLong_FromSize_t(r->asked_count)};
@@ -439,11 +501,11 @@ static PyObject *make_result(const frame *f, const signature *s, narc_status sta
         return NULL;
     switch (s->call->result) {
     case PAIRS:
-        return copy_pairs(&f->pairs, NULL, f->pairs.count);
+        return copy_pairs(NULL, &f->pairs, NULL, f->pairs.count);
     case SLOTS:
-        return copy_rows(f->slots, sizeof *f->slots, NULL, f->count);
+        return copy_rows(NULL, f->slots, sizeof *f->slots, NULL, f->count);
     case STEP:
-        return copy_step(f->step);
+        return copy_step(f->handles[0], f->step);
     default:
         return PyLong_FromSize_t(f->count);
     }
@@ -559,15 +621,29 @@ static PyObject *list_names(PyObject *self, PyObject *unused) {
     return names;
 }
 
-/* know(structure, dtype) */
+/* know(structure or format, dtype) */
 static PyObject *know(PyObject *self, PyObject *given) {
     const char *name;
     PyObject *dtype;
     (void)self;
     if (!PyArg_ParseTuple(given, "sO", &name, &dtype))
         return NULL;
-    if (!frame_know(dtype, narc_find_layout(name)))
+    if (!frame_know(dtype, name))
         return PyErr_Format(PyExc_ValueError, "%s can't be known", name);
+    Py_RETURN_NONE;
+}
+
+/* _fork(when): 0 before a fork, 1 behind it in the parent, 2 in the child */
+static PyObject *hear_of_fork(PyObject *self, PyObject *given) {
+    const long when = PyLong_AsLong(given);
+    (void)self;
+    if (when == 0)
+        before_fork();
+    else if (when > 0)
+        after_fork(when == 2);
+    fork_count += when == 2;
+    if (PyErr_Occurred())
+        return NULL;
     Py_RETURN_NONE;
 }
 
@@ -579,6 +655,7 @@ static PyMethodDef functions[] = {
      "Chooses the instruction set for all later calls, such as \"avx2\" or \"scalar\"; None: the best."},
     {"know", know, METH_VARARGS, NULL},
     {"names", list_names, METH_NOARGS, NULL},
+    {"_fork", hear_of_fork, METH_O, NULL},
     {NULL, NULL, 0, NULL}};
 
 static bool add(PyObject *module, const char *name, PyObject *value) {

@@ -1,35 +1,102 @@
 /* SPDX-License-Identifier: MIT
  *
- * threads.c - the caller and its helpers take tasks until none is left.
+ * threads.c - the caller and the pool's threads take tasks until none is left.
  */
 #include "threads.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 
+/* What a caller wants done; it lies on the caller's stack, who waits until nobody works on it. */
 typedef struct work {
     void (*task)(void *argument, unsigned index);
     void *argument;
     unsigned count;
     atomic_uint next;
+    unsigned helpers; /* that are at it */
+    struct work *other;
 } work;
 
-static void *take_tasks(void *argument) {
-    work *const w = argument;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t wanted = PTHREAD_COND_INITIALIZER, ended = PTHREAD_COND_INITIALIZER;
+static work *open;           /* what helpers may come to */
+static unsigned pool_size;   /* threads that there are */
+static unsigned spare_count; /* of them those that sleep */
+
+static void take_tasks(work *w) {
     for (unsigned index; (index = atomic_fetch_add(&w->next, 1)) < w->count;)
         w->task(w->argument, index);
+}
+
+/* With the lock: what still has tasks that nobody took. */
+static work *find_work(void) {
+    work *w = open;
+    while (w && atomic_load(&w->next) >= w->count)
+        w = w->other;
+    return w;
+}
+
+static void *help(void *unused) {
+    (void)unused;
+    pthread_mutex_lock(&lock);
+    for (;;) {
+        work *w;
+        while (!(w = find_work())) {
+            spare_count++;
+            pthread_cond_wait(&wanted, &lock);
+            spare_count--;
+        }
+        w->helpers++;
+        pthread_mutex_unlock(&lock);
+        take_tasks(w);
+        pthread_mutex_lock(&lock);
+        if (--w->helpers == 0)
+            pthread_cond_broadcast(&ended);
+    }
     return NULL;
+}
+
+/* Where no more threads are to be had, those that there are do all. */
+static void want_helpers(unsigned count) {
+    pthread_attr_t detached;
+    pthread_t made;
+    if (pthread_attr_init(&detached))
+        return;
+    pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
+    for (unsigned more = spare_count; more < count && pool_size < MOST_THREADS; more++, pool_size++)
+        if (pthread_create(&made, &detached, help, NULL))
+            break;
+    pthread_attr_destroy(&detached);
 }
 
 void run_in_threads(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument) {
     work w = {.task = task, .argument = argument, .count = task_count};
-    pthread_t helpers[MOST_THREADS];
-    unsigned count = 0;
     (void)context;
-    /* where no more threads are to be had, those that there are do all */
-    while (count + 1 < task_count && count < MOST_THREADS && !pthread_create(&helpers[count], NULL, take_tasks, &w))
-        count++;
+    pthread_mutex_lock(&lock);
+    w.other = open;
+    open = &w;
+    want_helpers(task_count - 1);
+    pthread_cond_broadcast(&wanted);
+    pthread_mutex_unlock(&lock);
     take_tasks(&w);
-    while (count > 0)
-        pthread_join(helpers[--count], NULL);
+    pthread_mutex_lock(&lock);
+    work **at = &open;
+    while (*at != &w)
+        at = &(*at)->other;
+    *at = w.other;
+    while (w.helpers > 0)
+        pthread_cond_wait(&ended, &lock);
+    pthread_mutex_unlock(&lock);
+}
+
+void before_fork(void) { pthread_mutex_lock(&lock); }
+
+void after_fork(int is_child) {
+    if (is_child) {
+        open = NULL;
+        pool_size = spare_count = 0;
+        wanted = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
+        ended = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
+    }
+    pthread_mutex_unlock(&lock);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * threads.h - threads for one call: begun when it asks, ended before it returns, so that a fork has none to miss.
+ * threads.h - a pool of threads for calls that ask for more than one. They begin with the first call that wants them, help
+ * all callers, sleep between calls, and end with the process.
  */
 #ifndef NARC_THREADS_H
 #define NARC_THREADS_H
@@ -11,5 +12,9 @@ enum { MOST_THREADS = 256 };
 
 /* narc_workers.run */
 void run_in_threads(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument);
+
+/* Around a fork, whose child begins threads of its own. */
+void before_fork(void);
+void after_fork(int is_child);
 
 #endif

@@ -1,12 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Batches beside plain NumPy and shapely; arrays in all layouts; what is refused."""
 
-import os
-import pathlib
-import subprocess
-import sys
-import threading
-
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -125,6 +119,7 @@ def test_one_value_is_that_of_all(random):
     plain = narc.contacts(shapes, narc.bodies(xy, 0.0, box))
     same = narc.contacts(shapes, {"xy": xy, "cosine": 1.0, "sine": 0.0, "shape": box})
     assert plain[0].tobytes() == same[0].tobytes() and (plain[1] == same[1]).all()
+    assert narc.contacts(shapes, {"xy": xy})[0].tobytes() == plain[0].tobytes()
 
 
 def test_numbers_of_numpy_are_numbers(scene):
@@ -194,6 +189,62 @@ def test_options_have_their_columns(scene):
     assert len(dense) == len(pairs) and ((dense["count"] == 1) == (separations < 0)).all()
 
 
+def test_pairs_are_found_wherever_they_may_be(scene, random):
+    shapes, bodies = scene.shapes, scene.bodies
+    every = np.array([(a, b) for a in range(300) for b in range(a + 1, 300)], np.uint32)
+    touching, pairs = narc.overlaps(shapes, bodies)
+    assert (pairs[touching] == every[narc.overlaps(shapes, bodies, every)]).all() and touching.any()
+    gaps, pairs = narc.separations(shapes, bodies, margin=0.7)
+    expected = narc.separations(shapes, bodies, every)
+    assert (pairs[gaps < 0.7] == every[expected < 0.7]).all() and (gaps[gaps < 0.7] == expected[expected < 0.7]).all()
+    motion, angle = random.normal(0, 3, (300, 2)), random.normal(0, 2, 300)
+    for turn in (None, angle):
+        hits, pairs = narc.casts(shapes, bodies, motion, angle=turn, target=0.2)
+        expected = narc.casts(shapes, bodies, motion, every, angle=turn, target=0.2)
+        where = np.flatnonzero(expected["count"])
+        assert (pairs[hits["count"] > 0] == every[where]).all() and (hits["fraction"][hits["count"] > 0] == expected["fraction"][where]).all()
+        assert (pairs[hits["count"] > 0][:, 0] >= 0).sum() > 300
+    world = np.arange(300, dtype=np.uint32) % 4
+    rows, pairs = narc.contacts(shapes, bodies, world=world, margin=0.2)
+    assert (world[pairs[:, 0]] == world[pairs[:, 1]]).all() and len(rows) > 10
+    expected, found = narc.contacts(shapes, bodies, margin=0.2)
+    a, b = found[expected["pair"]].T
+    assert (pairs[rows["pair"]] == found[expected["pair"]][world[a] == world[b]]).all()
+    far = bodies.copy()
+    far["xy"] += 2.0**30
+    assert len(narc.manifolds(shapes, far, origin=(2.0**30, 2.0**30))[1]) < 2 * len(narc.manifolds(shapes, bodies)[1])
+
+
+def test_lists_are_columns(scene):
+    shapes, bodies = scene.shapes, scene.bodies
+    plain = {"xy": bodies["xy"][:9], "cosine": bodies["cosine"][:9], "sine": bodies["sine"][:9], "scale": bodies["scale"][:9],
+             "shape": bodies["shape"][:9]}
+    lists = {name: column.tolist() for name, column in plain.items()}
+    pairs = [[0, 1], [3, 4], (2, 8)]
+    expected = narc.separations(shapes, plain, np.array(pairs))
+    assert (narc.separations(shapes, lists, pairs) == expected).all()
+    assert (narc.separations(shapes, lists, ((0, 1), (3, 4), (2, 8))) == expected).all()
+    margins = [float(expected[0]) + 1, -99, 0.0]
+    assert list(narc.contacts(shapes, lists, pairs, margins=margins)["pair"]) == list(
+        narc.contacts(shapes, plain, pairs, margins=np.float32(margins))["pair"])
+    index = narc.Index(shapes, lists)
+    assert (index.regions([[0, 0, 30, 30], [0, 0, 1, 1]]) == index.regions(np.float32([[0, 0, 30, 30], [0, 0, 1, 1]]))).all()
+    ways = [[30, 0], [0, 30], [-1, 2.5]]
+    assert (index.rays((3, 3), ways) == index.rays(np.array([(3, 3)] * 3), np.float32(ways))).all()
+    assert (narc.distances(shapes, lists, [[0, 0], [1, 1]], [3, 4]) == narc.distances(shapes, plain, np.eye(2)[[0, 0]] * [0, 0] + [[0], [1]],
+                                                                                  np.array([3, 4]))).all()
+    for wrong, words in (([[0, 1], [2]], "pairs: "), ([[0.5, 1]], "pairs: a list of whole numbers is wanted, not of float64"),
+                         (["ab"], "pairs: a list of whole numbers is wanted"), ([[0, -1]], "pairs.*item 0 is -1")):
+        with pytest.raises((TypeError, ValueError), match=words):
+            narc.contacts(shapes, bodies, wrong)
+    for name, wrong in (("cosine", ["one"] * 9), ("scale", [1j] * 9), ("shape", [0.5] * 9), ("shape", [-1] * 9), ("xy", [[1, 2, 3]] * 9),
+                        ("sine", [[1, 2], [3]])):
+        with pytest.raises((TypeError, ValueError), match=f"bodies.{name}"):
+            narc.validate(shapes, {**lists, name: wrong})
+    with pytest.raises(ValueError, match="kind: numbers of 0 to 255"):
+        narc.pairs(shapes, bodies, kind=[300] * 300)
+
+
 REFUSED = [
     (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 2))), TypeError, "pairs: uint32 is wanted, not float64"),
     (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((3, 3), np.uint32)), ValueError, r"pairs: the shape is to be \(n, 2\)"),
@@ -225,6 +276,10 @@ REFUSED = [
     (lambda s: narc.contacts(None, s.bodies, [[0, 1]]), TypeError, "shapes: a narc.Shapes is wanted"),
     (lambda s: narc.pairs(s.shapes, s.bodies, others=s.bodies, kind=np.zeros(300, "u1")), TypeError, "kind: filters"),
     (lambda s: narc.pairs(s.shapes, s.bodies, kind=256), TypeError, "filter.kind"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], world=np.zeros(300, "u4")), TypeError, "world: this is for pairs that are"),
+    (lambda s: narc.separations(s.shapes, s.bodies), ValueError, "margin: without pairs it must be finite"),
+    (lambda s: narc.Index(s.shapes, s.bodies).rays((0, 0), [["a", "b"]]), TypeError, "motion"),
+    (lambda s: narc.Index(s.shapes, s.bodies).nearest([1, 2]), ValueError, r"points: the shape is to be \(n, 2\)"),
     (lambda s: narc.contacts(s.shapes, np.zeros(3, narc.MANIFOLD), [[0, 1]]), TypeError, "format is narc_manifold"),
     (lambda s: narc._narc.compute_mass(s.shapes.arcs(0), np.zeros(0, narc.MASS)), ValueError, "out has 0 rows, 1 are needed"),
     (lambda s: narc._narc.build_box(1, 1, 0, np.zeros(4, narc.ARC)), ValueError, "out has 4 rows, 64 are needed"),
@@ -312,63 +367,3 @@ def test_threads_give_the_same_bytes(random):
     for threads in (2, 5):
         many = narc.manifolds(shapes, bodies, threads=threads)
         assert one[0].tobytes() == many[0].tobytes() and (one[1] == many[1]).all()
-
-
-def test_python_runs_meanwhile_and_shapes_are_guarded(random):
-    shapes = narc.Shapes()
-    box = shapes.regular(30, 1.0, 0.01)
-    bodies = narc.bodies(random.random((3000, 2)) * 5, random.random(3000) * 7, box)
-    pairs = random.integers(0, 3000, (100000, 2)).astype(np.uint32)
-    seen, errors = [], []
-
-    def ask():
-        for _ in range(100):
-            seen.append(narc.separations(shapes, bodies, pairs).tobytes())
-            if errors:  # or this thread had been quicker than the other one began
-                break
-
-    threads = [threading.Thread(target=ask) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    while any(thread.is_alive() for thread in threads):
-        try:
-            shapes.circle(1 + len(errors))
-        except RuntimeError as error:
-            errors.append(str(error))
-    assert len(set(seen)) == 1
-    assert errors and set(errors) == {"shapes is in use by another call"}
-
-
-def test_a_child_of_a_fork_goes_on(scene):
-    before = narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes()
-    child = os.fork()
-    if child == 0:
-        same = narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes() == before
-        os._exit(0 if same else 1)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    assert narc.contacts(scene.shapes, scene.bodies, threads=2)[0].tobytes() == before
-
-
-@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer holds back what is freed")
-def test_memory_does_not_grow(scene):
-    def ask():
-        narc.contact(scene.shapes, scene.bodies[0], scene.bodies[1], margin=9)
-        narc.contacts(scene.shapes, scene.bodies, pairs, margin=1)
-        index.nearest(point)
-        with pytest.raises(narc.Error):
-            scene.shapes.circle(-1)
-
-    pairs, index, point = np.array([[0, 1], [2, 3]], np.uint32), narc.Index(scene.shapes, scene.bodies), np.zeros((1, 2))
-    used = []
-    for _ in range(3):
-        for _ in range(8000):
-            ask()
-        used.append(int(pathlib.Path("/proc/self/statm").read_text().split()[1]))
-    assert used[2] - used[1] < 64  # pages
-
-
-def test_there_are_no_subinterpreters(tmp_path):
-    code = ("import _xxsubinterpreters as s; i = s.create(isolated=False)\n"
-            "try: s.run_string(i, 'import narc._narc')\nexcept s.RunFailedError as e: print(e)")
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert "narc does not run in subinterpreters" in told.stdout + told.stderr

@@ -51,6 +51,16 @@ def test_worlds_are_stepped_and_rewarded():
     assert rows["separation"].min() > -0.35
 
 
+def test_grains_come_to_rest_in_a_pile():
+    dem = load("dem")
+    rough, smooth = dem.Pile(80), dem.Pile(80, friction=0.0)
+    for pile in (rough, smooth):
+        found, push = pile.settle(4000)
+        assert -found.rows["separation"].min() < 0.03
+    assert rough.place[:-1, 1].max() > 1.4 * smooth.place[:-1, 1].max() and (rough.place[:-1, 1] > 0).mean() > 0.9
+    assert len(rough.step()[0].pairs) > 80 and rough.energy() < 1e-2 and all(angle > 10 for angle, _ in rough.slopes())
+
+
 def test_a_drawing_is_bounded_and_cut():
     pytest.importorskip("narc._fit")
     drawing = load("drawing")
@@ -60,7 +70,7 @@ def test_a_drawing_is_bounded_and_cut():
     assert len(narc.cut(outline, 5)) > 3
 
 
-@pytest.mark.parametrize("name", ["lidar", "packing", "worlds"])
+@pytest.mark.parametrize("name", ["dem", "lidar", "packing", "worlds"])
 def test_pictures_are_drawn(name, tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     module = load(name)
@@ -68,6 +78,6 @@ def test_pictures_are_drawn(name, tmp_path, monkeypatch):
         monkeypatch.setattr(module, "drive", lambda drive=module.drive: drive(steps=4))
     if name == "packing":
         monkeypatch.setattr(module, "push_apart", lambda *given, push=module.push_apart: push(*given, steps=4))
-    more = {"count": 64, "steps": 3} if name == "worlds" else {}
+    more = {"worlds": {"count": 64, "steps": 3}, "dem": {"count": 40, "steps": 2500}}.get(name, {})
     module.main(str(tmp_path / "picture.png"), **more)
     assert (tmp_path / "picture.png").stat().st_size > 20000

@@ -2,6 +2,7 @@
  *
  * page.c - the example engine for a page: a scene of scenes.c, what the pointer does in it, and what is drawn of it.
  */
+#include <stddef.h>
 #include <string.h>
 
 #include <narc_broad_phase.h>
@@ -12,7 +13,7 @@
     __attribute__((export_name(#name))) type page_##name parameters;                                                   \
     type page_##name parameters
 
-enum { ROOM = 4096, POINTS = 4096 };
+enum { ROOM = 4096, POINTS = 4096, TRACK = 1024 };
 
 /* What is drawn of a body, and of a point where two touch. */
 typedef struct page_body {
@@ -35,16 +36,79 @@ static narc_point outline[POINTS];
 static uint64_t held; /* the id of the body in hand, 0: none */
 static vec hand, hold;
 static narc_index *tree;
+static narc_arc drawn_track[TRACK]; /* the ground that is driven, from right to left */
+static size_t track_count;
+static vec track_begin, track_end; /* the car starts and is set back at the left one */
 
-/* Scenes by number, "" behind the last. */
-EXPORT(const char *, scene_name, (unsigned number)) { return scenes[number].name ? scenes[number].name : ""; }
-EXPORT(const char *, scene_purpose, (unsigned number)) { return scenes[number].purpose; }
+/* ------------------------------------------------------------------------------------------------ scenes of the page */
+
+static void add_flat(world *own, double left, double right) {
+    track t = {.x = right, .normal = 1.5707963267948966};
+    put_edge(&t, right - left);
+    const narc_arc ends[] = {{right, 0, 0, t.normal, t.normal}, {left, 0, 0, t.normal, t.normal}};
+    if (own->error.status == NARC_OK)
+        world_add_ground(own, ends, 2, false, 0.6f);
+}
+
+/* Nothing but a floor: what is drawn falls on it. */
+static void build_sheet(world *own, uint64_t seed) {
+    add_flat(own, -9, 9);
+    (void)seed;
+}
+
+/* A car on the ground that was drawn. */
+static void build_drive(world *own, uint64_t seed) {
+    if (track_count > 0 && own->error.status == NARC_OK)
+        world_add_ground(own, drawn_track, track_count, false, 0.8f);
+    add_car(own, (double)track_begin.x + 1.6, (double)track_begin.y);
+    (void)seed;
+}
+
+/* Past its end, or upside down, it starts again. */
+static narc_status act_drive(world *own, long step) {
+    const world_body *const hull = &own->bodies[0];
+    if (hull->position.y < track_end.y - 30 || hull->position.x > track_end.x + 12 ||
+        (hull->cosine < -0.5f && step % 120 == 0))
+        for (int k = 0; k < 3; k++) {
+            world_body *const body = &own->bodies[k];
+            body->position = body->start;
+            body->velocity = (vec){5, 0};
+            body->spin = 0;
+            body->cosine = 1;
+            body->sine = 0;
+            world_wake_body(body);
+        }
+    return act_car(own, step);
+}
+
+static const scene own_scenes[] = {
+    {"draw", "Draw an outline: n-arcs follow it, beside polygons of as many corners, and one falls", 60, 512,
+     build_sheet, NULL},
+    {"ground", "Draw a line from one side to the other: the car drives it", 60, 512, build_drive, act_drive},
+};
+enum { OWN = sizeof own_scenes / sizeof own_scenes[0] };
+
+/* Scenes by number, those of the page first; "" behind the last. */
+static const scene *scene_of(unsigned number) { return number < OWN ? &own_scenes[number] : &scenes[number - OWN]; }
+EXPORT(const char *, scene_name, (unsigned number)) { return scene_of(number)->name ? scene_of(number)->name : ""; }
+EXPORT(const char *, scene_purpose, (unsigned number)) { return scene_of(number)->purpose; }
+
+/* The ground of the next scene that is driven: `count` arcs in track(), from its right end to its left one. */
+EXPORT(narc_arc *, track, (void)) { return drawn_track; }
+EXPORT(unsigned, track_room, (void)) { return TRACK; }
+EXPORT(void, set_track, (unsigned count, float left, float left_y, float right, float right_y)) {
+    track_count = count <= TRACK ? count : 0;
+    track_begin = (vec){left, left_y};
+    track_end = (vec){right, right_y};
+}
+
+/* ------------------------------------------------------------------------------------------------ time */
 
 /* With room for what the pointer drops. */
 EXPORT(int, start, (unsigned number, unsigned seed)) {
     static scene grown;
     world_destroy(&w);
-    grown = scenes[number];
+    grown = *scene_of(number);
     grown.capacity = grown.capacity < 1024 ? grown.capacity + 256 : grown.capacity;
     chosen = &grown;
     step_number = 0;
@@ -67,17 +131,48 @@ static void pull(void) {
     body->spin *= 0.9f;
 }
 
+/* For benchmarks: a world without bodies, in which nothing falls asleep; shapes of arc_list(), and bodies of them. */
+EXPORT(int, begin, (unsigned capacity)) {
+    static const scene none = {.name = "none"};
+    world_settings settings = world_defaults;
+    settings.sleep_time = INFINITY;
+    world_destroy(&w);
+    chosen = &none;
+    step_number = 0;
+    held = 0;
+    return (int)world_create(&w, settings, capacity);
+}
+EXPORT(int, add_shape, (unsigned count)) {
+    uint32_t shape = 0;
+    const narc_status status = world_add_shape(&w, arcs, count, &shape);
+    return status == NARC_OK ? (int)shape : -(int)status;
+}
+EXPORT(int, add_body, (unsigned shape, float x, float y, float cosine, float sine, int still)) {
+    return (int)world_add_body(&w, (world_body){.position = {x, y},
+                                                .cosine = cosine,
+                                                .sine = sine,
+                                                .shape = shape,
+                                                .kind = still ? NARC_STATIC : 0,
+                                                .friction = 0.6f});
+}
+EXPORT(const world_body *, bodies, (void)) { return w.bodies; }
+EXPORT(unsigned, body_size, (void)) { return sizeof(world_body); }
+EXPORT(unsigned, velocity_offset, (void)) { return offsetof(world_body, velocity); }
+
 EXPORT(int, step, (void)) {
     pull();
     return (int)step_scene(chosen, &w, ++step_number);
 }
 
 EXPORT(const char *, error, (void)) { return w.error.message; }
+EXPORT(int, error_status, (void)) { return (int)w.error.status; }
 
 EXPORT(uint32_t, hash_low, (void)) { return (uint32_t)world_hash(&w); }
 EXPORT(uint32_t, hash_high, (void)) { return (uint32_t)(world_hash(&w) >> 32); }
 EXPORT(unsigned, body_count, (void)) { return (unsigned)w.body_count; }
 EXPORT(unsigned, pair_count, (void)) { return w.result ? (unsigned)w.result->count : 0; }
+
+EXPORT(float, speed, (unsigned k)) { return k < w.body_count ? length(w.bodies[k].velocity) : 0; }
 
 EXPORT(unsigned, moving_count, (void)) {
     unsigned count = 0;

@@ -45,6 +45,7 @@ const CHUNK = 1 << 16, ERROR = layouts.Error;
 export class Memory {
     readonly #functions: Record<string, Function | undefined>;
     readonly #memory: WebAssembly.Memory;
+    readonly #shared: boolean;
     u8!: Uint8Array;
     u16!: Uint16Array;
     u32!: Uint32Array;
@@ -62,9 +63,11 @@ export class Memory {
     #used = 0;
     #full: number[] = [];
 
-    constructor(instance: WebAssembly.Instance, readonly build: "fast" | "small") {
+    /** `shared`: the memory of a module that does not have its own. */
+    constructor(instance: WebAssembly.Instance, readonly build: "fast" | "small", shared?: WebAssembly.Memory) {
         this.#functions = instance.exports as unknown as Record<string, Function>;
-        this.#memory = instance.exports["memory"] as WebAssembly.Memory;
+        this.#memory = shared ?? instance.exports["memory"] as WebAssembly.Memory;
+        this.#shared = shared !== undefined;
         this.remake();
         this.function("_initialize")();
         this.#error = this.allocate(ERROR.size);
@@ -111,7 +114,7 @@ export class Memory {
 
     /** After whatever may have made the memory grow. */
     refresh(): void {
-        if (this.u8.length === 0)
+        if (this.#shared ? this.#memory.buffer !== this.u8.buffer : this.u8.length === 0) // shared views do not detach
             this.remake();
     }
 
@@ -253,7 +256,7 @@ export class Memory {
             kind = kinds.indexOf(value.kind);
             if (kind >= 0 && value.count !== count)
                 throw new RangeError(`${name}: ${value.count} items, ${count} are wanted`);
-            base = value.pointer;
+            base = this.place(value.of, name, value.of.kind) + value.offset;
             stride = value.stride;
         } else if (typeof value === "number" || typeof value === "bigint") {
             kind = kinds.length - 1;
@@ -302,13 +305,28 @@ export class Memory {
         return this.options(layout, { ...others, search }, count);
     }
 
+    /** Where something lies that a call is given: it is of the kind that is wanted, and of this module. */
+    place(given: Owned, name: string, kind: string): number {
+        if (!(given instanceof Owned) || given.kind !== kind)
+            throw new TypeError(`${name}: ${kind} wanted, not ${given instanceof Owned ? given.kind : describe(given)}`);
+        if (given.memory !== this)
+            throw new TypeError(`${name}: it is of another module; each load() has a memory of its own`);
+        return given.pointer;
+    }
+    /** Empties rows that a call is to fill, and makes room. */
+    room<Out extends List>(out: Out, name: string, kind: string, count: number): Out {
+        this.place(out, name, kind);
+        out.count = 0;
+        out.reserve(count);
+        return out;
+    }
+
     /** A narc_bodies for this call. */
     bodies(given: Bodies): number {
         const pointer = this.clear(layouts.Bodies.size);
-        if (given instanceof Rows) {
-            if ((given.layout as Layout) !== layouts.Body)
-                throw new TypeError(`bodies: rows of Body are wanted, not of ${given.layout.name}`);
-            this.function("narc_view_bodies")(given.pointer, given.count, pointer);
+        if (given instanceof Owned) {
+            const rows = this.place(given, "bodies", rowsOf(layouts.Body));
+            this.function("narc_view_bodies")(rows, given.count, pointer);
             return pointer;
         }
         const count = countOf(given);
@@ -378,10 +396,12 @@ const registry = new FinalizationRegistry<Held>(release);
 /** Something in the module's memory. It is freed by free(), or some time after nothing refers to it any more. */
 export abstract class Owned {
     readonly memory: Memory;
+    readonly kind: string;
     readonly #held: Held;
 
-    protected constructor(memory: Memory, pointer: number, destroy: string) {
+    protected constructor(memory: Memory, kind: string, pointer: number, destroy: string) {
         this.memory = memory;
+        this.kind = kind;
         this.#held = { memory, destroy, pointer };
         registry.register(this, this.#held, this);
     }
@@ -492,8 +512,8 @@ abstract class List extends Owned {
     #count = 0;
     #capacity: number;
 
-    constructor(memory: Memory, readonly itemSize: number, capacity: number) {
-        super(memory, memory.allocate(Math.max(whole(capacity, "capacity"), 1) * itemSize), "free");
+    constructor(memory: Memory, kind: string, readonly itemSize: number, capacity: number) {
+        super(memory, kind, memory.allocate(Math.max(whole(capacity, "capacity"), 1) * itemSize), "free");
         this.#capacity = capacity;
     }
     get capacity(): number {
@@ -520,6 +540,11 @@ abstract class List extends Owned {
     }
 }
 
+/** The kind of rows, as errors call it. */
+export function rowsOf(layout: Layout): string {
+    return `rows of ${layout.name}`;
+}
+
 /** Rows of a structure in the module's memory, `count` of them in room for `capacity`. Read them by at(), or as typed arrays,
  * u8 to f64, which reach over the whole capacity and are to be asked for again after a call, as memory may grow or move:
  * member m of row k is rows.f32[k * rows.size / 4 + rows.layout.members.m.offset / 4]. */
@@ -530,7 +555,7 @@ export class Rows<Row> extends List {
     #arraysReach = 0;
 
     constructor(memory: Memory, readonly layout: Layout, capacity: number, count = 0) {
-        super(memory, layout.size, capacity);
+        super(memory, rowsOf(layout), layout.size, capacity);
         this.#row = new (cursorOf(layout))(memory);
         this.count = count;
     }
@@ -596,7 +621,7 @@ export class Numbers<Kind extends Items> extends List {
     #arrayAt = 0;
 
     constructor(memory: Memory, made: { new (buffer: ArrayBufferLike, at: number, length: number): Kind; readonly BYTES_PER_ELEMENT: number }, capacity: number) {
-        super(memory, made.BYTES_PER_ELEMENT, capacity);
+        super(memory, made.name, made.BYTES_PER_ELEMENT, capacity);
         this.#made = made;
         this.count = capacity;
     }

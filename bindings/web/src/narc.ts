@@ -3,9 +3,10 @@
 import { type Body, type BoxOptions, type CastOptions, type ChainEntry, type Contact, type ContactsSettingsOptions, type Distance,
     type IndexOptions, layouts, type Manifold, type MotionsOptions, type PairFilterOptions, type PairsOptions, type PointsOptions,
     type QueryOptions, type RaysOptions, type RayOptions, type Box as BoxRow, type Impact, type RayHit, type RefinedContact, version } from "./layouts.js";
-import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows } from "./memory.js";
+import { type Bodies, countOf, type IndexColumn, Memory, number, Numbers, Rows, rowsOf, whole } from "./memory.js";
 import { type NamedShape, Outlines, readShapes, Shapes, writeShapes } from "./outlines.js";
 import { Contacts, Index } from "./scene.js";
+import { type Range, Threads } from "./threads.js";
 
 export * from "./layouts.js";
 export { type Bodies, type ByteColumn, Column, Cursor, type FloatColumn, type IndexColumn, type Items, NarcError, Numbers, Owned, type PositionColumn, Rows,
@@ -19,9 +20,14 @@ export type PairList = Uint32Array | Numbers<Uint32Array> | (PairsOptions & { co
 export interface LoadOptions {
     /** The fast one needs simd128, the small one has no chains and no compounds. By default what runs here. */
     build?: "fast" | "small";
-    /** The module's bytes, or itself compiled; by default the file beside this one. */
+    /** The module's bytes, or itself compiled; by default the file beside this one. With threads it is narc_threads.wasm. */
     module?: BufferSource | WebAssembly.Module;
+    /** So many workers take parts of large batches of pairs: 0, none, by default. They need shared memory, which pages have that are
+     * isolated (crossOriginIsolated), and the fast build. */
+    threads?: number;
 }
+
+const BODIES = rowsOf(layouts.Body);
 
 /** Does WebAssembly have vectors here? */
 export function hasSimd(): boolean {
@@ -48,9 +54,19 @@ export async function load(options: LoadOptions = {}): Promise<Narc> {
     const build = options.build ?? (hasSimd() ? "fast" : "small");
     if (build !== "fast" && build !== "small")
         throw new TypeError(`build: "fast" or "small" is wanted`);
-    const given = options.module ?? await fetchModule(build === "fast" ? new URL("./narc.wasm", import.meta.url) : new URL("./narc_small.wasm", import.meta.url));
+    const threads = whole(options.threads ?? 0, "threads", 65);
+    if (threads > 0 && build === "small")
+        throw new TypeError("threads: the small build has none");
+    if (threads > 0 && typeof SharedArrayBuffer !== "function")
+        throw new Error("threads: there is no shared memory here; the page is to be isolated (crossOriginIsolated)");
+    const given = options.module ?? await fetchModule(threads > 0 ? new URL("./narc_threads.wasm", import.meta.url)
+        : build === "fast" ? new URL("./narc.wasm", import.meta.url) : new URL("./narc_small.wasm", import.meta.url));
     const module = given instanceof WebAssembly.Module ? given : await WebAssembly.compile(given);
-    return new Narc(new Memory(await WebAssembly.instantiate(module), build));
+    if (threads === 0)
+        return new Narc(new Memory(await WebAssembly.instantiate(module), build));
+    const shared = new WebAssembly.Memory({ initial: 64, maximum: 32768, shared: true });
+    const memory = new Memory(await WebAssembly.instantiate(module, { env: { memory: shared } }), build, shared);
+    return new Narc(memory, await Threads.start(memory, module, shared, threads));
 }
 
 /** All that the core is asked of pairs of bodies, and what makes the rest. Calls take what lies in the module's memory (Rows,
@@ -68,7 +84,7 @@ export class Narc {
     #skipped = 0;
 
     /** @internal */
-    constructor(readonly memory: Memory) {
+    constructor(readonly memory: Memory, readonly threads?: Threads) {
         this.outlines = new Outlines(memory);
         this.#boxes = new Rows(memory, layouts.Box, 64);
         memory.check(memory.function("narc_create_broad_phase")(0, memory.out));
@@ -76,6 +92,11 @@ export class Narc {
         this.#contact = new Rows(memory, layouts.Contact, 1, 1);
         this.#manifold = new Rows(memory, layouts.Manifold, 1, 1);
         this.#one = memory.allocate(layouts.Query.size);
+    }
+
+    /** Ends the workers, if there are any. */
+    end(): void {
+        this.threads?.end();
     }
 
     get build(): "fast" | "small" {
@@ -170,7 +191,7 @@ export class Narc {
         if (!(pairs instanceof Uint32Array || pairs instanceof Numbers))
             return memory.columns(layouts.Pairs, pairs);
         const pointer = memory.clear(layouts.Pairs.size), { a, b } = layouts.Pairs.members;
-        const at = pairs instanceof Numbers ? pairs.pointer : memory.copy(pairs);
+        const at = pairs instanceof Numbers ? memory.place(pairs, "pairs", "Uint32Array") : memory.copy(pairs);
         memory.u32[pointer >> 2] = this.#pairCount(pairs);
         memory.u32[(pointer + a.offset) >> 2] = at;
         memory.u32[(pointer + b.offset) >> 2] = at + 4;
@@ -182,14 +203,25 @@ export class Narc {
         return this.#skipped;
     }
 
-    #rows<Row>(name: string, out: Rows<Row>, shapes: Shapes, bodies: Bodies, pairs: PairList, options: QueryOptions | undefined): Rows<Row> {
+    #rows<Row>(name: string, kind: string, out: Rows<Row>, shapes: Shapes, bodies: Bodies, pairs: PairList, options: QueryOptions | undefined): Rows<Row> {
         const { memory } = this, count = this.#pairCount(pairs), dense = Boolean(options?.dense);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", kind, count);
         for (;;) {
             memory.begin();
             const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
-            const status = memory.function(name)(shapes.pointer, given, asked, query, out.pointer, out.capacity, memory.out, memory.error);
+            const parts = this.#divide(shapes, count, options);
+            if (parts) {
+                const { size } = out.layout, starts = parts.map(({ first }) => out.pointer + (dense ? 0 : first * size));
+                const found = this.#spread(name, shapes, given, asked, query, parts, starts, parts.map((part) => dense ? out.capacity : part.count));
+                if (found) {
+                    let rows = found[0]!; // the first part's lie where they are to be
+                    for (let k = 1; k < parts.length && !dense; rows += found[k++]!)
+                        memory.u8.copyWithin(out.pointer + rows * size, starts[k]!, starts[k]! + found[k]! * size);
+                    out.count = dense ? count : rows;
+                    return out;
+                }
+            }
+            const status = memory.function(name)(memory.place(shapes, "shapes", "Shapes"), given, asked, query, out.pointer, out.capacity, memory.out, memory.error);
             const fits = memory.fits(status), found = memory.u32[memory.out >> 2]!;
             if (fits) {
                 this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
@@ -198,6 +230,32 @@ export class Narc {
             }
             out.reserve(found);
         }
+    }
+    /** The parts of a batch for threads; none where one thread is to do it. */
+    #divide(shapes: Shapes, count: number, options: QueryOptions | undefined): Range[] | undefined {
+        if (!this.threads || shapes.mayHaveChains || options?.selection !== undefined || options?.first !== undefined || options?.count !== undefined || options?.rowStride !== undefined)
+            return undefined;
+        const parts = this.threads.divide(count);
+        return parts.length > 1 ? parts : undefined;
+    }
+    /** Asks for all parts at once: how many rows each has; nothing on an error, which one thread then tells. */
+    #spread(name: string, shapes: Shapes, bodies: number, pairs: number, query: number, parts: Range[], outs: number[], rooms?: number[]): number[] | undefined {
+        const { memory } = this, { first, count, outSkipped } = layouts.Query.members, store = memory.place(shapes, "shapes", "Shapes");
+        const lists = parts.map((part, k) => {
+            const own = memory.take(layouts.Query.size), told = memory.clear(16), error = memory.clear(layouts.Error.size); // told: rows, skipped
+            memory.u8.copyWithin(own, query, query + layouts.Query.size);
+            memory.u32[(own + first.offset) >> 2] = part.first;
+            memory.u32[(own + count.offset) >> 2] = part.count;
+            memory.u32[(own + outSkipped.offset) >> 2] = told + 4;
+            return [store, bodies, pairs, own, outs[k]!, ...(rooms ? [rooms[k]!, told] : []), error, told];
+        });
+        const status = this.threads!.run(name, lists.map((list) => list.slice(0, -1)));
+        memory.refresh();
+        if (status.some((one) => one !== 0))
+            return undefined;
+        const told = lists.map((list) => list.at(-1)! >> 2);
+        this.#skipped = told.reduce((sum, at) => sum + memory.u32[at + 1]!, 0);
+        return told.map((at) => memory.u32[at]!);
     }
     #query(options: QueryOptions | undefined, count: number): number {
         const { memory } = this, query = memory.clear(layouts.Query.size);
@@ -213,10 +271,9 @@ export class Narc {
     /** The boxes of bodies, each reaching `margin` beyond them. */
     boxes(shapes: Shapes, bodies: Bodies, options?: BoxOptions, out = new Rows<BoxRow>(this.memory, layouts.Box, countOf(bodies))): Rows<BoxRow> {
         const { memory } = this, count = countOf(bodies);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Box), count);
         memory.begin();
-        memory.call("narc_compute_boxes", shapes.pointer, memory.bodies(bodies), memory.options(layouts.BoxOptions, options, count), out.pointer);
+        memory.call("narc_compute_boxes", memory.place(shapes, "shapes", "Shapes"), memory.bodies(bodies), memory.options(layouts.BoxOptions, options, count), out.pointer);
         out.count = count;
         return out;
     }
@@ -225,8 +282,7 @@ export class Narc {
     pairs(shapes: Shapes, bodies: Bodies, options: PairFilterOptions & { margin?: number; origin?: { x: number; y: number } } = {}, out = this.indices(0)): Numbers<Uint32Array> {
         const { memory } = this, count = countOf(bodies), boxes = this.#boxes, { margin = 0, origin, ...filter } = options;
         this.boxes(shapes, bodies, origin === undefined ? { margin: margin / 2 } : { margin: margin / 2, origin }, boxes);
-        if (out.capacity < 8 * count)
-            out.reserve(8 * count);
+        memory.room(out, "out", "Uint32Array", 8 * count);
         for (;;) {
             memory.begin();
             const { pointer } = out, room = out.capacity >> 1;
@@ -237,53 +293,56 @@ export class Narc {
                 out.count = 2 * found;
                 return out;
             }
-            out.count = 0;
             out.reserve(2 * found);
         }
     }
 
     /** Contacts of all pairs that are closer than `margin`, 0 by default: rows in the order of the pairs. */
     contacts(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out = this.contactRows(this.#pairCount(pairs))): Rows<Contact> {
-        return this.#rows("narc_find_contacts", out, shapes, bodies, pairs, options);
+        return this.#rows("narc_find_contacts", rowsOf(layouts.Contact), out, shapes, bodies, pairs, options);
     }
     /** The same with one or two points a pair: what a solver wants. */
     manifolds(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out = this.manifoldRows(this.#pairCount(pairs))): Rows<Manifold> {
-        return this.#rows("narc_find_manifolds", out, shapes, bodies, pairs, options);
+        return this.#rows("narc_find_manifolds", rowsOf(layouts.Manifold), out, shapes, bodies, pairs, options);
     }
     /** Which pairs collide: bit k % 32 of word k >> 5 is that of pair k. */
     overlaps(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out?: Numbers<Uint32Array>): Numbers<Uint32Array> {
         const { memory } = this, count = this.#pairCount(pairs), words = 2 * Math.ceil(count / 64), bits = out ?? this.indices(words);
-        bits.reserve(words).count = words;
+        memory.room(bits, "out", "Uint32Array", words).count = words;
         memory.begin();
         const given = memory.bodies(bodies), asked = this.#pairs(pairs);
-        memory.call("narc_find_overlaps", shapes.pointer, given, asked, this.#query(options, count), bits.pointer);
+        const query = this.#query(options, count), parts = this.#divide(shapes, count, options);
+        if (parts && this.#spread("narc_find_overlaps", shapes, given, asked, query, parts, parts.map(() => bits.pointer)))
+            return bits;
+        memory.call("narc_find_overlaps", memory.place(shapes, "shapes", "Shapes"), given, asked, query, bits.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return bits;
     }
     /** How far apart each pair is, below 0 the depth; Infinity where it is the margin or more, which is Infinity by default. */
     separations(shapes: Shapes, bodies: Bodies, pairs: PairList, options?: QueryOptions, out?: Numbers<Float32Array>): Numbers<Float32Array> {
         const { memory } = this, count = this.#pairCount(pairs), floats = out ?? this.floats(count);
-        floats.reserve(count).count = count;
+        memory.room(floats, "out", "Float32Array", count).count = count;
         memory.begin();
         const given = memory.bodies(bodies), asked = this.#pairs(pairs), query = this.#query(options, count);
         if (options?.margin === undefined)
             memory.f32[(query + layouts.Query.members.margin.offset) >> 2] = Infinity;
-        memory.call("narc_find_separations", shapes.pointer, given, asked, query, floats.pointer);
+        const parts = this.#divide(shapes, count, options);
+        if (parts && this.#spread("narc_find_separations", shapes, given, asked, query, parts, parts.map(() => floats.pointer)))
+            return floats;
+        memory.call("narc_find_separations", memory.place(shapes, "shapes", "Shapes"), given, asked, query, floats.pointer);
         this.#skipped = memory.u32[(memory.out >> 2) + 1]!;
         return floats;
     }
 
     #two(name: string, shapes: Shapes, bodies: Rows<Body>, a: number, b: number, margin: number, row: number): void {
-        const { memory } = this, { count, pointer } = bodies, size = layouts.Body.size;
+        const { memory } = this, size = layouts.Body.size, pointer = memory.place(bodies, "bodies", BODIES), { count } = bodies;
         if (!(a >= 0 && a < count && b >= 0 && b < count) || a % 1 !== 0 || b % 1 !== 0)
             throw new RangeError(`bodies ${a} and ${b}: there are ${count}`);
-        if ((bodies.layout as object) !== layouts.Body)
-            throw new TypeError(`bodies: rows of Body are wanted, not of ${bodies.layout.name}`);
         if (margin !== this.#lastMargin) {
             memory.f32[(this.#one + layouts.Query.members.margin.offset) >> 2] = number(margin, "margin");
             this.#lastMargin = margin;
         }
-        memory.check(memory.function(name)(shapes.pointer, pointer + a * size, pointer + b * size, this.#one, row, memory.error));
+        memory.check(memory.function(name)(memory.place(shapes, "shapes", "Shapes"), pointer + a * size, pointer + b * size, this.#one, row, memory.error));
     }
     /** The contact of two bodies, by their numbers: `count` 0 where they are not closer than the margin. It is always the same
      * object. */
@@ -299,11 +358,10 @@ export class Narc {
     /** Contacts again in double precision. */
     refine(shapes: Shapes, bodies: Bodies, pairs: PairList, rows: Rows<Contact>, out = new Rows<RefinedContact>(this.memory, layouts.RefinedContact, rows.count)): Rows<RefinedContact> {
         const { memory } = this;
-        out.count = 0;
-        out.reserve(rows.count);
+        memory.room(out, "out", rowsOf(layouts.RefinedContact), rows.count);
         memory.begin();
         const given = memory.bodies(bodies);
-        memory.call("narc_refine_contacts", shapes.pointer, given, this.#pairs(pairs), 0, rows.pointer, rows.count, out.pointer);
+        memory.call("narc_refine_contacts", memory.place(shapes, "shapes", "Shapes"), given, this.#pairs(pairs), 0, memory.place(rows, "rows", rowsOf(layouts.Contact)), rows.count, out.pointer);
         out.count = rows.count;
         return out;
     }
@@ -311,7 +369,7 @@ export class Narc {
     /** Throws what is wrong with the first body that is broken. */
     validate(shapes: Shapes, bodies: Bodies): void {
         this.memory.begin();
-        this.memory.call("narc_validate_bodies", shapes.pointer, this.memory.bodies(bodies));
+        this.memory.call("narc_validate_bodies", this.memory.place(shapes, "shapes", "Shapes"), this.memory.bodies(bodies));
     }
     /** Cosines and sines, the same bits on every machine. */
     poses(angles: Float32Array): { cosine: Float32Array; sine: Float32Array } {
@@ -326,8 +384,7 @@ export class Narc {
     /** Compounds: where the parts of bodies are; `owner` has for each part the number of its body. Not in the small build. */
     placeParts(owners: Bodies, parts: Bodies, owner: IndexColumn, out = new Rows<Body>(this.memory, layouts.Body, countOf(parts))): Rows<Body> {
         const { memory } = this, count = countOf(parts);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Body), count);
         memory.begin();
         const a = memory.bodies(owners), b = memory.bodies(parts), column = memory.column(owner, "owner", count);
         memory.call("narc_place_parts", a, b, column, 0, out.pointer);
@@ -349,43 +406,40 @@ export class Narc {
     /** When two moving bodies meet: for each pair the first time in 0 .. 1 of its motions. */
     castPairs(shapes: Shapes, bodies: Bodies, motions: MotionsOptions, pairs: PairList, options?: CastOptions, out = this.impactRows(this.#pairCount(pairs))): Rows<Impact> {
         const { memory } = this, count = this.#pairCount(pairs);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Impact), count);
         memory.begin();
         const given = memory.bodies(bodies), moved = memory.options(layouts.Motions, motions, countOf(bodies)), asked = this.#pairs(pairs);
-        memory.call("narc_cast_pairs", shapes.pointer, given, moved, asked, 0, memory.options(layouts.CastOptions, options, count), out.pointer, out.capacity);
+        memory.call("narc_cast_pairs", memory.place(shapes, "shapes", "Shapes"), given, moved, asked, 0, memory.options(layouts.CastOptions, options, count), out.pointer, out.capacity);
         out.count = count;
         return out;
     }
     /** Ray k at body k, or at body[k]. */
     rayPairs(shapes: Shapes, bodies: Bodies, rays: RaysOptions, body?: IndexColumn, options?: Pick<RayOptions, "inside">, out = this.rayHitRows(countOf(rays))): Rows<RayHit> {
         const { memory } = this, count = countOf(rays);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.RayHit), count);
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Rays, rays), column = memory.column(body, "body", count);
-        memory.call("narc_cast_ray_pairs", shapes.pointer, given, asked, column, memory.options(layouts.RayOptions, options, count), out.pointer, out.capacity);
+        memory.call("narc_cast_ray_pairs", memory.place(shapes, "shapes", "Shapes"), given, asked, column, memory.options(layouts.RayOptions, options, count), out.pointer, out.capacity);
         out.count = count;
         return out;
     }
     /** How far each point is from one body: point k from body k, or from body[k]. */
     distances(shapes: Shapes, bodies: Bodies, points: PointsOptions, body?: IndexColumn, out = this.distanceRows(countOf(points))): Rows<Distance> {
         const { memory } = this, count = countOf(points);
-        out.count = 0;
-        out.reserve(count);
+        memory.room(out, "out", rowsOf(layouts.Distance), count);
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Points, points), column = memory.column(body, "body", count);
-        memory.call("narc_find_distances", shapes.pointer, given, asked, column, 0, out.pointer);
+        memory.call("narc_find_distances", memory.place(shapes, "shapes", "Shapes"), given, asked, column, 0, out.pointer);
         out.count = count;
         return out;
     }
     /** Is each point within one body? Bits as those of overlaps(). */
     inside(shapes: Shapes, bodies: Bodies, points: PointsOptions, body?: IndexColumn, out?: Numbers<Uint32Array>): Numbers<Uint32Array> {
         const { memory } = this, count = countOf(points), words = 2 * Math.ceil(count / 64), bits = out ?? this.indices(words);
-        bits.reserve(words).count = words;
+        memory.room(bits, "out", "Uint32Array", words).count = words;
         memory.begin();
         const given = memory.bodies(bodies), asked = memory.columns(layouts.Points, points), column = memory.column(body, "body", count);
-        memory.call("narc_find_inside", shapes.pointer, given, asked, column, 0, bits.pointer);
+        memory.call("narc_find_inside", memory.place(shapes, "shapes", "Shapes"), given, asked, column, 0, bits.pointer);
         return bits;
     }
 }

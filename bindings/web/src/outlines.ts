@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Outlines of arcs: how they are built and measured; the store of shapes; shapes files.
 import { type Body, type ChainEntry, type ChainOptions, type Circle, constants, type FourArc, layouts, type Mass } from "./layouts.js";
-import { type Memory, number, Owned, Rows, whole } from "./memory.js";
+import { type Memory, number, Owned, Rows, rowsOf, whole } from "./memory.js";
 
 /** Arcs as five numbers each: center x, center y, radius, and the angles of the outward normals at start and end. */
 export type Arcs = Float64Array;
@@ -211,14 +211,18 @@ export class Outlines {
 /** A store of shapes, each known by its number. Equal shapes are stored once and have one number. */
 export class Shapes extends Owned {
     readonly #outlines: Outlines;
+    /** @internal Rows of chains stand behind all others of a batch. */
+    mayHaveChains = false;
 
     /** @internal `pointer`: a store that there is. */
     constructor(memory: Memory, outlines: Outlines, pointer?: number) {
+        const loaded = pointer !== undefined;
         if (pointer === undefined) {
             memory.check(memory.function("narc_create_shapes")(0, memory.out));
             pointer = memory.u32[memory.out >> 2]!;
         }
-        super(memory, pointer, "narc_destroy_shapes");
+        super(memory, "Shapes", pointer, "narc_destroy_shapes");
+        this.mayHaveChains = loaded;
         this.#outlines = outlines;
     }
 
@@ -260,6 +264,8 @@ export class Shapes extends Owned {
      * at its x and y. Not in the small build. */
     addChain(arcs: Arcs, options?: ChainOptions, out = new Rows<ChainEntry>(this.memory, layouts.ChainEntry, 16)): Rows<ChainEntry> {
         const { memory } = this;
+        memory.place(out, "out", rowsOf(layouts.ChainEntry));
+        this.mayHaveChains = true;
         for (;;) {
             const given = this.#outlines.given(arcs), asked = memory.options(layouts.ChainOptions, options, 1);
             const status = memory.function("narc_add_chain")(this.pointer, ...given, asked, out.pointer, out.capacity, memory.out, memory.error);

@@ -3,7 +3,7 @@
 import { type CastOptions, constants, type Contact, type ContactsSettingsOptions, type Distance, type Impact, type IndexOptions, type IndexQueryOptions,
     type IndexStatistics, layouts, type Manifold, type MotionsOptions, type NearestOptions, type PointsOptions, type RayHit, type RayOptions,
     type RaysOptions, type StepOptions as AllStepOptions, type StepResult, type TouchEvent, type Box } from "./layouts.js";
-import { type Bodies, countOf, Cursor, cursorOf, type Memory, Owned, Rows, whole } from "./memory.js";
+import { type Bodies, countOf, Cursor, cursorOf, type Memory, Owned, Rows, rowsOf, whole } from "./memory.js";
 import type { Narc } from "./narc.js";
 import type { Shapes } from "./outlines.js";
 
@@ -22,7 +22,7 @@ export class Index extends Owned {
     constructor(narc: Narc, shapes: Shapes, bodies: Bodies, options?: IndexOptions) {
         const { memory } = narc;
         memory.check(memory.function("narc_create_index")(0, memory.out));
-        super(memory, memory.u32[memory.out >> 2]!, "narc_destroy_index");
+        super(memory, "Index", memory.u32[memory.out >> 2]!, "narc_destroy_index");
         this.#narc = narc;
         this.#shapes = shapes;
         this.#boxes = new Rows(memory, layouts.Box, countOf(bodies));
@@ -70,9 +70,7 @@ export class Index extends Owned {
      * (x, y) + (motionX, motionY). */
     rays(rays: RaysOptions, options?: Omit<RayOptions, "search"> & Search, out?: Rows<RayHit>): Rows<RayHit> {
         const { memory } = this, count = countOf(rays), wanted = count * Math.max(whole(options?.most ?? 1, "most"), 1);
-        const rows = out ?? this.#narc.rayHitRows(wanted);
-        rows.count = 0;
-        rows.reserve(wanted);
+        const rows = memory.room(out ?? this.#narc.rayHitRows(0), "out", rowsOf(layouts.RayHit), wanted);
         memory.begin();
         memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), asked = memory.columns(layouts.Rays, rays);
@@ -83,9 +81,7 @@ export class Index extends Owned {
     /** The bodies nearest to each point. */
     nearest(points: PointsOptions, options?: Omit<NearestOptions, "search"> & Search, out?: Rows<Distance>): Rows<Distance> {
         const { memory } = this, count = countOf(points), wanted = count * Math.max(whole(options?.most ?? 1, "most"), 1);
-        const rows = out ?? this.#narc.distanceRows(wanted);
-        rows.count = 0;
-        rows.reserve(wanted);
+        const rows = memory.room(out ?? this.#narc.distanceRows(0), "out", rowsOf(layouts.Distance), wanted);
         memory.begin();
         memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), asked = memory.columns(layouts.Points, points);
@@ -95,9 +91,7 @@ export class Index extends Owned {
     }
     /** What each mover hits first on its way. */
     casts(movers: Bodies, motions: MotionsOptions, options?: CastOptions, search?: Search, out?: Rows<Impact>): Rows<Impact> {
-        const { memory } = this, count = countOf(movers), rows = out ?? this.#narc.impactRows(count);
-        rows.count = 0;
-        rows.reserve(count);
+        const { memory } = this, count = countOf(movers), rows = memory.room(out ?? this.#narc.impactRows(0), "out", rowsOf(layouts.Impact), count);
         memory.begin();
         memory.things = countOf(this.#bodies);
         const given = memory.bodies(this.#bodies), moving = memory.bodies(movers), moved = memory.options(layouts.Motions, motions, count);
@@ -118,10 +112,12 @@ export class Index extends Owned {
         memory.things = countOf(this.#bodies);
         const given = memory.copy(boxes), pairs = memory.clear(layouts.Pairs.size);
         memory.call("narc_query_index", this.pointer, given, count, memory.options(layouts.IndexQuery, search, count), pairs);
-        const { a, b } = layouts.Pairs.members, found = memory.u32[pairs >> 2]!, out = new Uint32Array(2 * found);
-        for (let k = 0; k < found; k++)
-            for (const [i, { offset }] of [a, b].entries())
-                out[2 * k + i] = memory.u32[(memory.u32[(pairs + offset) >> 2]! + k * memory.u32[(pairs + offset + 4) >> 2]!) >> 2]!;
+        const { a, b } = layouts.Pairs.members, { u32 } = memory, found = u32[pairs >> 2]!, out = new Uint32Array(2 * found);
+        [a, b].forEach(({ offset }, i) => {
+            const base = u32[(pairs + offset) >> 2]! >> 2, stride = u32[(pairs + offset + 4) >> 2]! >> 2;
+            for (let k = 0; k < found; k++)
+                out[2 * k + i] = u32[base + k * stride]!;
+        });
         return out;
     }
 }
@@ -144,7 +140,7 @@ export class Contacts extends Owned {
     constructor(memory: Memory, settings?: ContactsSettingsOptions) {
         memory.begin();
         memory.call("narc_create_contacts", memory.options(layouts.ContactsSettings, settings, 1), memory.out);
-        super(memory, memory.u32[memory.out >> 2]!, "narc_destroy_contacts");
+        super(memory, "Contacts", memory.u32[memory.out >> 2]!, "narc_destroy_contacts");
         this.#userSize = settings?.userSize ?? 0;
         this.#result = new (cursorOf(layouts.StepResult))(memory) as StepResult & Cursor;
         this.#manifold = new (cursorOf(layouts.Manifold))(memory);
@@ -160,7 +156,7 @@ export class Contacts extends Owned {
         if (options !== undefined)
             memory.write(step, layouts.Step, options, countOf(bodies));
         memory.u32[(step + layouts.Step.members.bodies.offset) >> 2] = memory.bodies(bodies);
-        memory.call("narc_update_contacts", this.pointer, shapes.pointer, step, memory.out);
+        memory.call("narc_update_contacts", this.pointer, memory.place(shapes, "shapes", "Shapes"), step, memory.out);
         this.#result.place = memory.u32[memory.out >> 2]!;
         return this;
     }
@@ -273,7 +269,7 @@ export class Contacts extends Owned {
     load(shapes: Shapes, bytes: Uint8Array): this {
         const { memory } = this;
         memory.begin();
-        memory.call("narc_load_contacts", this.pointer, shapes.pointer, memory.copy(bytes), bytes.length, memory.out);
+        memory.call("narc_load_contacts", this.pointer, memory.place(shapes, "shapes", "Shapes"), memory.copy(bytes), bytes.length, memory.out);
         this.#result.place = memory.u32[memory.out >> 2]!;
         return this;
     }

@@ -121,6 +121,65 @@ test("wrong calls are errors with names", () => {
     assert.throws(() => small.shapes().addChain(new Float64Array(5)), /not in the small build/);
 });
 
+// Each load() has a memory of its own: a place in one is another thing, or nothing, in the other.
+test("what is of another module is refused", async () => {
+    const other = await load({ build: "fast" });
+    for (const narc of builds) {
+        const { shapes, bodies } = scene(narc, 4), far = scene(other, 4), pair = Uint32Array.of(0, 1), index = narc.index(shapes, bodies), stay = narc.contactsThatStay();
+        const point = { x: 0, y: 0 }, refuse = (call, name) => assert.throws(call, (error) => error instanceof TypeError && error.message.startsWith(`${name}: it is of another module`) || assert.fail(`${error}`));
+        refuse(() => narc.contacts(far.shapes, bodies, pair), "shapes");
+        refuse(() => narc.contacts(shapes, far.bodies, pair), "bodies");
+        refuse(() => narc.contacts(shapes, bodies, other.indices(2)), "pairs");
+        refuse(() => narc.contacts(shapes, bodies, pair, {}, other.contactRows(1)), "out");
+        refuse(() => narc.contacts(shapes, bodies, pair, { margins: other.floats(1).column }), "margins");
+        refuse(() => narc.contact(far.shapes, bodies, 0, 1), "shapes");
+        refuse(() => narc.contact(shapes, far.bodies, 0, 1), "bodies");
+        refuse(() => narc.pairs(far.shapes, bodies), "shapes");
+        refuse(() => narc.pairs(shapes, bodies, {}, other.indices(8)), "out");
+        refuse(() => narc.overlaps(far.shapes, bodies, pair), "shapes");
+        refuse(() => narc.separations(shapes, bodies, pair, {}, other.floats(1)), "out");
+        refuse(() => narc.index(far.shapes, bodies), "shapes");
+        refuse(() => narc.index(shapes, far.bodies), "bodies");
+        refuse(() => index.nearest(point, {}, other.distanceRows(1)), "out");
+        refuse(() => index.update(far.bodies), "bodies");
+        refuse(() => stay.update(far.shapes, bodies), "shapes");
+        refuse(() => stay.load(far.shapes, new Uint8Array(8)), "shapes");
+        refuse(() => narc.castPairs(shapes, bodies, { x: other.floats(4).column, y: 0, angle: 0 }, pair), "x");
+        assert.equal(narc.readShapes('{"shapes": [{"name": "c", "circle": 1}]}', far.shapes)[0].shape, far.shapes.circle(1)); // a text is of none
+        // Nor are rows of another structure written over.
+        assert.throws(() => narc.manifolds(shapes, bodies, pair, {}, narc.contactRows(1)), /out: rows of Manifold wanted, not rows of Contact/);
+        assert.throws(() => narc.contacts(bodies, bodies, pair), /shapes: Shapes wanted, not rows of Body/);
+        assert.throws(() => narc.contacts(null, bodies, pair), /shapes: Shapes wanted/);
+    }
+});
+
+// Rows, bits and errors of batches that threads divide are those of one thread, whatever their number; memory that grows is seen by all.
+test("threads give the same bytes", async () => {
+    for (const count of [1, 3]) {
+        const threads = await load({ threads: count }), pair = [fast, threads].map((narc) => scene(narc, 6000, 5));
+        for (const round of [0, 1]) {
+            const answers = pair.map(({ narc, shapes, bodies }) => {
+                const pairs = narc.pairs(shapes, bodies, { margin: 0.1 }), query = { margin: 0.05 };
+                assert(pairs.count > 40000);
+                bodies.at(17).cosine = round === 0 ? bodies.at(18).cosine : NaN; // a broken body: pairs that are skipped
+                const made = [narc.contacts(shapes, bodies, pairs, query), narc.manifolds(shapes, bodies, pairs, query), narc.contacts(shapes, bodies, pairs, { ...query, dense: true }),
+                    narc.overlaps(shapes, bodies, pairs), narc.separations(shapes, bodies, pairs)].map((rows) => [narc.skipped, rows.count, bytesOf(rows)]);
+                assert(round === 0 || narc.skipped > 0);
+                const bad = pairs.array.slice(0, pairs.count);
+                bad[bad.length - 2] = 6001;
+                assert.throws(() => narc.contacts(shapes, bodies, bad), (error) => error instanceof NarcError && error.index === bad.length / 2 - 1);
+                return made;
+            });
+            assert.deepEqual(answers[1], answers[0]);
+            if (round === 0)
+                pair[1].narc.floats(3e6);
+        }
+        threads.end();
+        assert.equal(threads.contacts(pair[1].shapes, pair[1].bodies, Uint32Array.of(0, 1), { margin: Infinity }).count, 1);
+    }
+    await assert.rejects(load({ build: "small", threads: 2 }), /small build has none/);
+});
+
 // Whatever is called with whatever: an error that has a name, or an answer; nothing traps, and the module goes on to work.
 test("random calls never trap", () => {
     const next = random(7), odd = [0, 1, -1, 0.5, NaN, Infinity, 1e30, undefined, null, "a", {}, [], 2 ** 32, new Float32Array(3), new Uint32Array(4), new Float64Array(10), 3n];
