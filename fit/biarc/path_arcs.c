@@ -104,6 +104,17 @@ static narc_status add_contour(struct builder *builder, const narc_path *path, n
     return status;
 }
 
+/* Does a contour end where it begins, by what is drawn? */
+static bool is_drawn_round(const narc_path *path, narc_drawn_move move) {
+    const size_t contour = move.contour;
+    const narc_point start = move.controls[0];
+    narc_point end;
+    do
+        end = move.controls[move.degree];
+    while (narc_next_drawn(path, &move) && move.contour == contour);
+    return is_same(start, end);
+}
+
 /* The fewest pieces for a contour that is flattened; where the tolerance says little, those of its moves. */
 static narc_status add_fewest(struct builder *builder, const narc_path *path, narc_drawn_move move) {
     const narc_contours *fine = &builder->fine;
@@ -111,7 +122,8 @@ static narc_status add_fewest(struct builder *builder, const narc_path *path, na
     const double flatness = fmax(0, fine->flatness - path->slack), tolerance = builder->tolerance - flatness;
     if (count < 2)
         return NARC_OK;
-    if (tolerance < LEAST_OF_FLAT * builder->tolerance || tolerance < SLACKS * path->slack)
+    if ((builder->open && is_drawn_round(path, move)) || tolerance < LEAST_OF_FLAT * builder->tolerance ||
+        tolerance < SLACKS * path->slack)
         return add_contour(builder, path, move);
     narc_point *points = malloc((count + 1) * sizeof *points);
     bool *joints = calloc(count + 1, sizeof *joints);
