@@ -4,7 +4,7 @@
  *
  * The mental model
  *
- *   An outline is a PATH: closed contours made of lines and Bezier curves. A fit looks at its convex hull alone, so
+ *   An outline is a PATH: closed contours made of lines, arcs and Bezier curves. A fit looks at its convex hull alone, so
  *   holes, several contours and contours that overlap are fine. A FIT is an arc shape (see narc_shapes.h) that bounds
  *   the path (it contains every point of the path, curves included) or approximates it, and it is the best one that
  *   was found for what is asked:
@@ -62,7 +62,7 @@ NARC_API narc_status narc_create_path(narc_path **out_path);
 /* Frees a path; NULL is fine. */
 NARC_API void narc_destroy_path(narc_path *path);
 
-/* The pen: move_to begins a contour, the others draw a line or a Bezier curve from where the pen is. A contour closes
+/* The pen: move_to begins a contour, the others draw a line, a Bezier curve or an arc from where the pen is. A contour closes
  * by itself with a line to its start. Errors: NARC_ERROR_ARGUMENT (NULL, no contour was begun), NARC_ERROR_NOT_FINITE,
  * NARC_ERROR_SIZE (beyond NARC_MAX_COORDINATE), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_move_to(narc_path *path, const narc_point *point, narc_error *error);
@@ -71,6 +71,10 @@ NARC_API narc_status narc_quadratic_to(narc_path *path, const narc_point *contro
                                        narc_error *error);
 NARC_API narc_status narc_cubic_to(narc_path *path, const narc_point *control_1, const narc_point *control_2,
                                    const narc_point *point, narc_error *error);
+
+/* An arc of a circle through `middle`, which is best halfway, to `point`: exact up to rounding. Three points on a line are
+ * a line. A full circle is two arcs. */
+NARC_API narc_status narc_arc_to(narc_path *path, const narc_point *middle, const narc_point *point, narc_error *error);
 
 /* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
  * repeated at the end. No curve is further than `flatness` from its chords, and no drawing from contours that were
@@ -132,9 +136,14 @@ typedef struct narc_image_request {
     bool *out_whole;  /* NULL, or set on success: all of the image or page counts, and the outline is its rectangle */
     const char *element; /* of SVG: the id of the one element, such as a layer, that counts; NULL: all. One that is not
                             there is NARC_ERROR_INDEX */
+    bool trace;          /* of SVG: draw and trace it even if it is plain */
+    bool *out_exact;     /* NULL, or of SVG set on success: it is plain, and was read by its geometry */
 } narc_image_request;
 
-/* What is seen of an SVG file: librsvg draws it, whatever it uses (strokes, clipping, text, style sheets, filters), and
+/* What is seen of an SVG file. A plain drawing is read by its geometry: filled circles, ellipses, rectangles, polygons and
+ * paths, with transforms, and strokes of circles, rectangles and lines, where outlines do not cross or touch each other and
+ * nothing goes beyond the page. Lines, curves and arcs of circles are then exact, ellipses are curves within 1e-11 of
+ * them. Of any other librsvg draws what is seen, whatever it uses (strokes, clipping, text, style sheets, filters), and
  * the outline of all ink above the threshold is traced. Fainter ink within 8 pixels of it along rows and columns counts
  * too, so that antialiased edges and tips keep their place. The ink's longer side is 4096 pixels or more, less only
  * where the page, at 8192 pixels, is more than twice as large as the ink. Outline and ink that counts are within one
@@ -333,6 +342,12 @@ typedef struct narc_arc_chains {
  * drawn), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
                                      narc_error *error);
+
+/* The same with the fewest pieces that are found (after Maier and Pisinger 2013): at joints the tangent may turn, by as
+ * much as the tolerance allows. Lines are preferred to arcs where as many of both serve. A rectangle with round corners is
+ * four lines and four arcs, a circle two arcs; arcs of the path are met exactly. */
+NARC_API narc_status narc_fit_fewest_chains(const narc_path *path, double tolerance, bool open,
+                                            narc_arc_chains *out_chains, narc_error *error);
 NARC_API void narc_release_chains(narc_arc_chains *chains);
 
 /* One chain, `pieces[0 .. count-1]`, as arcs in the form of shapes, for ground: with the inside on its left, normals that

@@ -269,4 +269,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(work.store);
 }
 
-const command cast_command = {"cast", "rays against bodies: hits, report, picture", HELP, run};
+const command cast_command = {"cast", "rays against bodies: hits, report, picture", HELP, run, NULL};

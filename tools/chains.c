@@ -9,12 +9,13 @@
 #include "fail.h"
 #include "progress.h"
 
-narc_arc_chains *fit_chains(outline_list *outlines, double tolerance, bool open) {
+narc_arc_chains *fit_chains(outline_list *outlines, double tolerance, bool open, bool smooth) {
     narc_arc_chains *chains = allocate(outlines->count, sizeof *chains);
     size_t kept = 0;
     for (size_t i = 0; i < outlines->count; i++) {
         narc_error error;
-        if (narc_fit_chains(outlines->items[i].path, tolerance, open, &chains[kept], &error) != NARC_OK)
+        if ((smooth ? narc_fit_chains : narc_fit_fewest_chains)(outlines->items[i].path, tolerance, open, &chains[kept],
+                                                                &error) != NARC_OK)
             report_outline(&outlines->items[i], error.message);
         else
             keep_outline(outlines, i, kept++);

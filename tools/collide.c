@@ -368,4 +368,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(work.store);
 }
 
-const command collide_command = {"collide", "bodies against each other: contacts, report, picture", HELP, run};
+const command collide_command = {"collide", "bodies against each other: contacts, report, picture", HELP, run, NULL};

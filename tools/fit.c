@@ -23,10 +23,12 @@ static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
     "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--out shapes.json]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
+    "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
-    "       narc fit INPUT... --chain --tolerance T [--open] [--keep-going] [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--out shapes.json]\n"
+    "       narc fit INPUT... --chain --tolerance T [--open] [--smooth] [--keep-going] [--characters TEXT]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
+    "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
@@ -34,7 +36,7 @@ static const char HELP[] =
     "\n"
     "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
-    "                  SVG           what is drawn, as one shape, traced at its edge\n"
+    "                  SVG           what is drawn, as one shape: plain drawings exactly, others traced\n"
     "                  PNG           the silhouette; lengths in pixels\n"
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
@@ -55,20 +57,23 @@ static const char HELP[] =
     "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
     "  --no-edges      not in these either\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
-    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
+    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
+static const char MORE_HELP[] =
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
     "  --ids A,B|'*'   of SVG: a shape for each element with one of these ids, or each layer\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
+    "  --trace         plain SVG drawings too are drawn and traced\n"
     "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
     "                  1e-9 to 0.1, default 2e-5\n"
     "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
     "  --keep-origin   the shapes keep the input's coordinates\n"
-    "  --chain         instead of convex shapes: the outline itself as closed chains of arcs and edges,\n"
-    "                  within --tolerance, for ground; --open: contours are strokes, left open\n"
+    "  --chain         instead of convex shapes: the outline itself as closed chains, within\n"
+    "                  --tolerance, of the fewest arcs and edges; --smooth: they join without\n"
+    "                  corners, for ground; --open: contours are strokes, left open\n"
     "  --keep-going    what cannot be read or fitted is left out; the exit status is 1\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
@@ -95,11 +100,13 @@ enum {
     IDS,
     SILHOUETTE,
     THRESHOLD,
+    TRACE,
     FLATNESS,
     MIN_RADIUS,
     STARTS,
     CHAIN,
     OPEN,
+    SMOOTH,
     KEEP_ORIGIN,
     KEEP_GOING,
     OUT,
@@ -132,6 +139,8 @@ static void check_combinations(const option *options) {
         exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
     if (options[OPEN].value && !options[CHAIN].value)
         fail("--open is for --chain: shapes are closed");
+    if (options[SMOOTH].value && !options[CHAIN].value)
+        fail("--smooth is for --chain: shapes are smooth without it");
     if (options[NO_EDGES].value && !options[PARTS].value)
         fail("--no-edges is for --parts: other shapes have edges with --edges alone");
     if (!options[ARCS].value && !options[TOLERANCE].value)
@@ -451,6 +460,7 @@ static void make_shapes(outline_list *outlines, fitting how, FILE *file, const c
         print_parts(report, outlines, fits);
     else
         print_table(report, outlines, fits);
+    print_ways(report, outlines);
     finish_report(report);
     commit_outputs();
     for (size_t i = 0; i < outlines->count; i++)
@@ -459,9 +469,9 @@ static void make_shapes(outline_list *outlines, fitting how, FILE *file, const c
     free(fits);
 }
 
-static void make_chains(outline_list *outlines, double tolerance, bool open, FILE *file, const char *picture,
-                        FILE *picture_file) {
-    narc_arc_chains *chains = fit_chains(outlines, tolerance, open);
+static void make_chains(outline_list *outlines, double tolerance, bool open, bool smooth, FILE *file,
+                        const char *picture, FILE *picture_file) {
+    narc_arc_chains *chains = fit_chains(outlines, tolerance, open, smooth);
     check_any(outlines);
     size_t count;
     narc_named_shape *shapes = describe_chains(outlines, chains, open, &count);
@@ -470,6 +480,7 @@ static void make_chains(outline_list *outlines, double tolerance, bool open, FIL
         draw_fits(picture, picture_file, outlines, NULL, chains);
     FILE *report = finish_outputs();
     print_chains(report, outlines, chains);
+    print_ways(report, outlines);
     finish_report(report);
     commit_outputs();
     for (size_t k = 0; k < count; k++)
@@ -495,11 +506,13 @@ static void run(int argc, char **argv) {
                                [IDS] = {"--ids", true, NULL},
                                [SILHOUETTE] = {"--silhouette", true, NULL},
                                [THRESHOLD] = {"--threshold", true, NULL},
+                               [TRACE] = {"--trace", false, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
                                [CHAIN] = {"--chain", false, NULL},
                                [OPEN] = {"--open", false, NULL},
+                               [SMOOTH] = {"--smooth", false, NULL},
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
@@ -512,6 +525,7 @@ static void run(int argc, char **argv) {
     const reading how = {.characters = options[CHARACTERS].value,
                          .ids = options[IDS].value,
                          .silhouette = options[SILHOUETTE].value,
+                         .trace = options[TRACE].value,
                          .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
                                                     "more than 0 and less than 1", 0)};
     const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";
@@ -524,7 +538,8 @@ static void run(int argc, char **argv) {
     check_any(&outlines);
     FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
     if (options[CHAIN].value)
-        make_chains(&outlines, request.tolerance, options[OPEN].value, shapes_file, picture, picture_file);
+        make_chains(&outlines, request.tolerance, options[OPEN].value, options[SMOOTH].value, shapes_file, picture,
+                    picture_file);
     else
         make_shapes(
             &outlines,
@@ -536,4 +551,4 @@ static void run(int argc, char **argv) {
     free(files);
 }
 
-const command fit_command = {"fit", "outlines of glyphs, drawings, images or points to shapes", HELP, run};
+const command fit_command = {"fit", "outlines of glyphs, drawings, images or points to shapes", HELP, run, MORE_HELP};

@@ -169,6 +169,24 @@ int print_name(FILE *file, const outline_list *outlines, const char *name, int w
     return width;
 }
 
+void print_ways(FILE *file, const outline_list *outlines) {
+    static const char *const told[] = {[BY_GEOMETRY] = "exactly", [BY_PICTURE] = "as a picture"};
+    for (int way = BY_GEOMETRY; way <= BY_PICTURE; way++) {
+        bool any = false;
+        for (size_t i = 0; i < outlines->count; i++) {
+            if ((int)outlines->items[i].way != way)
+                continue;
+            if (any)
+                fprintf(file, ", %s", outlines->items[i].name);
+            else
+                fprintf(file, "SVG read %s: %s", told[way], outlines->items[i].name);
+            any = true;
+        }
+        if (any)
+            fputc('\n', file);
+    }
+}
+
 char *name_part(const outline *of, size_t index, size_t count) {
     enum { DIGITS = 24 };
     const size_t size = strlen(of->name) + DIGITS;
@@ -373,14 +391,16 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     narc_error error;
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
-    bool whole = false;
-    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole, element};
+    bool whole = false, exact = false;
+    const narc_image_request image = {
+        choose_silhouette(how->silhouette), how->threshold, &whole, element, how->trace, &exact};
     warning[0] = 0;
     if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
         report_text(file, &error);
         cut_outlines(outlines, outlines->count - 1);
         return;
     }
+    added->way = kind != SVG ? NOT_SVG : exact ? BY_GEOMETRY : BY_PICTURE;
     if (warning[0])
         warn_at(file, "a part of it, perhaps some text, may be missing: %s", warning);
     if (whole && image.silhouette == NARC_SILHOUETTE_ALPHA)

@@ -14,6 +14,7 @@ typedef struct outline {
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
     narc_path *path;
+    enum { NOT_SVG, BY_GEOMETRY, BY_PICTURE } way; /* an SVG file was read */
 } outline;
 
 typedef struct outline_list {
@@ -25,6 +26,7 @@ typedef struct reading {
     const char *characters; /* which glyphs of fonts; NULL: none */
     const char *silhouette; /* of images and drawings: alpha, dark, light; NULL: the usual one */
     const char *ids;        /* of elements of SVG, with commas between; NULL: what all draw together */
+    bool trace;             /* SVG files are drawn and traced even if they are plain */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
 } reading;
 
@@ -44,6 +46,9 @@ void cut_outlines(outline_list *outlines, size_t count);
 /* Prints a cell of a table's first column, `width` characters wide; 0: as wide as the longest name and the word itself.
  * Returns the width. */
 int print_name(FILE *file, const outline_list *outlines, const char *name, int width);
+
+/* Tells which SVG drawings were read by their geometry, and which were drawn and traced. */
+void print_ways(FILE *file, const outline_list *outlines);
 
 /* The name of part `index` of `count`: that of the outline if there is one part, else NAME/1, NAME/2 ... To be freed. */
 char *name_part(const outline *of, size_t index, size_t count);

@@ -43,4 +43,4 @@ static void run(int argc, char **argv) {
     printf("%-20s %u\n", "threads", workers.count);
 }
 
-const command info_command = {"info", "version, processor features, instruction sets, threads", HELP, run};
+const command info_command = {"info", "version, processor features, instruction sets, threads", HELP, run, NULL};

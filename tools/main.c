@@ -35,7 +35,7 @@ static bool is_help(const char *argument) { return strcmp(argument, "--help") ==
 static void run_command(const command *chosen, int argc, char **argv) {
     for (int i = 0; i < argc && strcmp(argv[i], "--") != 0; i++) {
         if (is_help(argv[i])) {
-            fputs(chosen->help, stdout);
+            printf("%s%s", chosen->help, chosen->more ? chosen->more : "");
             return;
         }
     }

@@ -97,4 +97,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(store);
 }
 
-const command scene_command = {"scene", "bodies at random places", HELP, run};
+const command scene_command = {"scene", "bodies at random places", HELP, run, NULL};

@@ -87,7 +87,7 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     casts.motions[0] = *both[0];
     casts.motions[1] = pairs->other_bodies ? *both[1] : *both[0];
     casts.target = options->target;
-    casts.targets.base = NULL;
+    casts.targets.base = casts.depths.base = NULL;
     casts.tolerance = options->tolerance;
     casts.parting = options->parting;
     casts.nearest = false;
@@ -144,6 +144,7 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
     out_job->batch.tolerance = options->tolerance;
     out_job->batch.parting = options->parting;
     out_job->batch.targets = options->targets;
+    out_job->batch.depths = (narc_float_column){NULL, 0};
     out_job->batch.nearest = false;
     out_job->batch.front_only = options->front_only != 0;
     atomic_init(&out_job->skipped, 0);
@@ -155,17 +156,13 @@ static void cast_part(void *argument, size_t part, size_t first, size_t end) {
     narc_cast_range(argument, first, end);
 }
 
-narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
-                            const narc_pairs *pairs, const narc_motions *other_motions,
-                            const narc_cast_options *options, narc_impact *out_rows, size_t capacity,
-                            narc_error *error) {
-    static const narc_cast_options defaults = {0};
-    const narc_cast_options *const o = options ? options : &defaults;
+/* Apart, so that what few casts need is not on the stack beneath a batch of them. */
+NOINLINE narc_status cast_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
+                                const narc_pairs *pairs, const narc_motions *other_motions, const narc_cast_options *o,
+                                narc_impact *out_rows, size_t capacity, narc_error *error) {
     narc_query query;
     narc_batch batch;
     narc_cast_job job;
-    if (cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity))
-        return NARC_OK;
     narc_status status = narc_check_casts(motions, other_motions, o, &job, error);
     if (o->workers)
         query = (narc_query){.workers = o->workers};
@@ -194,4 +191,15 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;
+}
+
+narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
+                            const narc_pairs *pairs, const narc_motions *other_motions,
+                            const narc_cast_options *options, narc_impact *out_rows, size_t capacity,
+                            narc_error *error) {
+    static const narc_cast_options defaults = {0};
+    const narc_cast_options *const o = options ? options : &defaults;
+    return cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity)
+               ? NARC_OK
+               : cast_batch(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity, error);
 }

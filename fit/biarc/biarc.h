@@ -100,6 +100,7 @@ typedef struct narc_polyline {
     size_t count;
     bool closed;
     double slack;
+    const bool *joints; /* NULL, or which points are ends of what was drawn */
 } narc_polyline;
 
 /* Each adds the arcs for a curve, or for lines: arcs and lines from the first point to the last, which join with a common
@@ -109,5 +110,9 @@ narc_status narc_check_curve(const narc_point *controls, size_t degree, double t
 narc_status narc_add_curve(const narc_point *controls, size_t degree, double tolerance, narc_arc_list *to,
                            narc_error *error);
 narc_status narc_add_polyline(const narc_polyline *line, double tolerance, narc_arc_list *to, narc_error *error);
+
+/* Adds the fewest arcs and lines that are found for lines, none further than `tolerance` from the other; where they meet the
+ * tangent may turn. NARC_ERROR_MEMORY, NARC_ERROR_NO_SOLUTION. */
+narc_status narc_add_fewest(const narc_polyline *line, double tolerance, narc_arc_list *to, narc_error *error);
 
 #endif

@@ -23,7 +23,8 @@ struct builder {
     size_t *ends;
     size_t count, end_capacity;
     double tolerance; /* of the contour that is fitted */
-    bool open;
+    bool open, fewest;
+    narc_contours fine;     /* flattened for the fewest pieces */
     struct effort *efforts; /* of contours */
     narc_contours drawn;    /* flattened */
     narc_aabb *boxes;       /* of its contours */
@@ -51,7 +52,7 @@ static narc_status add_lines(struct builder *builder, const narc_point *points, 
     if (start && !is_same(*start, kept[count - 1]))
         kept[count++] = *start;
     narc_status status = NARC_OK;
-    const narc_polyline line = {kept, count, closed, slack};
+    const narc_polyline line = {kept, count, closed, slack, NULL};
     if (count > 2)
         status = narc_add_polyline(&line, builder->tolerance, &builder->list, builder->error);
     else if (count == 2)
@@ -59,6 +60,22 @@ static narc_status add_lines(struct builder *builder, const narc_point *points, 
     free(kept);
     return status;
 }
+
+/* An arc as it is, unless it is a point. */
+static narc_status add_piece(struct builder *builder, const narc_curve_arc *piece) {
+    narc_arc_list *list = &builder->list;
+    narc_curve_arc *arcs = narc_grow(list->arcs, &list->capacity, list->count + 1, sizeof *arcs);
+    if (!arcs)
+        return fail_memory(builder);
+    list->arcs = arcs;
+    if (!is_same(piece->start, piece->end))
+        arcs[list->count++] = *piece;
+    return NARC_OK;
+}
+
+/* Of the tolerance, the flatness for the fewest pieces, and what it must leave. Within fewer slacks than this the stairs of a
+ * tracing are followed, one by one. */
+static const double SHARE_OF_FLATNESS = 1.0 / 32, LEAST_OF_FLAT = 0.75, SLACKS = 2;
 
 /* The moves of a contour from its first one on, and the line that closes it. */
 static narc_status add_contour(struct builder *builder, const narc_path *path, narc_drawn_move move) {
@@ -68,19 +85,77 @@ static narc_status add_contour(struct builder *builder, const narc_path *path, n
     for (bool more = true, whole = true; more && !status; whole = false) {
         const narc_point *points = move.controls;
         const unsigned degree = move.degree;
+        const bool is_arc = move.is_arc;
+        const narc_curve_arc arc = is_arc ? narc_find_arc(&move) : (narc_curve_arc){0};
         size_t lines = 0;
         do {
             lines += degree == 1;
             more = narc_next_drawn(path, &move) && move.contour == contour;
         } while (more && degree == 1 && move.degree == 1);
         const bool closing = !more && !builder->open;
-        if (degree > 1)
+        if (is_arc)
+            status = add_piece(builder, &arc);
+        else if (degree > 1)
             status = narc_add_curve(points, degree, builder->tolerance, &builder->list, builder->error);
         if (!status && (degree == 1 || closing)) /* a curve's end stands behind its controls */
             status = add_lines(builder, degree == 1 ? points : points + degree, lines, closing ? &start : NULL,
                                closing && degree == 1 && whole, path->slack);
     }
     return status;
+}
+
+/* Does a contour end where it begins, by what is drawn? */
+static bool is_drawn_round(const narc_path *path, narc_drawn_move move) {
+    const size_t contour = move.contour;
+    const narc_point start = move.controls[0];
+    narc_point end;
+    do
+        end = move.controls[move.degree];
+    while (narc_next_drawn(path, &move) && move.contour == contour);
+    return is_same(start, end);
+}
+
+/* The fewest pieces for a contour that is flattened; where the tolerance says little, those of its moves. */
+static narc_status add_fewest(struct builder *builder, const narc_path *path, narc_drawn_move move) {
+    const narc_contours *fine = &builder->fine;
+    const size_t begin = begin_of(fine->ends, move.contour), count = fine->ends[move.contour] - begin;
+    const double flatness = fmax(0, fine->flatness - path->slack), tolerance = builder->tolerance - flatness;
+    if (count < 2)
+        return NARC_OK;
+    if ((builder->open && is_drawn_round(path, move)) || tolerance < LEAST_OF_FLAT * builder->tolerance ||
+        tolerance < SLACKS * path->slack)
+        return add_contour(builder, path, move);
+    narc_point *points = malloc((count + 1) * sizeof *points);
+    bool *joints = calloc(count + 1, sizeof *joints);
+    if (!points || !joints) {
+        free(points);
+        free(joints);
+        return fail_memory(builder);
+    }
+    narc_drawn_move at = move;
+    bool more = true, curved = false;
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++) { /* where a curve begins or ends there is a joint */
+        const narc_point p = fine->points[begin + k];
+        if (!kept || !is_same(p, points[kept - 1]))
+            points[kept++] = p;
+        while (more && is_same(p, at.controls[0])) {
+            joints[kept - 1] = curved || at.degree > 1;
+            curved = at.degree > 1;
+            more = narc_next_drawn(path, &at) && at.contour == move.contour;
+        }
+    }
+    joints[kept - 1] = joints[kept - 1] || curved;
+    if (!builder->open) {
+        points[kept] = points[0];
+        joints[kept++] = joints[0] || curved;
+    }
+    const narc_polyline line = {points, kept, !builder->open, path->slack, joints};
+    narc_status status = narc_add_fewest(&line, tolerance, &builder->list, builder->error);
+    free(points);
+    free(joints);
+    builder->list.distance += flatness;
+    return status == NARC_ERROR_NO_SOLUTION ? add_contour(builder, path, move) : status;
 }
 
 /* A contour's own lines, or the chords of its curves. */
@@ -270,7 +345,9 @@ static narc_status fit_contour(struct builder *builder, const narc_path *path, n
         const bool lines = flatness <= whole && !is_round && (effort->lines || tries + 1 == MOST_TRIES);
         list->count = begin;
         list->distance = 0;
-        status = lines ? add_chords(builder, contour, flatness) : add_contour(builder, path, first);
+        status = lines             ? add_chords(builder, contour, flatness)
+                 : builder->fewest ? add_fewest(builder, path, first)
+                                   : add_contour(builder, path, first);
         if (status || list->count == begin)
             break;
         is_round = builder->open && is_same(list->arcs[begin].start, list->arcs[list->count - 1].end);
@@ -462,6 +539,9 @@ static const double CROSSING = 1e-6;
 /* All that contours are compared with. */
 static narc_status prepare(struct builder *builder, const narc_path *path) {
     narc_status status = narc_flatten_path(path, 0, &builder->drawn, builder->error);
+    if (!status && builder->fewest &&
+        narc_flatten_path(path, SHARE_OF_FLATNESS * builder->tolerance, &builder->fine, NULL))
+        status = narc_flatten_path(path, 0, &builder->fine, builder->error);
     const narc_contours *drawn = &builder->drawn;
     const double largest = drawn->point_count ? largest_in(bound_points(drawn->points, drawn->point_count)) : 0;
     builder->boxes = malloc((drawn->count + 1) * sizeof *builder->boxes);
@@ -480,17 +560,18 @@ static narc_status prepare(struct builder *builder, const narc_path *path) {
     return status;
 }
 
-narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
-                            narc_error *error) {
+static narc_status fit_path(const narc_path *path, double tolerance, bool open, bool fewest,
+                            narc_arc_chains *out_chains, narc_error *error) {
     if (!path || !out_chains)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", path ? "out_chains" : "path");
-    struct builder builder = {.tolerance = tolerance, .open = open, .error = error};
+    struct builder builder = {.tolerance = tolerance, .open = open, .fewest = fewest, .error = error};
     narc_status status = prepare(&builder, path);
     if (!status)
         status = fit_contours(&builder, path);
     if (!status && builder.count == 0)
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
     narc_release_contours(&builder.drawn);
+    narc_release_contours(&builder.fine);
     free(builder.crossings.items);
     free(builder.boxes);
     free(builder.efforts);
@@ -502,6 +583,16 @@ narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, 
     else
         *out_chains = chains;
     return status;
+}
+
+narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
+                            narc_error *error) {
+    return fit_path(path, tolerance, open, false, out_chains, error);
+}
+
+narc_status narc_fit_fewest_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
+                                   narc_error *error) {
+    return fit_path(path, tolerance, open, true, out_chains, error);
 }
 
 void narc_release_chains(narc_arc_chains *chains) {

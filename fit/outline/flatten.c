@@ -4,7 +4,8 @@
  *
  * A chord over a parameter step h strays from its curve by at most h^2 / 8 times the largest second derivative, and
  * that of a Bezier curve of degree d is at most d (d - 1) times the largest second difference D of its control points.
- * So k even steps stay within d (d - 1) D / (8 k^2), and rounding on top of that.
+ * So k even steps stay within d (d - 1) D / (8 k^2), and rounding on top of that. Of a circle with radius r, the chord
+ * of an angle a strays by r (1 - cos(a / 2)), which is less than r a^2 / 8.
  */
 #include "outline/path.h"
 
@@ -29,79 +30,124 @@ static const double ROUNDING = 26;
 
 /* The point of a curve at 0 <= t <= 1, by de Casteljau. Each of up to three rounds of s a + t b rounds s, a product and
  * the sum, half an epsilon each: each coordinate is within 5 epsilon of the largest absolute coordinate. */
-static narc_point evaluate_curve(const narc_point *controls, unsigned degree, double t) {
+static narc_point evaluate_curve(const narc_drawn_move *curve, double t) {
     narc_point p[4];
     const double s = 1 - t;
-    for (unsigned i = 0; i <= degree; i++)
-        p[i] = controls[i];
-    for (unsigned last = degree; last > 0; last--)
+    if (curve->is_arc) {
+        const narc_curve_arc arc = narc_find_arc(curve);
+        return narc_find_arc_point(&arc, t);
+    }
+    for (unsigned i = 0; i <= curve->degree; i++)
+        p[i] = curve->controls[i];
+    for (unsigned last = curve->degree; last > 0; last--)
         for (unsigned i = 0; i < last; i++)
             p[i] = (narc_point){s * p[i].x + t * p[i + 1].x, s * p[i].y + t * p[i + 1].y};
     return p[0];
 }
 
+narc_curve_arc narc_find_arc(const narc_drawn_move *move) {
+    const narc_point p = move->controls[0], q = move->controls[2], m = move->controls[1];
+    const narc_point in = minus(m, p), out = minus(q, m), chord = minus(q, p);
+    const double across = cross(in, out);
+    if (across == 0)
+        return (narc_curve_arc){.start = p, .end = q, .center = p, .radius = INFINITY};
+    const double half =
+        narc_atan2(across, dot(in, out)); /* the angle at a point of the arc is half that at the centre */
+    const narc_point center = along(along(p, 0.5, chord), 0.5 / tangent(half), turned(chord));
+    return (narc_curve_arc){p, q, center, length(chord) / fabs(2 * narc_sin(half)), 2 * half};
+}
+
+narc_point narc_find_arc_point(const narc_curve_arc *arc, double t) {
+    const narc_point chord = minus(arc->end, arc->start);
+    if (arc->turn == 0)
+        return along(arc->start, t, chord);
+    const double part = narc_sin(t * arc->turn / 2) / narc_sin(arc->turn / 2); /* of the chord, which is turned too */
+    const narc_point way = unit_at((t - 1) * arc->turn / 2);
+    return (narc_point){arc->start.x + part * (way.x * chord.x - way.y * chord.y),
+                        arc->start.y + part * (way.x * chord.y + way.y * chord.x)};
+}
+
 /* ---------------------------------------------------------------------------- how many chords */
 
 /* What one chord for the whole curve may stray, without rounding: divided by k^2 for k chords. */
-static double find_bend(const narc_point *controls, unsigned degree) {
+static double find_bend(const narc_drawn_move *curve) {
     double difference = 0;
-    for (unsigned i = 0; i + 2 <= degree; i++) {
-        const narc_point a = controls[i], b = controls[i + 1], c = controls[i + 2];
+    if (curve->is_arc) {
+        const narc_curve_arc arc = narc_find_arc(curve);
+        return arc.turn == 0 ? 0 : arc.radius * arc.turn * arc.turn / 8;
+    }
+    for (unsigned i = 0; i + 2 <= curve->degree; i++) {
+        const narc_point a = curve->controls[i], b = curve->controls[i + 1], c = curve->controls[i + 2];
         difference = fmax(difference, narc_hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y));
     }
-    return degree * (degree - 1) * difference / 8;
+    return curve->degree * (curve->degree - 1) * difference / 8;
 }
 
-static double find_rounding(const narc_point *controls, unsigned degree) {
-    return ROUNDING * DBL_EPSILON * largest_in(bound_points(controls, degree + 1));
+static double find_rounding(const narc_drawn_move *curve) {
+    return ROUNDING * DBL_EPSILON * largest_in(bound_points(curve->controls, curve->degree + 1));
 }
 
 /* The least flatness that a curve can be had with. */
-static double find_least_flatness(const narc_point *controls, unsigned degree) {
-    return find_bend(controls, degree) / ((double)MAX_CHORDS * MAX_CHORDS) + find_rounding(controls, degree);
+static double find_least_flatness(const narc_drawn_move *curve) {
+    return find_bend(curve) / ((double)MAX_CHORDS * MAX_CHORDS) + find_rounding(curve);
 }
 
 /* `flatness` is at least the least one. */
-static size_t count_chords(const narc_point *controls, unsigned degree, double flatness) {
-    const double bend = find_bend(controls, degree);
-    if (degree == 1 || bend == 0)
+static size_t count_chords(const narc_drawn_move *curve, double flatness) {
+    const double bend = find_bend(curve);
+    if (curve->degree == 1 || bend == 0)
         return 1;
-    const double chords = ceil(sqrt(bend / (flatness - find_rounding(controls, degree))));
+    const double chords = ceil(sqrt(bend / (flatness - find_rounding(curve))));
     return chords < 1 ? 1 : chords < MAX_CHORDS ? (size_t)chords : MAX_CHORDS;
 }
 
 /* ---------------------------------------------------------------------------- a path's extent */
 
 /* Widens the box by a curve's point at t, if that is on the curve (no root, a division by 0: it is not). */
-static void widen_at(narc_aabb *box, const narc_point *controls, unsigned degree, double t) {
+static void widen_at(narc_aabb *box, const narc_drawn_move *curve, double t) {
     if (t > 0 && t < 1)
-        *box = widen_box(*box, evaluate_curve(controls, degree, t));
+        *box = widen_box(*box, evaluate_curve(curve, t));
 }
 
 /* Widens the box by the points where one coordinate turns back: c0 .. c3 are that coordinate of the control points.
  * The derivative is proportional to (1 - t)^2 p + 2 t (1 - t) q + t^2 r with the differences p, q and r. */
-static void widen_by_turns(narc_aabb *box, const narc_point *controls, unsigned degree, const double *c) {
-    if (degree == 2) {
-        widen_at(box, controls, degree, (c[0] - c[1]) / (c[0] - 2 * c[1] + c[2]));
-    } else if (degree == 3) {
+static void widen_by_turns(narc_aabb *box, const narc_drawn_move *curve, const double *c) {
+    if (curve->degree == 2) {
+        widen_at(box, curve, (c[0] - c[1]) / (c[0] - 2 * c[1] + c[2]));
+    } else if (curve->degree == 3) {
         const double p = c[1] - c[0], q = c[2] - c[1], r = c[3] - c[2];
         const double root = sqrt(fmax(0, q * q - p * r));
         /* Of the two ways to write the roots, the one that does not cancel. */
         const double sum = p - q + (p > q ? root : -root);
-        widen_at(box, controls, degree, sum / (p - 2 * q + r));
-        widen_at(box, controls, degree, p / sum);
+        widen_at(box, curve, sum / (p - 2 * q + r));
+        widen_at(box, curve, p / sum);
     }
 }
 
-static void widen_by_curve(narc_aabb *box, const narc_point *controls, unsigned degree) {
-    double x[4], y[4];
-    for (unsigned i = 0; i <= degree; i++) {
-        x[i] = controls[i].x;
-        y[i] = controls[i].y;
+/* Widens the box by the points of an arc that are its circle's furthest to the right, top, left, bottom. */
+static void widen_by_sides(narc_aabb *box, const narc_drawn_move *curve) {
+    const narc_curve_arc arc = narc_find_arc(curve);
+    const narc_point from = minus(arc.start, arc.center);
+    for (int side = 0; side < 4 && arc.turn != 0; side++) {
+        const narc_point to = {side == 0 ? 1 : side == 2 ? -1 : 0, side == 1 ? 1 : side == 3 ? -1 : 0};
+        const double angle = narc_atan2(copysign(1, arc.turn) * cross(from, to), dot(from, to));
+        widen_at(box, curve, (angle < 0 ? angle + 2 * PI : angle) / fabs(arc.turn));
     }
-    *box = widen_box(widen_box(*box, controls[0]), controls[degree]);
-    widen_by_turns(box, controls, degree, x);
-    widen_by_turns(box, controls, degree, y);
+}
+
+static void widen_by_curve(narc_aabb *box, const narc_drawn_move *curve) {
+    double x[4], y[4];
+    for (unsigned i = 0; i <= curve->degree; i++) {
+        x[i] = curve->controls[i].x;
+        y[i] = curve->controls[i].y;
+    }
+    *box = widen_box(widen_box(*box, curve->controls[0]), curve->controls[curve->degree]);
+    if (curve->is_arc) {
+        widen_by_sides(box, curve);
+        return;
+    }
+    widen_by_turns(box, curve, x);
+    widen_by_turns(box, curve, y);
 }
 
 /* ---------------------------------------------------------------------------- the walk over the moves */
@@ -109,13 +155,14 @@ static void widen_by_curve(narc_aabb *box, const narc_point *controls, unsigned 
 bool narc_next_drawn(const narc_path *path, narc_drawn_move *move) {
     bool begins = false;
     while (move->move < path->move_count) {
-        const unsigned degree = path->degrees[move->move++];
+        const unsigned coded = path->degrees[move->move++], degree = coded & ~NARC_ARC_MOVE;
         const size_t point = move->point;
         move->point += narc_count_move_points(degree);
         if (degree > 0) {
             move->contour += begins && move->controls;
             move->controls = path->points + point - 1;
             move->degree = degree;
+            move->is_arc = (coded & NARC_ARC_MOVE) != 0;
             move->begins = begins;
             return true;
         }
@@ -137,9 +184,9 @@ static struct survey survey_path(const narc_path *path) {
     struct survey found = {.extent = {INFINITY, INFINITY, -INFINITY, -INFINITY}};
     for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         found.contour_count = move.contour + 1;
-        widen_by_curve(&found.extent, move.controls, move.degree);
+        widen_by_curve(&found.extent, &move);
         if (move.degree > 1) {
-            const double least = find_least_flatness(move.controls, move.degree);
+            const double least = find_least_flatness(&move);
             found.worst_contour = least > found.least_flatness ? move.contour : found.worst_contour;
             found.least_flatness = fmax(found.least_flatness, least);
             found.has_curves = true;
@@ -170,7 +217,7 @@ static narc_status choose_flatness(const struct survey *found, double *flatness,
 static size_t count_points(const narc_path *path, double flatness) {
     size_t count = 0;
     for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
-        const size_t more = count_chords(move.controls, move.degree, flatness) + move.begins;
+        const size_t more = count_chords(&move, flatness) + move.begins;
         count = count > SIZE_MAX - more ? SIZE_MAX : count + more;
     }
     return count;
@@ -193,11 +240,9 @@ static void draw_chords(const narc_path *path, narc_contours *contours) {
             first = contours->point_count;
             contours->points[contours->point_count++] = move.controls[0];
         }
-        const size_t chords = count_chords(move.controls, move.degree, contours->flatness);
-        for (size_t k = 1; k < chords; k++) {
-            contours->points[contours->point_count++] =
-                evaluate_curve(move.controls, move.degree, (double)k / (double)chords);
-        }
+        const size_t chords = count_chords(&move, contours->flatness);
+        for (size_t k = 1; k < chords; k++)
+            contours->points[contours->point_count++] = evaluate_curve(&move, (double)k / (double)chords);
         contours->points[contours->point_count++] = move.controls[move.degree];
     }
     if (contours->point_count > 0)
@@ -233,7 +278,7 @@ size_t narc_find_drawn_line(const narc_path *path, const narc_contours *contours
     for (narc_drawn_move move = {0}; narc_next_drawn(path, &move);) {
         if (move.contour != contour)
             continue;
-        const size_t chords = count_chords(move.controls, move.degree, contours->flatness - path->slack);
+        const size_t chords = count_chords(&move, contours->flatness - path->slack);
         if (chord < chords)
             break;
         chord -= chords;

@@ -96,7 +96,7 @@ static bool make_room(narc_path *path, size_t count) {
 }
 
 static narc_status add_move(narc_path *path, unsigned degree, const narc_point *const *given, narc_error *error) {
-    const size_t count = narc_count_move_points(degree);
+    const size_t count = narc_count_move_points(degree & ~NARC_ARC_MOVE);
     narc_point points[3];
     if (!path)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "path is NULL");
@@ -135,4 +135,8 @@ narc_status narc_quadratic_to(narc_path *path, const narc_point *control, const 
 narc_status narc_cubic_to(narc_path *path, const narc_point *control_1, const narc_point *control_2,
                           const narc_point *point, narc_error *error) {
     return add_move(path, 3, (const narc_point *const[]){control_1, control_2, point}, error);
+}
+
+narc_status narc_arc_to(narc_path *path, const narc_point *middle, const narc_point *point, narc_error *error) {
+    return add_move(path, NARC_ARC_MOVE + 2, (const narc_point *const[]){middle, point}, error);
 }

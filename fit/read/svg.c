@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * svg.c - SVG files: librsvg draws them, and the outline of what is drawn is traced.
+ * svg.c - SVG files: plain drawings by their geometry; librsvg draws all others, and the outline of what is drawn is traced.
  *
  * What is fainter than the threshold does not count, unless it is REACH pixels or less from what does: an edge of strong
  * ink has faint pixels too, and so has its tip, which is w pixels wide where 7 w pixels of a tip of 8 degrees are left.
@@ -26,6 +26,8 @@
 #include "error.h"
 #include "lines.h"
 #include "outline/path.h"
+#include "outline/vector.h"
+#include "read/svg_geometry.h"
 #include "read/trace.h"
 
 /* Pixels of the page's longer side in the first look, of the ink's longer side, and of the page's at most: of a page of
@@ -52,6 +54,7 @@ static const RsvgRectangle NO_SIZE = {0, 0, 300, 150};
 /* The part of the plane that is drawn, and the viewport with which user units stay as they are. */
 struct page {
     RsvgRectangle box, viewport;
+    bool cuts; /* off what is outside */
 };
 
 /* What is drawn, and the threshold, above which it counts: from `least` of 255 on. */
@@ -171,7 +174,7 @@ static narc_status find_page(RsvgHandle *handle, struct page *out_page, narc_err
     }
     if (!has_view && !(is_whole(width) && is_whole(height)))
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the SVG file has no viewBox, and only a part of a size");
-    *out_page = has_view ? (struct page){view, view} : surround_ink(rehearsal.ink);
+    *out_page = has_view ? (struct page){view, view, true} : surround_ink(rehearsal.ink);
     return has_area(out_page->box) ? NARC_OK
                                    : narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "nothing is seen in the SVG file");
 }
@@ -413,6 +416,31 @@ static narc_status find_element(RsvgHandle *handle, const char *id, char **out_e
     return NARC_OK;
 }
 
+/* A plain drawing by its geometry. */
+static narc_status read_geometry(const char *data, size_t size, const narc_image_request *how, const struct subject *of,
+                                 narc_path *path, bool *out_plain, narc_error *error) {
+    const RsvgRectangle view = of->page.box;
+    const narc_aabb page = {view.x, -view.y - view.height, view.x + view.width, -view.y};
+    const narc_path_mark mark = narc_mark_path(path);
+    narc_status status = narc_read_svg_geometry(data, size, how->element, of->threshold, of->page.cuts ? &page : NULL,
+                                                path, out_plain, error);
+    if (status || !*out_plain || !how->out_whole)
+        return status;
+    narc_contours drawn;
+    status = narc_flatten_path(path, 0, &drawn, error);
+    if (status) {
+        narc_rewind_path(path, mark);
+        return status;
+    }
+    size_t corners = 0; /* of the page, in the last contour */
+    for (size_t k = begin_of(drawn.ends, drawn.count - 1); k < drawn.point_count; k++)
+        corners += (drawn.points[k].x == page.min_x || drawn.points[k].x == page.max_x) &&
+                   (drawn.points[k].y == page.min_y || drawn.points[k].y == page.max_y);
+    *how->out_whole = of->page.cuts && corners == 4 && path->move_count - mark.move_count <= 5;
+    narc_release_contours(&drawn);
+    return NARC_OK;
+}
+
 narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                           narc_error *error) {
     const narc_image_request usual = {0}, *how = request ? request : &usual;
@@ -429,8 +457,14 @@ narc_status narc_read_svg(const void *data, size_t size, const narc_image_reques
     status = find_element(of.handle, how->element, &element, error);
     if (!status) {
         of.element = element;
+        bool plain = false;
         status = find_page(of.handle, &of.page, error);
-        status = status ? status : draw_and_trace(&of, how->out_whole, path, error);
+        if (!status && !how->trace && how->silhouette == NARC_SILHOUETTE_ALPHA)
+            status = read_geometry(data, size, how, &of, path, &plain, error);
+        if (!status && !plain)
+            status = draw_and_trace(&of, how->out_whole, path, error);
+        if (!status && how->out_exact)
+            *how->out_exact = plain;
         free(element);
     }
     g_object_unref(of.handle);

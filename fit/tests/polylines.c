@@ -119,9 +119,137 @@ static size_t fit_ring(const char *name, const narc_point *points, size_t count,
     check_near(name, points, count, &chains, tolerance, 1e-3 * tolerance + 1e-3);
     const size_t arcs = chains.arc_count;
     narc_release_chains(&chains);
+    if (narc_fit_fewest_chains(path, tolerance, false, &chains, &error) != NARC_OK)
+        fail_msg("%s: %s", name, error.message);
+    for (size_t i = 0; i < chains.arc_count; i++) {
+        const narc_curve_arc *arc = &chains.arcs[i], *next = &chains.arcs[(i + 1) % chains.arc_count];
+        assert_true(arc->end.x == next->start.x && arc->end.y == next->start.y);
+    }
+    check_arcs(&chains);
+    check_near(name, points, count, &chains, tolerance, 1e-3 * tolerance + 1e-3);
+    if (chains.arc_count > arcs)
+        fail_msg("%s: the fewest are %zu pieces, but %zu smooth ones serve", name, chains.arc_count, arcs);
+    narc_release_chains(&chains);
     narc_destroy_path(path);
     return arcs;
 }
+
+/* ---------------------------------------------------------------------------- the fewest pieces */
+
+static size_t count_fewest(narc_path *path, double tolerance) {
+    narc_arc_chains chains;
+    narc_error error;
+    expect_ok(narc_fit_fewest_chains(path, tolerance, false, &chains, &error), &error);
+    const size_t count = chains.arc_count;
+    narc_release_chains(&chains);
+    return count;
+}
+
+enum { FEW = 60 };
+
+/* Is some arc between two points of a ring, by trial of many, near those between them? */
+static bool can_join(const narc_point *points, size_t from, size_t length, double tolerance) {
+    enum { TRIALS = 201 };
+    const narc_point p = points[from], q = points[(from + length) % FEW];
+    const double x = q.x - p.x, y = q.y - p.y;
+    for (int k = 0; k < TRIALS; k++) {
+        const double bulge = (double)k / (TRIALS / 2) - 1, up = bulge == 0 ? 0 : (1 - bulge * bulge) / (4 * bulge);
+        const narc_point center = {(p.x + q.x) / 2 - up * y, (p.y + q.y) / 2 + up * x};
+        const double radius = hypot(p.x - center.x, p.y - center.y);
+        bool near = true;
+        for (size_t i = 1; near && i < length; i++) {
+            const narc_point r = points[(from + i) % FEW];
+            const double along = ((r.x - p.x) * x + (r.y - p.y) * y) / (x * x + y * y);
+            const double off = bulge == 0 ? fabs(x * (r.y - p.y) - y * (r.x - p.x)) / hypot(x, y)
+                                          : fabs(hypot(r.x - center.x, r.y - center.y) - radius);
+            near = off <= tolerance && along >= 0 && along <= 1;
+        }
+        if (near)
+            return true;
+    }
+    return false;
+}
+
+/* The fewest pieces from point to point of a ring, of all that there are. */
+static size_t search_ring(const narc_point *points, double tolerance) {
+    static bool joins[FEW][FEW];
+    size_t least = FEW;
+    for (size_t i = 0; i < FEW; i++)
+        for (size_t n = 1; n < FEW; n++)
+            joins[i][n] = can_join(points, i, n, tolerance);
+    for (size_t first = 0; first < FEW; first++) {
+        size_t best[FEW + 1] = {0};
+        for (size_t n = 1; n <= FEW; n++) {
+            best[n] = FEW;
+            for (size_t m = n == FEW ? 1 : 0; m < n; m++)
+                if (joins[(first + m) % FEW][n - m] && best[m] + 1 < best[n])
+                    best[n] = best[m] + 1;
+        }
+        least = best[FEW] < least ? best[FEW] : least;
+    }
+    return least;
+}
+
+/* No more than a slow search of all pieces between points finds, which looks at points alone: lines between them are up to a
+ * sixth of the tolerance further away. */
+TEST(test_fewest) {
+    struct test_random random = test_random_named("fewest");
+    for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
+        const double height = 0.25 * random_unit(&random), waves = 2 + (double)(trial % 4);
+        narc_point points[FEW];
+        for (size_t k = 0; k < FEW; k++) {
+            const double a = 2 * PI * (double)k / FEW, r = 10 * (1 + height * cos(waves * a));
+            points[k] = (narc_point){r * cos(a), r * sin(a)};
+        }
+        narc_path *path = make_path();
+        draw_polygon(path, points, FEW);
+        const size_t found = count_fewest(path, 0.4), least = search_ring(points, 0.4 * 5 / 6);
+        if (found > least)
+            fail_msg("%zu pieces, %zu serve", found, least);
+        narc_destroy_path(path);
+    }
+}
+
+/* A circle is two arcs, and a rectangle with round corners four lines and four arcs, exactly. */
+TEST(test_exact_shapes) {
+    static const double turn[] = {0, 1, 0, -1, 0};
+    narc_path *path = make_path();
+    narc_arc_chains chains;
+    narc_error error;
+    expect_ok(narc_move_to(path, &(narc_point){50, 0}, &error), &error);
+    expect_ok(narc_arc_to(path, &(narc_point){0, 50}, &(narc_point){-50, 0}, &error), &error);
+    expect_ok(narc_arc_to(path, &(narc_point){0, -50}, &(narc_point){50, 0}, &error), &error);
+    expect_ok(narc_fit_fewest_chains(path, 0.02, false, &chains, &error), &error);
+    assert_int_equal(chains.arc_count, 2);
+    for (size_t k = 0; k < 2; k++)
+        assert_true(fabs(chains.arcs[k].radius - 50) < 1e-9 &&
+                    hypot(chains.arcs[k].center.x, chains.arcs[k].center.y) < 1e-9);
+    narc_release_chains(&chains);
+    narc_destroy_path(path);
+    path = make_path();
+    for (int k = 0; k < 4; k++) {
+        const double c = turn[k + 1], s = turn[k], m = sqrt(0.5);
+        const narc_point at = {30 * (c - s > 0 ? 1 : -1), 20 * (c + s > 0 ? 1 : -1)};
+        const narc_point from = {at.x + 5 * c, at.y + 5 * s}, to = {at.x - 5 * s, at.y + 5 * c};
+        const narc_point middle = {at.x + 5 * m * (c - s), at.y + 5 * m * (c + s)};
+        expect_ok((k ? narc_line_to : narc_move_to)(path, &from, &error), &error);
+        expect_ok(narc_arc_to(path, &middle, &to, &error), &error);
+    }
+    for (double tolerance = 0.1; tolerance > 1e-3; tolerance /= 5) {
+        size_t lines = 0;
+        expect_ok(narc_fit_fewest_chains(path, tolerance, false, &chains, &error), &error);
+        assert_int_equal(chains.arc_count, 8);
+        for (size_t k = 0; k < 8; k++) {
+            lines += chains.arcs[k].turn == 0;
+            assert_true(chains.arcs[k].turn == 0 || fabs(chains.arcs[k].radius - 5) < 1e-9);
+        }
+        assert_int_equal(lines, 4);
+        narc_release_chains(&chains);
+    }
+    narc_destroy_path(path);
+}
+
+/* ---------------------------------------------------------------------------- smooth chains */
 
 enum { COUNT = 600 };
 

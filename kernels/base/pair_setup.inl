@@ -103,15 +103,20 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     struct filter filter = {.margin = margin};
     vf size_a = v_mul(pose.scale_a, a.bound_radius), size_b = v_mul(pose.scale_b, b.bound_radius);
     vm in_range = vm_and(placement->in_range, vm_and(is_size_in_range(size_a), is_size_in_range(size_b)));
-    if (NARC_PIECES && BLOCK > 1 && !LIKELY(!call->planes)) { /* copies, so that the others stay in registers */
-        struct pose laid = pose;
-        struct headers of_a = a, of_b = b;
+    if (NARC_PIECES && BLOCK > 1 &&
+        !LIKELY(!call->planes)) { /* by way of the item, so that all else stays in registers */
+        set_vec2(item, POSITION, pose.position);
+        set_vec2(item, ROTATION, pose.rotation);
+        item[SCALE_A] = pose.scale_a;
+        item[SCALE_B] = pose.scale_b;
         vm ground;
-        in_range = vm_and(in_range, lay_planes(call, in, k, &laid, &of_a, &of_b, &ground));
+        in_range = vm_and(in_range, lay_planes(call, in, k, item, &ground));
         which = vm_and_not(which, ground);
-        pose = laid;
-        a = of_a;
-        b = of_b;
+        pose.position = (vec2){item[POSITION], item[POSITION + 1]};
+        pose.scale_a = item[SCALE_A];
+        pose.scale_b = item[SCALE_B];
+        a.info = get_item_bits(item, INFO_A);
+        b.info = get_item_bits(item, INFO_B);
         size_a = v_mul(pose.scale_a, a.bound_radius);
         size_b = v_mul(pose.scale_b, b.bound_radius);
     }

@@ -19,6 +19,7 @@
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/plane_pairs.inl"
+#include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
@@ -28,15 +29,18 @@
 /* Deeper than that nothing has an answer: the box would be larger than what numbers are kept in range for. */
 #define PLANE_DEPTH 1e12
 
-/* Lays the half-planes of the pairs k ... of a block to the bodies. Returns which pairs have none, or an answer; of
- * others the pose, and the words of the headers, are then those of the boxes. */
-NOINLINE vm lay_planes(const struct call *call, const struct pair_indices *in, int k, struct pose *pose,
-                       struct headers *a, struct headers *b, vm *out_ground) {
+/* Lays the half-planes of the pairs k ... of a block to the bodies. The item has the pose, and gets the infos. Returns
+ * which pairs have none, or an answer; of others the pose, and the infos, are then those of the boxes. */
+NOINLINE vm lay_planes(const struct call *call, const struct pair_indices *in, int k, vf item[FIELDS], vm *out_ground) {
     const narc_batch *const batch = call->batch;
-    const vm of_a = is_plane(a->info), of_b = is_plane(b->info), any = vm_or(of_a, of_b);
+    const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k),
+                         b = load_headers(batch->shapes->headers, in->shape_b + k);
+    const vm of_a = is_plane(a.info), of_b = is_plane(b.info), any = vm_or(of_a, of_b);
     const vm none = vm_front(0);
     float height[V_WIDTH];
-    *out_ground = vm_and(any, vm_and(vi_lt(vi_set(0), get_marks(a->info)), vi_lt(vi_set(0), get_marks(b->info))));
+    *out_ground = vm_and(any, vm_and(vi_lt(vi_set(0), get_marks(a.info)), vi_lt(vi_set(0), get_marks(b.info))));
+    item[INFO_A] = v_of_bits(a.info);
+    item[INFO_B] = v_of_bits(b.info);
     if (!vm_any(any))
         return vm_not(none);
     const uint32_t plane_is_a = vm_bits(of_a);
@@ -50,18 +54,19 @@ NOINLINE vm lay_planes(const struct call *call, const struct pair_indices *in, i
         height[l] = (float)(side == 0 ? above : -above);
     }
     const vf zero = v_set(0), h = v_load(height), depth = v_max(v_neg(h), zero);
-    const vec2 of_other = v2_select(of_a, b->bound_center, a->bound_center);
-    const vf own = v_add(v_add(v_abs(of_other.x), v_abs(of_other.y)), v_select(of_a, b->bound_radius, a->bound_radius));
-    const vf reach = v_mul(own, v_select(of_a, pose->scale_b, pose->scale_a));
+    const vec2 of_other = v2_select(of_a, b.bound_center, a.bound_center);
+    const vf own = v_add(v_add(v_abs(of_other.x), v_abs(of_other.y)), v_select(of_a, b.bound_radius, a.bound_radius));
+    const vf reach = v_mul(own, v_select(of_a, item[SCALE_B], item[SCALE_A]));
     const vf size = v_mul(v_set(4), v_add(reach, v_min(v_abs(h), v_set((float)PLANE_DEPTH))));
+    const vec2 position = {item[POSITION], item[POSITION + 1]};
     const vec2 seen =
-        v2_scale((vec2){pose->rotation.y, v_neg(pose->rotation.x)}, h); /* B's normal, to the other side */
-    pose->position = v2_select(of_a, (vec2){zero, h}, v2_select(of_b, seen, pose->position));
-    pose->scale_a = v_select(of_a, size, pose->scale_a);
-    pose->scale_b = v_select(of_b, size, pose->scale_b);
+        v2_scale((vec2){item[ROTATION + 1], v_neg(item[ROTATION])}, h); /* B's normal, to the other side */
+    set_vec2(item, POSITION, v2_select(of_a, (vec2){zero, h}, v2_select(of_b, seen, position)));
+    item[SCALE_A] = v_select(of_a, size, item[SCALE_A]);
+    item[SCALE_B] = v_select(of_b, size, item[SCALE_B]);
     const vi plain = vi_set((int32_t) ~(NARC_PIECE_MARKS << 8));
-    a->info = vi_select(of_a, vi_and(a->info, plain), a->info);
-    b->info = vi_select(of_b, vi_and(b->info, plain), b->info);
+    item[INFO_A] = v_of_bits(vi_select(of_a, vi_and(a.info, plain), a.info));
+    item[INFO_B] = v_of_bits(vi_select(of_b, vi_and(b.info, plain), b.info));
     return vm_not(vm_and(any, v_lt(v_set((float)PLANE_DEPTH), depth)));
 }
 

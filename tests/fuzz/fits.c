@@ -46,9 +46,9 @@ static void check_result(struct bytes *from, const struct outline *outline) {
         check_contained(outline, &result, "fuzz");
 }
 
-static void check_chains(const struct outline *outline, double tolerance) {
+static void check_chains(const struct outline *outline, double tolerance, bool fewest) {
     narc_arc_chains chains;
-    if (narc_fit_chains(outline->path, tolerance, false, &chains, NULL) != NARC_OK)
+    if ((fewest ? narc_fit_fewest_chains : narc_fit_chains)(outline->path, tolerance, false, &chains, NULL) != NARC_OK)
         return;
     assert_true(chains.distance <= tolerance);
     for (size_t k = 0, first = 0; k < chains.count; first = chains.ends[k++])
@@ -64,7 +64,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct bytes from = {data, size};
     struct outline outline = take_outline(&from);
     check_result(&from, &outline);
-    check_chains(&outline, pow(10, -(double)take_below(&from, 6)));
+    const double tolerance = pow(10, -(double)take_below(&from, 6));
+    check_chains(&outline, tolerance, false);
+    check_chains(&outline, tolerance, true);
     free_outline(&outline);
     return 0;
 }

@@ -26,8 +26,8 @@ struct question {
 static bool is_found(const struct question *q, size_t query, size_t body) {
     const uint64_t mask = q->mask ? q->mask[query] : UINT64_MAX,
                    category = q->category ? q->category[body] : UINT64_MAX;
-    return (!q->world || q->world[body] == q->asked_world[query]) && overlap(&q->queries[query], &q->boxes[body]) &&
-           (!q->ignored || q->ignored[query] != body) &&
+    return (!q->asked_world || q->world[body] == q->asked_world[query]) &&
+           overlap(&q->queries[query], &q->boxes[body]) && (!q->ignored || q->ignored[query] != body) &&
            (!q->owner || q->ignored_owner[query] == UINT32_MAX || q->owner[body] != q->ignored_owner[query]) &&
            (mask & category) != 0;
 }
@@ -133,7 +133,7 @@ TEST(finds_what_all_pairs_find) {
                        &(struct question){boxes, queries, count, QUERIES - trial % 3, options & 1 ? category : NULL,
                                           options == 1 || options == 2 ? mask : NULL, options & 2 ? ignored : NULL,
                                           options > 0 && trial / KINDS % 2 ? owner : NULL, ignored_owner,
-                                          trial % 3 ? NULL : world, asked_world});
+                                          trial % 3 ? NULL : world, trial % 3 ? NULL : asked_world});
     }
     narc_destroy_index(index);
 }

@@ -512,7 +512,7 @@ TEST(rays_are_put_in_order) {
         struct room room = create_room(&random, precision, trial % 6 ? COUNT : random_below(&random, 9) + 1, 40);
         const size_t count = trial % 4 < 3 ? 1 + random_below(&random, MOST_RAYS) : random_below(&random, 40);
         struct test_ray *const rays = make_rays(&random, &room, count, 40);
-        uint32_t owner[COUNT];
+        uint32_t owner[COUNT], world_of[COUNT];
         uint64_t *const mask = calloc(count + 1, sizeof *mask);
         uint32_t *const world = calloc(count + 1, sizeof *world);
         const bool few_worlds = trial % 2;
@@ -520,15 +520,22 @@ TEST(rays_are_put_in_order) {
         bool *const asked = calloc(count + 1, sizeof *asked);
         for (size_t k = 0; k < COUNT; k++)
             owner[k] = (uint32_t)k / 4;
+        const uint32_t far = few_worlds ? 1 : UINT32_MAX / (WORLDS - 1);
+        for (size_t k = 0; k < COUNT; k++)
+            world_of[k] = (uint32_t)k % WORLDS * far;
         for (size_t k = 0; k < count; k++) {
-            world[k] = (uint32_t)random_below(&random, WORLDS) * (few_worlds ? 1 : UINT32_MAX / (WORLDS - 1));
+            world[k] = (uint32_t)random_below(&random, WORLDS) * far;
             mask[k] = random_below(&random, 8) ? UINT64_MAX : random_below(&random, 4);
             if (random_below(&random, 30) == 0)
                 rays[k].motion_x = rays[k].motion_y = random_below(&random, 2) ? NAN : 0;
             if (random_below(&random, 50) == 0)
                 rays[k].x = random_below(&random, 2) ? (double)NAN : -1e30;
         }
-        index_room(&room, trial % 3, trial % 5);
+        const narc_index_options built = {.category = {trial % 5 ? room.category : NULL, sizeof *room.category},
+                                          .world = NARC_ARRAY(world_of),
+                                          .fast = trial % 3 > 0};
+        narc_error error;
+        expect_ok(narc_build_index(room.index, room.boxes, scene_bodies(&room.scene).count, &built, &error), &error);
         const narc_owners owners = {.owner = NARC_ARRAY(owner)};
         const narc_ray_options ways[] = {{.any = 1},
                                          {.search.world = NARC_ARRAY(world)},

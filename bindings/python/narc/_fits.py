@@ -159,10 +159,11 @@ def cut(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float = 0
     return [Outline._of(path) for path in paths]
 
 
-def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float, *, open: bool = False) -> list[Arcs]:
+def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float, *, open: bool = False,
+               smooth: bool = True) -> list[Arcs]:
     """Follows each contour with arcs and lines that join with a common tangent, within `tolerance`: rows of narc.ARC for
-    Shapes.chain(), closed unless `open`. Raises narc.Error."""
-    chains, _ = _library().chains(_outline(outline), tolerance, open)
+    Shapes.chain(), closed unless `open`. If not `smooth`, with the fewest, which may join with corners. Raises narc.Error."""
+    chains, _ = _library().chains(_outline(outline), tolerance, open, smooth)
     return [np.frombuffer(arcs, ARC).copy() for arcs in chains]
 
 

@@ -208,21 +208,22 @@ static PyObject *describe(const narc_curve_arc *pieces, size_t count, bool close
     return made;
 }
 
-/* chains(outline, tolerance, open): (arcs of each, distance) */
+/* chains(outline, tolerance, open, smooth): (arcs of each, distance) */
 static PyObject *fit_chains(PyObject *self, PyObject *given) {
     PyObject *outline;
     double tolerance;
-    int open;
+    int open, smooth;
     narc_arc_chains chains = {0};
     narc_error error = {0};
     (void)self;
-    if (!PyArg_ParseTuple(given, "Odp", &outline, &tolerance, &open))
+    if (!PyArg_ParseTuple(given, "Odpp", &outline, &tolerance, &open, &smooth))
         return NULL;
     const narc_path *const path = PyCapsule_GetPointer(outline, PATH);
     if (!path)
         return NULL;
     PyThreadState *const state = PyEval_SaveThread();
-    const narc_status status = narc_fit_chains(path, tolerance, open != 0, &chains, &error);
+    const narc_status status = smooth ? narc_fit_chains(path, tolerance, open != 0, &chains, &error)
+                                      : narc_fit_fewest_chains(path, tolerance, open != 0, &chains, &error);
     PyEval_RestoreThread(state);
     if (status)
         return raise_error(&error, status);

@@ -66,6 +66,8 @@ def test_chains_follow_within_the_tolerance():
     assert len(closed) <= 4 and np.allclose(closed["radius"], 2, atol=2e-3)
     shapes = narc.Shapes()
     assert len(shapes.chain(closed, closed=1)) > 0
+    fewest, = narc.fit_chains(circle(), 1e-2, smooth=False)
+    assert len(fewest) <= len(narc.fit_chains(circle(), 1e-2)[0])
     ground, = narc.fit_chains(np.array([[3, 0], [2, 0.5], [0, 0]]), 1e-3, open=True)
     assert len(shapes.chain(ground)) > 0
 
