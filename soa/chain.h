@@ -16,6 +16,9 @@
 /* So far where a corner is cut: the nearer a point is to another one, the less is known of its direction from there. */
 #define NARC_CORNER_SEAM 0.05
 
+/* What the corners at the ends of a run turn by. */
+#define NARC_END_TURN 0x1p-10
+
 /* An arc of a chain. `turn` is signed: above 0 of a convex arc or corner, below 0 of a concave one, 0 for the open end
  * of an edge. The point at an angle is centre + radius * normal, with the radius's sign. */
 typedef struct narc_chain_arc {

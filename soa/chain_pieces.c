@@ -3,7 +3,7 @@
  * chain_pieces.c - divides a chain into pieces that the store keeps: concave arcs, and convex runs, which are closed far
  * behind so that they are shapes as others are (store.h, NARC_PIECE_...).
  *
- * The closure of a run whose normals turn from mid - h to mid + h: at both ends a corner that turns by END_TURN, then the
+ * The closure of a run whose normals turn from mid - h to mid + h: at both ends a corner that turns by NARC_END_TURN, then the
  * tangent for the length L to a far corner; from there the outline turns half of the way to -mid, goes down to a depth L
  * below both far corners, and is closed by an edge with the normal -mid. What the far edges add to the support function
  * makes gaps there deeply negative, so that the greatest gap of the closed shape is the greatest one over the run's own
@@ -25,10 +25,7 @@
 /* What the number of a line's parts may be rounded by: then they are longer than `weld`, by as much. */
 #define PART_ROOM 1e-9
 
-/* What the corners at the ends of a run turn by. */
-#define END_TURN 0x1p-10
-
-/* A body that is d deep, and less than d times END_TURN from the end of a run, may have its greatest gap beyond that, and
+/* A body that is d deep, and less than d times NARC_END_TURN from the end of a run, may have its greatest gap beyond that, and
  * then no contact here. So pieces have that much in common, and no more than merging takes for one. A run reaches beyond
  * where it meets a concave arc by this many times the length of its line or the radius of its arc, and of the concave one,
  * whose rows merging prefers. These reach beyond their ends by less, in radians; the smaller they are, beside what is
@@ -205,7 +202,7 @@ static double measure_front(const piece *p, narc_point begin) {
 
 /* Adds the corners at both ends and behind. */
 static size_t close_run(piece *p, narc_point begin, narc_point end, double length) {
-    const double mid = (p->begin_angle + p->end_angle) / 2, h = (p->end_angle - p->begin_angle) / 2 + END_TURN;
+    const double mid = (p->begin_angle + p->end_angle) / 2, h = (p->end_angle - p->begin_angle) / 2 + NARC_END_TURN;
     const double slant = (NARC_PI - h) / 2;
     narc_point m;
     narc_find_cosine(mid, &m.x, &m.y);
@@ -217,8 +214,8 @@ static size_t close_run(piece *p, narc_point begin, narc_point end, double lengt
     const narc_point low_after = move(after, next + NARC_PI / 2, (height_after - bottom) / fall);
     const narc_point low_before = move(before, last - NARC_PI / 2, (height_before - bottom) / fall);
     const size_t n = p->count;
-    p->arcs[0] = make_corner(begin, p->begin_angle - END_TURN, p->begin_angle);
-    p->arcs[n + 1] = make_corner(end, p->end_angle, p->end_angle + END_TURN);
+    p->arcs[0] = make_corner(begin, p->begin_angle - NARC_END_TURN, p->begin_angle);
+    p->arcs[n + 1] = make_corner(end, p->end_angle, p->end_angle + NARC_END_TURN);
     p->arcs[n + 2] = make_corner(after, mid + h, next);
     p->arcs[n + 3] = make_corner(low_after, next, mid + NARC_PI);
     p->arcs[n + 4] = make_corner(low_before, mid + NARC_PI, last + 2 * NARC_PI);

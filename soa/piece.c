@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "chain.h"
 #include "vec2.h"
 
 #define WIDTH_ROOM 0x1p-10
@@ -282,7 +283,10 @@ bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, dou
  * beside.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from n, at
  * the end, to m beyond it, the gap grows by the turn times how far the centre lies beyond E. That is more than what two gaps
  * are rounded by if it lies NEED beyond. The other normals of the front have smaller gaps where p lies nearer to E along none
- * of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher now. */
+ * of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher now.
+ *   Along m another arc may be the deepest one, as where a side is nearly level: the gap is its own then, which is h greater
+ * than that along n if it is h higher, and grows by the turn times how far it lies beyond E, or falls so much if it does not.
+ * So of an arc that is not NEED beyond h makes up for that: after a move by d h is 2 d less, and it lies by d less beyond. */
 #define NEED 0x1.2p-8 /* 2^-18 by the turn of 2^-10, and more: D grows by a sixteenth of the sum */
 
 static double find_way_to_end(const view *v, narc_point end, narc_point n, narc_point other_n, double side,
@@ -299,7 +303,8 @@ static double find_way_to_end(const view *v, narc_point end, narc_point n, narc_
         const double height = depth - (holds(arc.start, arc.end, down) ? narc_dot(place, down) : ends);
         const double off = narc_dot(from, beyond) - need,
                      nearer = turned > 0 ? narc_dot(from, turn) / turned : INFINITY;
-        way = get_least(way, get_most(get_least(off, nearer), height / 2));
+        const double spare = (height + NARC_END_TURN * get_least(off, 0)) / (2 + NARC_END_TURN);
+        way = get_least(way, get_most(get_least(off, nearer), spare * (1 - NARC_END_TURN)));
     }
     return way;
 }
