@@ -195,7 +195,15 @@ check_golden() {
     ctest --preset "$1" -R '^((method_)?golden_.*|stored_bits)$' || fail "tests failed in build/$1"
 }
 
-# WebAssembly, by check or check_golden.
+# What of bindings/web needs no npm: its modules, and the page's engine, whose bits are those of build/bare.
+check_modules() {
+    check_golden "$1"
+    build "$1" narc_module narc_threads narc_page
+    ctest --preset "$1" -R '^narc_(module|threads)$' || fail "tests failed in build/$1"
+    node bindings/web/tests/engine.mjs "build/$1/page.wasm" build/bare/tests/examples/example_world || fail "the page's engine is not as it should be"
+}
+
+# WebAssembly, by check or check_modules.
 check_wasm() {
     if optional_packages $wasm_packages; then
         $1 wasm32
@@ -493,7 +501,7 @@ gate() {
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
     fi
     check_processors
-    check_wasm check_golden
+    check_wasm check_modules
     say "all tests passed$skipped"
 }
 
@@ -550,9 +558,10 @@ make_wheel() {
     build/python/bin/python -m pytest -q -p no:cacheprovider bindings/python/tests || fail "tests failed in build/python"
     (cd bindings/python && mypy --cache-dir ../../build/mypy narc) || fail "mypy has something to say"
     say "examples"
-    for example in drawing lidar packing worlds; do
+    for example in dem drawing lidar packing worlds; do
         build/python/bin/python bindings/python/examples/$example.py out/python/$example.png || fail "$example.py failed"
     done
+    build/python/bin/python -m narc pages out/python/pages || fail "writing help pages failed"
     say "written"
     ls -l out/python
 }
@@ -570,7 +579,7 @@ npm_packages() {
 # The package, packed in out/web, and the page, out/web/page.
 make_web() {
     require_packages $web_packages
-    build wasm32 narc_module narc_small narc_layouts narc_page
+    build wasm32 narc_module narc_threads narc_small narc_layouts narc_page
     say "build/web"
     npm_packages bindings/web/tools build/web-tools
     rm -rf build/web out/web
@@ -582,7 +591,7 @@ make_web() {
     $tsc -p build/web || fail "compiling bindings/web failed"
     version=$(sed -n 's/^export const version = "\(.*\)";/\1/p' build/web/src/layouts.ts)
     sed "s/\"0.0.0\"/\"$version\"/" bindings/web/package.json >build/web/package/package.json
-    cp build/wasm32/narc.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
+    cp build/wasm32/narc.wasm build/wasm32/narc_threads.wasm build/wasm32/narc_small.wasm bindings/web/README.md LICENSE build/web/package
     (cd build/web/package && npm pack --silent --pack-destination ../../../out/web) || fail "npm pack failed"
     mkdir -p out/web/page/narc
     cp build/web/page/*.html build/web/page/*.css build/web/page/*.js build/wasm32/page.wasm out/web/page

@@ -379,6 +379,9 @@ narc_status narc_check_search(const narc_index *index, const narc_index_query *q
     for (size_t k = 0; owners && k < sizeof owners->reserved / sizeof(void *); k++)
         if (owners->reserved[k])
             return narc_fail(error, NARC_ERROR_ARGUMENT, k, 0, "%s.owners->reserved[%zu] is not NULL", name, k);
+    if (query->world.base && !index->worlds && index->count > 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0,
+                         "%s.world is asked for, but the index was built without worlds", name);
     return CHECK_RESERVED(*query, name, error);
 }
 

@@ -137,8 +137,8 @@ typedef struct narc_owners {
  *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
  *   workers   threads to use; NULL: the calling one
  *   owners    NULL: each body is a thing by itself. What is not found counts for no thing either
- *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all, as
- *             in an index without worlds */
+ *   world     for each query a world of the index (narc_index_options): only its bodies are found; left out: those of all. Of
+ *             an index without worlds none may be asked: NARC_ERROR_ARGUMENT */
 typedef struct narc_index_query {
     narc_word_column mask;
     narc_index_column ignored;
@@ -350,7 +350,10 @@ NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodie
 /* What each mover hits first: the least (fraction, body).
  *   index, bodies    what stands still while movers move, as in narc_cast_rays()
  *   movers, motions  any bodies, and how each moves
- *   search           mask, ignored and the owner ignored by mover, workers (those of `options` are not used); NULL: defaults
+ *   search           mask, ignored and the owner ignored by mover, workers (those of `options` are not used); NULL: defaults.
+ *                    With owners and `parting` a thing lets go as one: what is at its target from any part of it at the
+ *                    start may go as deep into all its parts as it is in that one, and by `parting` deeper, so that
+ *                    it slides from tile to tile. (Pieces of chains are let go one by one.)
  *   out_rows         room for `capacity` rows, at least movers->count; A is the mover
  * Otherwise as narc_cast_pairs(), but the index allocates: NARC_ERROR_MEMORY, NARC_ERROR_COUNT (2^32 pairs of a mover and
  * a box on its way). That bodies' shapes exist is only looked at where a mover comes near. One call at a time for each

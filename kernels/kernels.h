@@ -211,7 +211,8 @@ typedef struct narc_cast_batch {
     const narc_batch *batch;
     narc_motions motions[2];
     float target, tolerance, parting;
-    narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A */
+    narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A, */
+    narc_float_column depths;  /* unless these are there: of each pair, how deep at most it counts as at the start */
     bool nearest, front_only;
     narc_impact *out;
 } narc_cast_batch;

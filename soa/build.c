@@ -264,15 +264,16 @@ typedef struct hull_side {
 /* Of points that are as far, to some roundings, any: one between two corners is welded in the end. */
 static void look_outside(const narc_point *points, size_t count, hull_side *of, narc_point to) {
     const narc_point from = of->corner;
-    const double x = to.x - from.x, y = to.y - from.y, length = narc_hypot(x, y);
-    of->distance = 0;
+    const double x = to.x - from.x, y = to.y - from.y;
+    double most = 0; /* times the length */
     for (size_t k = 0; k < count; k++) {
-        const double distance = ((points[k].x - from.x) * y - (points[k].y - from.y) * x) / length;
-        if (distance > of->distance) {
-            of->distance = distance;
+        const double outside = (points[k].x - from.x) * y - (points[k].y - from.y) * x;
+        if (outside > most) {
+            most = outside;
             of->furthest = points[k];
         }
     }
+    of->distance = most > 0 ? most / narc_hypot(x, y) : 0;
 }
 
 /* A corner that is further than half of this from the line between its neighbours turns by four times as much for each extent:

@@ -506,8 +506,8 @@ static narc_status restore_plane(narc_encoded_shape *shape, narc_error *error) {
     const size_t angles = narc_angle_records(plane.header.count);
     memcpy(shape->records, plane.records, angles * sizeof *plane.records);
     if (memcmp((const char *)&shape->header + first, (const char *)&plane.header + first,
-               sizeof plane.header - first) ||
-        memcmp(shape->records, plane.records, narc_count_records(&plane.header) * sizeof *plane.records))
+               sizeof plane.header - first) != 0 ||
+        memcmp(shape->records, plane.records, narc_count_records(&plane.header) * sizeof *plane.records) != 0)
         return fail_stored(error, "a half-plane that is none");
     return NARC_OK;
 }

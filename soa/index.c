@@ -23,9 +23,9 @@ void narc_destroy_index(narc_index *index) {
     if (!index)
         return;
     const narc_allocator allocator = index->allocator;
-    void *const memory[] = {index->tree_memory,  index->mask_memory, index->world_memory,
-                            index->build_memory, index->regions,     index->found,
-                            index->rows,         index->sweeps,      index};
+    void *const memory[] = {
+        index->tree_memory, index->mask_memory, index->world_memory, index->build_memory, index->regions,
+        index->found,       index->rows,        index->sweeps,       index->starts,       index};
     for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
         if (memory[k])
             allocator.release(memory[k], allocator.context);
@@ -165,7 +165,7 @@ size_t narc_count_index_bytes(const narc_index *index) {
         bytes += count_all_slots(index->world_capacity) / NARC_NODE_SLOTS * sizeof(narc_node_worlds);
     bytes += index->build_capacity * NARC_INDEX_BUILD_BYTES + index->region_capacity * sizeof *index->regions;
     bytes += index->found_capacity * sizeof *index->found + 2 * index->row_capacity * sizeof *index->rows;
-    return bytes + index->sweep_capacity * sizeof *index->sweeps;
+    return bytes + index->sweep_capacity * sizeof *index->sweeps + index->start_capacity * sizeof *index->starts;
 }
 
 /* Makes room for `count` items of an array, with `padding` behind them. */
@@ -212,5 +212,12 @@ narc_status narc_reserve_sweeps(narc_index *index, size_t count) {
     void *memory = index->sweeps;
     const narc_status status = reserve(index, &memory, &index->sweep_capacity, count, sizeof *index->sweeps, 0);
     index->sweeps = memory;
+    return status;
+}
+
+narc_status narc_reserve_starts(narc_index *index, size_t count) {
+    void *memory = index->starts;
+    const narc_status status = reserve(index, &memory, &index->start_capacity, count, sizeof *index->starts, 0);
+    index->starts = memory;
     return status;
 }

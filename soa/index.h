@@ -86,6 +86,12 @@ typedef struct narc_region {
     uint32_t count, row;
 } narc_region;
 
+/* Of a mover and a body, where parts of things are let go together: how far apart they are at the start, the target, and how
+ * deep the mover is in the thing, if it is in this part. */
+typedef struct narc_start {
+    float separation, target, depth;
+} narc_start;
+
 struct narc_index {
     narc_allocator allocator;
     narc_point origin;                      /* of their coordinates, in the world */
@@ -115,19 +121,22 @@ struct narc_index {
     size_t region_capacity, found_capacity, row_capacity;
     narc_box *sweeps; /* of narc_cast_shapes(): for each mover */
     size_t sweep_capacity;
+    narc_start *starts; /* and for each pair */
+    size_t start_capacity;
 };
 
 /* Makes room for an index of so many boxes, with masks and worlds or without, and for building it. What it holds is lost only if
  * there was no room; NARC_ERROR_MEMORY: it is as it was. */
 narc_status narc_reserve_index(narc_index *index, size_t count, bool masks, bool worlds);
 
-/* Make room for so many queries, bodies that are found, and pairs of both, and boxes of movers; what was there is lost,
+/* Make room for so many queries, bodies that are found, and pairs of both, boxes of movers, and starts of their pairs; what was there is lost,
  * unless there is room already. NARC_ERROR_MEMORY: there is as much room as before. Behind the bodies NARC_FOUND_PADDING
  * more may be read. */
 narc_status narc_reserve_regions(narc_index *index, size_t count);
 narc_status narc_reserve_found(narc_index *index, size_t count);
 narc_status narc_reserve_rows(narc_index *index, size_t count);
 narc_status narc_reserve_sweeps(narc_index *index, size_t count);
+narc_status narc_reserve_starts(narc_index *index, size_t count);
 
 /* Four of the widest vectors. */
 enum { NARC_FOUND_PADDING = 64 };

@@ -16,6 +16,8 @@
  * force that depends on h alone has a potential. The weight w is 1, but for a stretch between an end of A and one of B
  * that is shorter than a quarter of the shorter side: then it fades with the length L, so that h goes over into that of
  * a single point as the sides slide past each other, and the gradient of L is a force along the side.
+ *
+ * A body of several parts has one surface, however it was cut: see join_touches().
  */
 #ifndef NARC_APPS_TOUCH_H
 #define NARC_APPS_TOUCH_H
@@ -35,7 +37,7 @@ typedef struct touch_side {
     bool has_edge;             /* before the arc or behind it */
 } touch_side;
 
-/* The sides of an outline: as many as arcs, in their order. */
+/* The sides of an outline: as many as arcs, in their order. A concave arc of a chain, alone, has room for one more. */
 void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides);
 
 /* The distance of an outline's furthest point from the origin. */
@@ -55,19 +57,23 @@ typedef struct touch_end {
 } touch_end;
 
 typedef struct touch {
-    int count;        /* of ends, 1 or 2; 0: the grains are apart */
-    double depth;     /* h */
+    int count;        /* of ends, 1 or 2; 0: the parts touch where others of their bodies do */
+    bool leads;       /* is this the deepest contact of its surface? */
+    double depth;     /* h of the surface; not above 0: the grains are that far apart */
+    double part;      /* this contact's share of h^2; 1 unless the surface has other contacts */
     touch_end end[2]; /* of two, the deeper one first */
     double slide_x,
         slide_y; /* times the force of the law: what B feels besides, on a line through the first end's corner */
     double corner_x, corner_y;
 } touch;
 
-/* Of one point; apart if its depth is not above 0. */
+/* Of one point. */
 static inline void put_point(touch_end end, touch *out) {
     out->end[0] = end;
     out->depth = end.depth;
-    out->count = end.depth > 0;
+    out->part = 1;
+    out->leads = true;
+    out->count = 1;
 }
 
 /* Of two discs, B's centre at x, y from A's. */
@@ -102,12 +108,27 @@ void find_any_touch(const touch_grain *a, const touch_grain *b, double x, double
 static inline void find_touch(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature,
                               touch *out) {
     const touch_side *s = &a->sides[feature & 0x3f], *r = &b->sides[feature >> 8 & 0x3f];
-    if ((feature & (NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8)) != 0 || (s->has_edge && r->has_edge)) {
+    if ((feature & (NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8)) != 0 || (s->has_edge && r->has_edge) ||
+        signbit(r->radius)) {
         find_any_touch(a, b, x, y, feature, out);
         return;
     }
     put_point(meet_arcs(a, b, x, y, s, r), out);
 }
+
+/* A contact of a part of A with a part of B: where each is from the centre of A, and a number that no other part has. */
+typedef struct touch_parts {
+    touch_grain a, b;
+    double x, y;
+    size_t part_a, part_b;
+    touch at;
+} touch_parts;
+
+/* The contacts of two bodies of several parts: those of one surface become one, so that nothing depends on how a body is
+ * cut into parts. An end whose point lies in another part, or on its border where that goes on, is no end of the common
+ * stretch: it goes, if that part touches as well. Of single points that lie in each other's parts the deepest stays. The
+ * ends that stay on one surface share its load by the rule above: h^2 is the sum of all their squares. */
+void join_touches(touch_parts *parts, size_t count);
 
 #ifdef __cplusplus
 }

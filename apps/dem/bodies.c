@@ -11,7 +11,8 @@ static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec p
     const dem_shape *shape = &d->shapes[shape_index];
     const dem_outline *outline = &d->outlines[shape->first_outline];
     const touch_side *side = outline->sides;
-    const bool is_disc = shape->outline_count == 1 && outline->side_count == 1 && side->x == 0 && side->y == 0;
+    const bool is_disc =
+        shape->outline_count == 1 && !shape->is_chain && outline->side_count == 1 && side->x == 0 && side->y == 0;
     const double s = (double)(float)scale;
     dem_grow(&d->bodies, d->body_count + 1, sizeof *d->bodies);
     dem_grow(&d->parts, d->part_count + shape->outline_count, sizeof *d->parts);
@@ -22,6 +23,7 @@ static dem_body *add_body(dem *d, uint32_t shape_index, uint32_t material, vec p
                     .reach = s * shape->reach,
                     .extent = s * shape->extent,
                     .disc = is_disc ? s * side->radius : 0,
+                    .joins = shape->outline_count > 1,
                     .shape = shape_index,
                     .material = material,
                     .first_part = (uint32_t)d->part_count};
@@ -45,6 +47,7 @@ void dem_add_grain(dem *d, dem_grain grain) {
     if (!(b->inverse_mass > 0 && isfinite(b->inverse_mass) && b->inverse_inertia > 0 && isfinite(b->inverse_inertia)))
         dem_fail(d, "grain %zu: mass %g is out of range", d->grain_count, b->mass);
     d->grain_count++;
+    d->joins |= b->joins;
     d->grain_reach = fmax(d->grain_reach, b->reach);
     d->grain_extent = fmax(d->grain_extent, b->extent);
 }
@@ -82,14 +85,16 @@ void dem_add_walls(dem *d) {
             turn = (vec){w->normal.y, -w->normal.x};
         }
         add_body(d, w->shape, w->material, position, turn, w->scale);
+        d->joins |= d->wall_count > 1;
+        d->bodies[d->body_count - 1].joins |= d->wall_count > 1;
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ all of them */
 
-vec dem_find_shift(const dem *d, const dem_image *of, double offset) {
-    const vec size = dem_cell_size(d);
-    return (vec){of->right * size.x + of->up * offset, of->up * size.y};
+vec dem_find_shift(const dem *d, const dem_image *of, bool last) {
+    const vec size = last ? d->last_size : dem_cell_size(d);
+    return (vec){of->right * size.x + of->up * (last ? d->last_offset : d->offset), of->up * size.y};
 }
 
 narc_bodies dem_make_poses(dem *d, bool last) {
@@ -99,11 +104,12 @@ narc_bodies dem_make_poses(dem *d, bool last) {
         dem_image *image = &d->images[i];
         const dem_part *part = &d->parts[image->part];
         const dem_body *b = &d->bodies[part->body];
-        if (d->settings.sheared)
-            image->shift = dem_find_shift(d, image, last ? d->last_offset : d->offset);
-        const vec at = plus(last ? b->last_position : b->position, image->shift);
-        const vec turn = last ? b->last_turn : b->turn;
-        d->poses[i] = (narc_body){at.x, at.y, (float)turn.x, (float)turn.y, b->scale, part->outline};
+        if (d->drifts)
+            image->shift = dem_find_shift(d, image, last);
+        const dem_outline *outline = &d->outlines[part->outline];
+        const vec turn = last ? b->last_turn : b->turn, arm = rotate(turn, outline->at);
+        const vec at = plus(plus(last ? b->last_position : b->position, arm), image->shift);
+        d->poses[i] = (narc_body){at.x, at.y, (float)turn.x, (float)turn.y, b->scale, outline->stored};
     }
     narc_bodies bodies;
     narc_view_bodies(d->poses, d->image_count, &bodies);

@@ -53,7 +53,7 @@
 #include "vec.h"
 
 #define DEM_PI 3.14159265358979323846
-enum { DEM_MAX_MATERIALS = 16, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
+enum { DEM_MAX_MATERIALS = 16, DEM_MAX_GROUPS = 64, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
 
 /* ---------------------------------------------------------------------------------------- what it is made of */
 
@@ -63,10 +63,12 @@ typedef struct dem_material {
     double young, poisson; /* of the Hertz law; else 0 */
 } dem_material;
 
-/* A convex outline, for touch.h: that of the store's shape with the same index. */
+/* A convex outline, or a piece of a chain, for touch.h; and as narc has it, with its origin at a place of its own. */
 typedef struct dem_outline {
     touch_side sides[NARC_MAX_ARCS];
     size_t side_count;
+    uint32_t stored; /* index in the store */
+    vec at;          /* 0, 0 unless it is of a chain */
 } dem_outline;
 
 /* What a body is: one convex outline, or several that move as one, which may lie over each other. The centroid of what
@@ -77,6 +79,7 @@ typedef struct dem_shape {
     double reach;  /* the largest distance of a point from the origin */
     double extent; /* the diameter of the disc of equal area */
     uint32_t first_outline, outline_count;
+    bool is_chain; /* of a wall: ground, with neither area nor mass */
 } dem_shape;
 
 typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
@@ -90,6 +93,7 @@ typedef struct dem_contact_law {
     double tangential_share; /* with a damping ratio: tangential damping, as a share of the normal one */
     double friction;
     double rolling_friction; /* 0: none. Torque at most this times Reff |Fn| */
+    double cohesion, range;  /* a force, and the distance beyond which it is 0 */
 } dem_contact_law;
 
 /* A part of the plane. */
@@ -97,6 +101,17 @@ typedef struct dem_region {
     bool given;
     vec low, high;
 } dem_region;
+
+/* How a periodic cell is deformed: how vx grows with y, vx with x, vy with y. */
+typedef struct dem_rates {
+    double shear, x, y;
+} dem_rates;
+
+/* The rate of a cell's width or height, if it shall hold a stress: the gain times what the stress is too large. */
+typedef struct dem_side {
+    int on;
+    double stress, gain, max_rate;
+} dem_side;
 
 typedef struct dem_settings {
     double time_step;
@@ -107,8 +122,10 @@ typedef struct dem_settings {
     double max_overlap; /* a deeper contact stops the run; a share of the smaller body's extent */
     bool periodic_x, periodic_y;
     vec low, high;    /* the periodic cell; where it is periodic */
+    double drag;      /* of what grains move in, which is at rest: drag times mass times velocity, and of spin alike */
     bool sheared;     /* a Lees-Edwards cell: periodic in x and y, without walls and gravity */
-    double shear;     /* its rate: how vx grows with y */
+    bool strained;    /* a cell whose sides move: alike */
+    dem_rates rates;  /* of both */
     unsigned threads; /* 0: one */
 } dem_settings;
 
@@ -120,9 +137,12 @@ typedef struct dem_body {
     double spin;
     vec force; /* of contacts alone; gravity is added where velocities change */
     double torque;
+    vec ahead; /* the velocity at the end of a step, as far as the forces at its beginning tell */
+    double spin_ahead;
     double inverse_mass, inverse_inertia; /* 0 for walls */
     double extent, disc;                  /* of the scaled shape; the radius of a disc, 0: it is none */
     float scale;
+    int joins; /* its contacts may be of one surface with others */
     uint32_t shape, material, first_part;
     int32_t cell_x, cell_y;       /* how often it crossed the periodic border, for true displacements */
     double reach;                 /* of the scaled shape */
@@ -155,13 +175,15 @@ typedef struct dem_servo {
 typedef struct dem_wall {
     char name[DEM_NAME_SIZE];
     dem_wall_kind kind;
+    uint32_t group;           /* of walls that move as one: 1 + its index, or 0 */
     uint32_t shape, material; /* as it begins: dem_start() makes it a body */
     double scale;
     vec position;
     double angle;
     vec normal;   /* a plate's, into the grains' half plane */
     double half;  /* of the side of its block: how far its face is from its body's place */
-    vec velocity; /* prescribed */
+    vec velocity; /* prescribed; of a wall with servo control across its direction */
+    double speed; /* along it */
     double spin;  /* about the pivot, which moves with the velocity */
     vec pivot;
     dem_servo servo;
@@ -191,7 +213,8 @@ typedef struct dem_pair {
 typedef struct dem_memory {
     double slide;                /* of the tangential spring */
     double spring;               /* its force */
-    double damping;              /* the normal damping force */
+    double damping, power;       /* of the normal dashpot: its force, and that times the speed */
+    double early;                /* how much more than once that force counted, for the contact was to end */
     double roll, rolling_spring; /* used only if there is rolling friction */
     uint64_t step;
 } dem_memory;
@@ -216,7 +239,13 @@ typedef struct dem_contact {
 typedef struct dem_account {
     double normal, tangential, rolling;
     double damping, friction; /* friction with what tangential springs hold when their contact opens */
+    double power;             /* of all normal dashpots now */
 } dem_account;
+
+/* What the forces across borders pull on the cell at the right, and above. */
+typedef struct dem_pull {
+    vec right, up;
+} dem_pull;
 
 /* Contacts are worked on in blocks of this many. A block's sums do not depend on who makes them. */
 enum { DEM_BLOCK = 256 };
@@ -224,8 +253,8 @@ enum { DEM_BLOCK = 256 };
 typedef struct dem_block {
     size_t count; /* of contacts */
     dem_account account;
-    double old_springs; /* what the springs of these contacts held in the last step */
-    size_t too_deep;    /* the first pair that is, or SIZE_MAX */
+    dem_account old; /* what the springs of these contacts held in the last step, and their dashpots' power */
+    size_t too_deep; /* the first pair that is, or SIZE_MAX */
 } dem_block;
 
 /* Arrays grow by dem_grow(). */
@@ -244,18 +273,26 @@ struct dem {
     dem_body *bodies;
     dem_part *parts;
     dem_wall *walls;
-    size_t body_count, part_count, wall_count, grain_count;
+    char groups[DEM_MAX_GROUPS][DEM_NAME_SIZE]; /* of walls: names */
+    size_t body_count, part_count, wall_count, grain_count, group_count;
     double grain_reach, grain_extent; /* the largest */
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
-    double margin;                    /* narc's separations may be off by it; touch.h decides */
+    double range;                     /* the largest of all laws */
+    double margin;                    /* narc tells of pairs so far apart; touch.h decides */
+    bool joins, drifts;               /* some body's contacts join; the cell is sheared or strained */
 
     uint64_t step;
     double time;       /* step * time_step, summed over stages with their own steps */
     uint64_t renewals; /* how often images were made */
     dem_account account;
-    /* Of a sheared cell: how far the cell above is to the right of this one, and was when the images were made; what
-     * that cell's contacts pull; and the work done so. */
-    double offset, last_offset, pull, shear_work;
+    /* Of a cell that is sheared or strained: how far the cell above is to the right of this one; what it was when the
+     * images were made, and the size then; sides that hold a stress, and what it is; and the work done so. */
+    double offset, last_offset;
+    vec last_size;
+    dem_side sides[2];
+    vec stress;
+    dem_pull pull;
+    double shear_work;
 
     dem_image *images;         /* parts, too */
     uint32_t *near_a, *near_b; /* pairs of them that may touch before they are made anew */
@@ -316,6 +353,9 @@ void dem_close_file(dem *d, dem_file *file);
 uint32_t dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count);
 uint32_t dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count);
 
+/* Of a wall: a chain, which stays in its own coordinates. */
+uint32_t dem_add_chain(dem *d, const char *name, const narc_arc *arcs, size_t count, bool closed);
+
 /* --------------------------------------------------------------------------------------------------------- bodies.c */
 
 /* A grain as it is added. */
@@ -337,7 +377,7 @@ void dem_add_walls(dem *d);
 
 /* All images where they are now, or were when they were made, for narc, until the next call. */
 narc_bodies dem_make_poses(dem *d, bool last);
-vec dem_find_shift(const dem *d, const dem_image *of, double offset); /* of an image across a border */
+vec dem_find_shift(const dem *d, const dem_image *of, bool last); /* of an image across a border */
 
 /* The box around all grains: squares as large as they reach; and the places where walls start. */
 dem_region dem_bound(const dem *d, bool with_walls);
@@ -377,12 +417,12 @@ const char *dem_explain_depth(const dem *d); /* why bodies overlap too far */
 
 /* ------------------------------------------------------------------------------------------------------- boundary.c */
 
-/* Another rate of shear, from now on: all grains get the velocities that go with it. */
-void dem_set_shear(dem *d, double rate);
+/* Other rates, from now on: all grains get the velocities that go with them. */
+void dem_set_rates(dem *d, dem_rates rates);
 
 void dem_wrap_bodies(dem *d);
-void dem_shear_cell(dem *d);         /* the way of a step */
-double dem_find_drift(const dem *d); /* the speed of the cell above */
+void dem_deform_cell(dem *d);                             /* by a step */
+vec dem_find_drift(const dem *d, const dem_image *image); /* the velocity of the image's cell */
 
 /* ---------------------------------------------------------------------------------------------------------- filling.c */
 

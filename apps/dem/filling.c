@@ -62,8 +62,13 @@ static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double g
     const dem_shape *own = &d->shapes[grain.shape], *its = &d->shapes[other.shape];
     for (uint32_t i = 0; i < own->outline_count * its->outline_count; i++) {
         narc_body two[2] = {grain, other};
-        two[0].shape = own->first_outline + i / its->outline_count;
-        two[1].shape = its->first_outline + i % its->outline_count;
+        const dem_outline *mine = &d->outlines[own->first_outline + i / its->outline_count];
+        const dem_outline *theirs = &d->outlines[its->first_outline + i % its->outline_count];
+        const vec arm = rotate((vec){(double)other.cosine, (double)other.sine}, theirs->at);
+        two[0].shape = mine->stored;
+        two[1].shape = theirs->stored;
+        two[1].x += arm.x;
+        two[1].y += arm.y;
         narc_bodies bodies;
         narc_view_bodies(two, 2, &bodies);
         const narc_pairs pair = {.count = 1};
@@ -84,7 +89,7 @@ static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wa
     const vec direction = rotate(back, down); /* as the shape has it */
     for (uint32_t i = 0; i < shape->outline_count; i++) {
         narc_arc arcs[NARC_MAX_ARCS];
-        const size_t count = narc_get_arcs(d->store, shape->first_outline + i, arcs);
+        const size_t count = narc_get_arcs(d->store, d->outlines[shape->first_outline + i].stored, arcs);
         narc_point lowest;
         narc_find_support(arcs, count, direction.x, direction.y, &lowest, NULL);
         const double depth = grain->scale * dot((vec){lowest.x, lowest.y}, direction);

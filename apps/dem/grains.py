@@ -164,6 +164,7 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
         values = fields[color][is_grain].astype(float)
         patches.set(array=values, cmap="YlOrRd", clim=(0, top or values.max() or 1))
         patches.set_facecolors(None)
+        figure.colorbar(patches, cax=axes.inset_axes([0.02, 0.93, 0.25, 0.02]), orientation="horizontal", label=color)
     axes.add_collection(patches)
     if forces:
         centres = {body: fields["centre"][k, :2] for k, body in enumerate(fields["id"]) if is_grain[k]}

@@ -51,7 +51,12 @@ static void read_law(const json_value *object, const dem *d, json_value *pairs, 
                            {"tangential_damping", NUMBER, &law->tangential_share, 0, 100, .no = no_share},
                            {"friction", must | NUMBER, &law->friction, 0, 1e6},
                            {"rolling_friction", NUMBER, &law->rolling_friction, 0, 1e6},
+                           {"cohesion", NUMBER, &law->cohesion, 0, 1e300},
+                           {"range", POSITIVE, &law->range},
                            {NULL}});
+    if (law->cohesion > 0 && !(law->range > 0))
+        json_fail(object, "has cohesion and no range");
+    law->range = law->cohesion > 0 ? law->range : 0;
     if (json_has(object, "kn") && !json_has(object, "kt"))
         law->kt = 2.0 / 7 * law->kn; /* as LAMMPS has it */
     if (gamma && !json_has(object, "gamma_t"))
@@ -99,17 +104,47 @@ static uint64_t count_steps(const json_value *object, const char *key, double ti
     return steps < 1 ? 1 : (uint64_t)(steps + 0.5);
 }
 
-static void read_stages(const json_value *list, const dem *d, dem_input *input) {
+/* {"x": {"rate"} or {"stress", "gain", "max_rate"}, "y": ...} */
+static void read_strain(const json_value *strain, dem_side sides[2]) {
+    json_key keys[] = {{"x", ANY}, {"y", ANY}, {NULL}};
+    json_read(strain, keys);
+    for (int axis = 0; axis < 2; axis++) {
+        const json_value side = json_member(strain, axis ? "y" : "x");
+        dem_side *s = &sides[axis];
+        const bool rate = json_has(&side, "rate");
+        if (!side.item)
+            continue;
+        *s = (dem_side){.on = rate ? -1 : 1};
+        json_read(&side, rate ? (json_key[]){{"rate", NUMBER, &s->max_rate}, {NULL}}
+                              : (json_key[]){{"stress", MUST | NUMBER, &s->stress},
+                                             {"gain", MUST | POSITIVE, &s->gain},
+                                             {"max_rate", MUST | POSITIVE, &s->max_rate},
+                                             {NULL}});
+    }
+}
+
+static void set_sides(dem *d, const dem_side sides[2]) {
+    dem_rates rates = d->settings.rates;
+    for (int axis = 0; axis < 2; axis++) {
+        if (sides[axis].on == 0)
+            continue;
+        *(axis ? &rates.y : &rates.x) = sides[axis].on < 0 ? sides[axis].max_rate : 0;
+        d->sides[axis] = sides[axis];
+        d->sides[axis].on = sides[axis].on > 0;
+    }
+    dem_set_rates(d, rates);
+}
+
+static void read_stages(const json_value *list, const dem *d, dem_servo *servos, dem_input *input) {
     const char *no_shear = d->settings.sheared ? NULL : "is of a cell whose boundary has shear";
-    const char *no_gravity = d->settings.sheared ? "is not for a sheared cell" : NULL;
+    const char *no_strain = d->settings.strained ? NULL : "is of a cell whose boundary has strain";
+    const char *no_gravity =
+        d->settings.sheared || d->settings.strained ? "is not for a sheared or strained cell" : NULL;
     input->stages = dem_allocate((size_t)cJSON_GetArraySize(list->item), sizeof *input->stages);
-    bool *has_servo = dem_allocate(d->wall_count, sizeof *has_servo);
-    for (size_t w = 0; w < d->wall_count; w++)
-        has_servo[w] = d->walls[w].servo.on;
     for (json_value item = {0}; json_next(list, &item);) {
         dem_stage *stage = &input->stages[input->stage_count++];
         double duration;
-        json_value walls = {.item = NULL};
+        json_value walls = {.item = NULL}, strain = {.item = NULL};
         *stage = (dem_stage){.gravity = {NAN, NAN}, .friction = NAN, .shear = NAN};
         snprintf(stage->name, sizeof stage->name, "stage %zu", item.index);
         json_read(&item, (json_key[]){{"name", NAME, stage->name, 0, sizeof stage->name},
@@ -117,13 +152,15 @@ static void read_stages(const json_value *list, const dem *d, dem_input *input) 
                                       {"gravity", PAIR, &stage->gravity, .no = no_gravity},
                                       {"friction", NUMBER, &stage->friction, 0, 1e6},
                                       {"shear", NUMBER, &stage->shear, .no = no_shear},
+                                      {"strain", ANY, &strain, .no = no_strain},
                                       {"walls", ANY, &walls},
                                       {NULL}});
         stage->steps = count_steps(&item, "duration", duration, d);
         if (walls.item)
-            dem_read_changes(&walls, d, has_servo, stage);
+            dem_read_changes(&walls, d, servos, stage);
+        if (strain.item)
+            read_strain(&strain, stage->sides);
     }
-    dem_release(has_servo);
 }
 
 /* Other gravity gives grains another potential energy at once. */
@@ -131,7 +168,8 @@ void dem_enter_stage(dem *d, const dem_stage *stage) {
     if (!isnan(stage->gravity.x))
         d->settings.gravity = stage->gravity;
     if (!isnan(stage->shear))
-        dem_set_shear(d, stage->shear);
+        dem_set_rates(d, (dem_rates){stage->shear, d->settings.rates.x, d->settings.rates.y});
+    set_sides(d, stage->sides);
     for (size_t i = 0; i < d->material_count * d->material_count && !isnan(stage->friction); i++)
         d->laws[i / d->material_count][i % d->material_count].friction = stage->friction;
     for (size_t i = 0; i < stage->change_count; i++)
@@ -220,10 +258,15 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     char shapes[DEM_PATH_SIZE];
     uint64_t random = 1; /* the generator's state */
     vec x = {0, 1}, y = {0, 1};
-    json_value materials, contact, grains, stages, walls = {.item = NULL}, output = {.item = NULL};
+    json_value materials, contact, grains, stages, walls = {.item = NULL}, groups = {.item = NULL},
+                                                   output = {.item = NULL};
+    json_value strain = {.item = NULL};
+    dem_side sides[2] = {{0}, {0}};
+    dem_servo *servos;
+    double shear = NAN;
     *input = (dem_input){.output = {.every = UINT64_MAX, .restart_every = UINT64_MAX}};
-    s.shear = NAN;
-    json_key boundary[] = {{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &s.shear}, {NULL}};
+    json_key boundary[] = {
+        {"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &shear}, {"strain", ANY, &strain}, {NULL}};
     json_read(&root, (json_key[]){{"comment", ANY},
                                   {"materials", MUST | LIST, &materials, 1, DEM_MAX_MATERIALS},
                                   {"shapes", MUST | TEXT, shapes, 0, sizeof shapes},
@@ -235,7 +278,9 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
                                   {"max_overlap", NUMBER, &s.max_overlap, 1e-6, 1},
                                   {"seed", WHOLE, &random, 0, 0x1p53},
                                   {"contact", MUST | ANY, &contact},
+                                  {"drag", NUMBER, &s.drag, 0, 1e300},
                                   {"walls", LIST, &walls},
+                                  {"groups", ANY, &groups},
                                   {"grains", MUST | LIST, &grains},
                                   {"stages", MUST | LIST, &stages, 1, 1e9},
                                   {"output", ANY, &output},
@@ -249,8 +294,11 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     s.periodic_y = json_has(&cell, "y");
     s.low = (vec){x.x, y.x};
     s.high = (vec){x.y, y.y};
-    s.sheared = !isnan(s.shear);
-    s.shear = s.sheared ? s.shear : 0;
+    s.sheared = !isnan(shear);
+    s.strained = strain.item != NULL;
+    s.rates.shear = s.sheared ? shear : 0;
+    if (s.strained)
+        read_strain(&strain, sides);
     s.threads = threads;
     s.law = find_law(&contact);
     dem_create(d, s);
@@ -258,13 +306,16 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     read_materials(&materials, d);
     read_contact(&contact, d);
     dem_read_shapes(&shapes_file, input->shapes, d);
-    dem_read_walls(&walls, d);
+    dem_read_walls(&walls, &groups, d, &servos);
     dem_read_grains(&grains, d, &random);
-    read_stages(&stages, d, input);
+    read_stages(&stages, d, servos, input);
+    dem_release(servos);
     if (output.item)
         read_output(&output, d, input);
     dem_go_to(d, &root);
     dem_start(d);
+    set_sides(d, sides);
+    d->shear_work = 0;
     d->input_path[0] = 0;
     input->hash = hash_input(&root, d);
     cJSON_Delete((cJSON *)root.item);

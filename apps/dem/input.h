@@ -9,11 +9,12 @@
 
 /* What a stage does to a wall. NaN: nothing. */
 typedef struct dem_wall_change {
-    size_t wall;
+    size_t wall; /* or the number of walls + a group */
     vec velocity;
     double spin;
-    bool sets_servo;
+    bool sets_servo, steers;
     dem_servo servo;
+    json_value checks; /* the velocity, if there is a servo */
 } dem_wall_change;
 
 /* What a stage changes at its beginning. NaN: nothing. */
@@ -23,6 +24,7 @@ typedef struct dem_stage {
     vec gravity;
     double friction; /* of all contacts */
     double shear;
+    dem_side sides[2]; /* of a cell; `on` 0: nothing, 1: a stress, -1: a rate */
     dem_wall_change *changes;
     size_t change_count;
 } dem_stage;
@@ -52,11 +54,11 @@ void dem_enter_stage(dem *d, const dem_stage *stage);
 
 /* input_bodies.c: shapes from the file, which `name` names, then walls and grains. */
 void dem_read_shapes(const json_value *name, const char *path, dem *d);
-void dem_read_walls(const json_value *list, dem *d);
+void dem_read_walls(const json_value *list, const json_value *groups, dem *d, dem_servo **out_servos);
 void dem_read_grains(const json_value *list, dem *d, uint64_t *random);
 
-/* Of a stage, {"floor": {"velocity": [0, 1]}, ...}. has_servo: of each wall, kept up to date. */
-void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage);
+/* Of a stage, {"floor": {"velocity": [0, 1]}, ...}. servos: of each wall, and each group, kept up to date. */
+void dem_read_changes(const json_value *walls, const dem *d, dem_servo *servos, dem_stage *stage);
 void dem_apply_change(dem *d, const dem_wall_change *change);
 
 json_names dem_materials(const dem *d);

@@ -59,11 +59,11 @@ void dem_read_shapes(const json_value *name, const char *path, dem *d) {
         dem_quit("%s: %s", path, error.message);
     dem_release(text);
     dem_go_to(d, name);
-    for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++) {
-        if (s->form != NARC_FORM_SHAPE)
-            dem_quit("%s: shape '%s' is a chain: grains and walls are shapes, or parts", path, s->name);
-        dem_add_shape(d, s->name, s->arcs, s->arc_count);
-    }
+    for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++)
+        if (s->form == NARC_FORM_SHAPE)
+            dem_add_shape(d, s->name, s->arcs, s->arc_count);
+        else
+            dem_add_chain(d, s->name, s->arcs, s->arc_count, s->form == NARC_FORM_CLOSED_CHAIN);
     for (size_t k = 0; k < shapes->count; k++) {
         const char *slash = strrchr(shapes->items[k].name, '/');
         if (slash && strcmp(slash, "/1") == 0)
@@ -76,12 +76,19 @@ static json_names find_shapes(const dem *d) {
     return (json_names){d->shapes, d->shape_count, sizeof *d->shapes, "is not the name of a shape"};
 }
 
+/* No grain is one. */
+static void refuse_chain(const json_value *item, const dem *d, uint32_t shape) {
+    if (d->shapes[shape].is_chain)
+        json_fail(item, "names a chain, which only walls can be");
+}
+
 /* ------------------------------------------------------------------------------------------------ motion of walls */
 
 /* A plate moves across itself. A servo's direction has at least this share across it. */
 static const double LEAST_ACROSS = 1e-6;
 
-static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) {
+/* `own`: of the wall, or of the group. */
+static dem_servo read_servo(const json_value *value, const dem *d, const bool *own) {
     const json_names walls = {d->walls, d->wall_count, sizeof *d->walls, "is not the name of a wall"};
     const bool by_force = json_has(value, "force");
     const json_value between = json_member(value, "between");
@@ -104,65 +111,107 @@ static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) 
         json_refuse(value, "direction", "has no length");
     servo.on = true;
     servo.direction = (vec){servo.direction.x / length, servo.direction.y / length};
-    if (d->walls[wall].kind == DEM_PLATE && fabs(dot(servo.direction, d->walls[wall].normal)) < LEAST_ACROSS)
-        json_refuse(value, "direction", "runs along the plate, which has no ends");
+    for (size_t w = 0; w < d->wall_count; w++)
+        if (own[w] && d->walls[w].kind == DEM_PLATE && fabs(dot(servo.direction, d->walls[w].normal)) < LEAST_ACROSS)
+            json_refuse(value, "direction", "runs along the plate, which has no ends");
     for (json_value name = {0}; json_next(&between, &name);)
-        if (servo.between[name.index] == (int)wall)
+        if (own[servo.between[name.index]])
             json_fail(&name, "is the wall that moves: a stress acts on the distance of two others");
     if (!by_force && servo.between[0] == servo.between[1])
         json_fail(&between, "names one wall twice");
     return servo;
 }
 
-/* What `object` says of it, `alone` or among other things. has_servo: until now. */
+/* What `object` says of a wall, or of a group, whose index is behind those of the walls; `alone` or among other things. */
 static dem_wall_change read_change(const json_value *object, const dem *d, size_t wall, bool has_servo, bool alone) {
     dem_wall_change change = {.wall = wall, .velocity = {NAN, NAN}, .spin = NAN};
-    const json_value servo = json_member(object, "servo");
-    const bool steered = servo.item ? !cJSON_IsNull(servo.item) : has_servo;
-    const char *no_velocity = steered ? "is of a wall that its servo moves" : NULL;
-    const char *no_spin = d->walls[wall].kind == DEM_PLATE ? "turns a plate, which has no ends" : NULL;
-    const json_key keys[] = {{"velocity", PAIR, &change.velocity, .no = no_velocity},
-                             {"spin", NUMBER, &change.spin, .no = no_spin},
-                             {"servo", ANY},
+    const json_value servo = json_member(object, "servo"), velocity = json_member(object, "velocity");
+    bool *own = dem_allocate(d->wall_count, sizeof *own);
+    const char *no_spin = wall >= d->wall_count ? "turns a group, whose walls have their own pivots" : NULL;
+    const char *no_motion = wall < d->wall_count && d->walls[wall].group > 0 ? "is of the wall's group" : NULL;
+    for (size_t w = 0; w < d->wall_count; w++) {
+        own[w] = w == wall || (wall >= d->wall_count && d->walls[w].group == wall - d->wall_count + 1);
+        if (own[w] && d->walls[w].kind == DEM_PLATE)
+            no_spin = "turns a plate, which has no ends";
+    }
+    const json_key keys[] = {{"velocity", PAIR, &change.velocity, .no = no_motion},
+                             {"spin", NUMBER, &change.spin, .no = no_motion ? no_motion : no_spin},
+                             {"servo", ANY, .no = no_motion},
                              {NULL}};
     (alone ? json_read : json_read_some)(object, keys);
     change.sets_servo = servo.item != NULL;
     if (change.sets_servo)
-        change.servo = read_servo(&servo, d, wall);
+        change.servo = read_servo(&servo, d, own);
+    change.steers = change.sets_servo ? change.servo.on : has_servo;
+    dem_release(own);
+    if (change.steers && velocity.item)
+        change.checks = velocity;
     return change;
 }
 
-void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage) {
+/* A servo moves its wall along its direction, a velocity across it. */
+static void check_velocity(const dem_wall_change *change, vec direction) {
+    const double along = dot(change->velocity, direction), all = hypot(change->velocity.x, change->velocity.y);
+    if (change->checks.item && fabs(along) > 1e-9 * all)
+        json_fail(&change->checks, "is not across the direction of the wall's servo");
+}
+
+void dem_read_changes(const json_value *walls, const dem *d, dem_servo *servos, dem_stage *stage) {
     const json_names names = {d->walls, d->wall_count, sizeof *d->walls, "is of no wall of that name"};
-    bool *seen = dem_allocate(d->wall_count, sizeof *seen);
+    const json_names groups = {d->groups, d->group_count, sizeof d->groups[0], ""};
+    const size_t count = d->wall_count + d->group_count;
+    bool *seen = dem_allocate(count, sizeof *seen);
     if (!cJSON_IsObject(walls->item))
         json_fail(walls, "is not an object");
     stage->changes = dem_allocate((size_t)cJSON_GetArraySize(walls->item), sizeof *stage->changes);
     for (json_value item = {0}; json_next(walls, &item);) {
-        const size_t w = json_find(&names, item.item->string);
+        size_t w = json_find(&names, item.item->string);
         if (w == d->wall_count)
+            w += json_find(&groups, item.item->string);
+        if (w == count)
             json_fail(&item, names.problem);
         if (seen[w])
             json_fail(&item, "is there twice, the second time as");
         seen[w] = true;
         dem_wall_change *change = &stage->changes[stage->change_count++];
-        *change = read_change(&item, d, w, has_servo[w], true);
-        has_servo[w] = change->sets_servo ? change->servo.on : has_servo[w];
+        *change = read_change(&item, d, w, servos[w].on, true);
+        servos[w] = change->sets_servo ? change->servo : servos[w];
+        check_velocity(change, servos[w].direction);
     }
     dem_release(seen);
 }
 
-/* Without servo control a wall stays where it is. */
+/* Without servo control a wall has the velocity that it was given, if any. */
 void dem_apply_change(dem *d, const dem_wall_change *change) {
-    dem_wall *wall = &d->walls[change->wall];
-    const bool ends = change->sets_servo && wall->servo.on;
-    wall->velocity = !isnan(change->velocity.x) ? change->velocity : ends ? (vec){0, 0} : wall->velocity;
-    wall->spin = !isnan(change->spin) ? change->spin : wall->spin;
-    wall->servo = change->sets_servo ? change->servo : wall->servo;
-    wall->idle_way = change->sets_servo ? 0 : wall->idle_way;
+    for (size_t w = 0; w < d->wall_count; w++) {
+        dem_wall *wall = &d->walls[w];
+        if (w != change->wall && (wall->group == 0 || d->wall_count + wall->group - 1 != change->wall))
+            continue;
+        const bool ends = change->sets_servo && wall->servo.on;
+        wall->velocity = !isnan(change->velocity.x) ? change->velocity : ends ? (vec){0, 0} : wall->velocity;
+        wall->spin = !isnan(change->spin) ? change->spin : wall->spin;
+        wall->servo = change->sets_servo ? change->servo : wall->servo;
+        wall->speed = change->sets_servo ? 0 : wall->speed;
+        wall->idle_way = change->sets_servo ? 0 : wall->idle_way;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------ walls */
+
+/* Groups of walls, as walls name them; a list of what moves them may follow. */
+static void find_group(const json_value *item, dem *d, dem_wall *wall) {
+    const json_names groups = {d->groups, d->group_count, sizeof d->groups[0], ""};
+    char name[DEM_NAME_SIZE] = "";
+    json_read_some(item, (json_key[]){{"group", NAME, name, 0, sizeof name}, {NULL}});
+    if (!name[0])
+        return;
+    const size_t k = json_find(&groups, name);
+    if (k == d->group_count && k == DEM_MAX_GROUPS)
+        json_refuse(item, "group", "is one group too many");
+    if (k == d->group_count)
+        strcpy(d->groups[d->group_count++], name);
+    wall->group = (uint32_t)k + 1;
+}
 
 static void read_wall(const json_value *item, dem *d) {
     dem_wall wall = {.scale = 1, .servo = {.between = {-1, -1}}};
@@ -171,7 +220,13 @@ static void read_wall(const json_value *item, dem *d) {
     const bool plate = json_has(item, "plate"), box = json_has(item, "box"), shape = json_has(item, "shape");
     const char *no = plate ? "is not for a plate" : NULL,
                *no_size = box ? "is not for a box, which has width and height" : no;
+    const json_value of_shape = json_member(item, "shape");
     double size = 1, width, height, radius = 0;
+    if (shape) {
+        json_take(&of_shape, (json_key){"shape", ONE_OF, &wall.shape, .names = &shapes});
+        if (d->shapes[wall.shape].is_chain)
+            no_size = "is not for a chain, which has the size that it is drawn in";
+    }
     if (plate + box + shape != 1 && cJSON_IsObject(item->item))
         json_fail(item, "is not one of plate, box and shape");
     json_key of_plate[] = {{"point", MUST | PAIR, &wall.position}, {"normal", MUST | PAIR, &wall.normal}, {NULL}};
@@ -185,14 +240,16 @@ static void read_wall(const json_value *item, dem *d) {
                                  {"box", OBJECT, of_box},
                                  {"shape", ONE_OF, &wall.shape, .names = &shapes},
                                  {"size", MUST | POSITIVE, &size, .no = no_size},
-                                 {"at", MUST | PAIR, &wall.position, .no = no},
+                                 {"at", no_size == no || box ? MUST | PAIR : PAIR, &wall.position, .no = no},
                                  {"angle", NUMBER, &wall.angle, -1e6, 1e6, .no = no},
                                  {"pivot", PAIR, &wall.pivot, .no = no},
+                                 {"group", ANY},
                                  {"velocity", ANY},
                                  {"spin", ANY},
                                  {"servo", ANY},
                                  {NULL}});
     json_check_new(item, wall.name, before);
+    find_group(item, d, &wall);
     wall.kind = plate ? DEM_PLATE : DEM_BOX;
     const json_value part = json_member(item, plate ? "plate" : "box");
     if (plate && !(hypot(wall.normal.x, wall.normal.y) > 0))
@@ -206,7 +263,7 @@ static void read_wall(const json_value *item, dem *d) {
             dem_fail(d, "%s", error.message);
         wall.shape = dem_add_shape(d, wall.name, arcs, count);
     }
-    if (shape)
+    if (shape && !d->shapes[wall.shape].is_chain)
         wall.scale = size / d->shapes[wall.shape].extent;
     if (!plate && !json_has(item, "pivot"))
         wall.pivot = wall.position;
@@ -214,13 +271,27 @@ static void read_wall(const json_value *item, dem *d) {
     dem_add_wall(d, wall);
 }
 
-void dem_read_walls(const json_value *list, dem *d) {
+void dem_read_walls(const json_value *list, const json_value *groups, dem *d, dem_servo **out_servos) {
     for (json_value item = {0}; json_next(list, &item);)
         read_wall(&item, d);
+    const json_names walls = {d->walls, d->wall_count, sizeof *d->walls, ""};
+    for (size_t k = 0; k < d->group_count; k++)
+        if (json_find(&walls, d->groups[k]) < d->wall_count)
+            json_fail(list, "has a group with the name of a wall");
+    dem_servo *servos = dem_allocate(d->wall_count + d->group_count, sizeof *servos);
     for (json_value item = {0}; json_next(list, &item);) { /* when all names are known */
         const dem_wall_change begin = read_change(&item, d, item.index, false, false);
+        check_velocity(&begin, begin.servo.direction);
+        servos[item.index] = begin.servo;
         dem_apply_change(d, &begin);
     }
+    dem_stage stage = {.gravity = {0, 0}};
+    if (groups->item)
+        dem_read_changes(groups, d, servos, &stage);
+    for (size_t i = 0; i < stage.change_count; i++)
+        dem_apply_change(d, &stage.changes[i]);
+    dem_release(stage.changes);
+    *out_servos = servos;
 }
 
 /* ------------------------------------------------------------------------------------------------ sizes */
@@ -288,6 +359,8 @@ static void fill(const json_value *item, bool lattice, dem *d, uint64_t *random)
                                  {"jitter", NUMBER, &f.jitter, 0, 1, .no = no_random},
                                  {NULL}});
     f.shape_count = (size_t)cJSON_GetArraySize(names.item);
+    for (size_t k = 0; k < f.shape_count; k++)
+        refuse_chain(&names, d, f.shapes[k]);
     f.sizes = read_sizes(item);
     if (lattice && !(f.spacing.x > 0 && f.spacing.y > 0))
         json_refuse(item, "spacing", "is not two lengths above 0");
@@ -307,6 +380,7 @@ static void read_grain(const json_value *item, dem *d) {
                                  {"velocity", PAIR, &grain.velocity},
                                  {"spin", NUMBER, &grain.spin},
                                  {NULL}});
+    refuse_chain(item, d, grain.shape);
     grain.scale = size / d->shapes[grain.shape].extent;
     dem_go_to(d, item);
     dem_add_grain(d, grain);

@@ -39,7 +39,7 @@ static bool is_inside(const dem *d, const dem_region *r, vec point) {
     const dem_settings *s = &d->settings;
     const vec size = dem_cell_size(d);
     const double y = find_image(s->periodic_y, point.y, r->low.y, size.y);
-    const double aside = s->sheared ? d->offset * nearbyint((point.y - y) / size.y) : 0;
+    const double aside = d->drifts ? d->offset * nearbyint((point.y - y) / size.y) : 0;
     const double x = find_image(s->periodic_x, point.x - aside, r->low.x, size.x);
     return !r->given || (x >= r->low.x && x < r->high.x && y >= r->low.y && y < r->high.y);
 }
@@ -141,8 +141,10 @@ uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size) {
 
 uint64_t dem_hash(const dem *d) {
     const dem_account *a = &d->account;
-    const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,  a->normal,
-                           a->tangential,   a->rolling, d->offset,  d->shear_work};
+    const dem_settings *s = &d->settings;
+    const double sums[] = {(double)d->step, d->time,    a->damping, a->friction,   a->normal,
+                           a->tangential,   a->rolling, d->offset,  d->shear_work, s->low.x,
+                           s->low.y,        s->high.x,  s->high.y,  a->power};
     uint64_t hash = dem_hash_bytes(DEM_HASH_START, d->bodies, d->body_count * sizeof *d->bodies);
     for (size_t k = 0; k < d->contact_count; k++)
         hash = dem_hash_bytes(hash, dem_memory_of(d, d->contacts[k].pair), sizeof(dem_memory));

@@ -58,7 +58,7 @@ static vec find_size(const dem *d, size_t part) {
     const narc_box box = d->boxes[part];
     const dem_body *b = &d->bodies[d->parts[part].body];
     const double whole = 2 * b->reach + d->settings.skin;
-    return d->shapes[b->shape].outline_count == 1
+    return d->shapes[b->shape].outline_count == 1 || d->shapes[b->shape].is_chain
                ? (vec){(double)(box.max_x - box.min_x), (double)(box.max_y - box.min_y)}
                : (vec){whole, whole};
 }
@@ -96,7 +96,7 @@ static void add_images_across_borders(dem *d, uint32_t part, narc_box all) {
             .id = (uint64_t)(i + 1) << 32 | part, .part = part, .only = UINT32_MAX, .owner = (uint32_t)d->grain_count};
         image.right = (int16_t)(i % 3 - 1);
         image.up = (int16_t)(i / 3 - 1);
-        image.shift = dem_find_shift(d, &image, d->last_offset);
+        image.shift = dem_find_shift(d, &image, true);
         const double x = image.shift.x, y = image.shift.y;
         if ((image.right || image.up) && (!image.right || d->settings.periodic_x) &&
             (!image.up || d->settings.periodic_y) && (double)box.min_x + x <= (double)all.max_x &&
@@ -121,7 +121,7 @@ static void add_images_of_plate(dem *d, uint32_t part) {
         if (height < -plate->half)
             dem_fail(d, "step %llu: grain %zu is behind wall '%s'. %s", (unsigned long long)d->step,
                      (size_t)(b - d->bodies), plate->name, dem_explain_depth(d));
-        if (height - b->reach > d->settings.skin * 1.001)
+        if (height - b->reach > d->settings.skin * 1.001 + d->range)
             continue;
         dem_image image = {
             .id = (uint64_t)(k + 10) << 32 | part, .part = part, .only = k, .owner = (uint32_t)d->grain_count};

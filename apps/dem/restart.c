@@ -21,7 +21,7 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 7, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 8, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
     uint64_t bodies, walls, contacts;
@@ -61,8 +61,9 @@ static void pass_wall(stream *s, dem *d, size_t index) {
     const int count = (int)d->wall_count;
     PASS(now);
     const int first = now.servo.between[0], second = now.servo.between[1];
-    s->ok = s->ok && strncmp(now.name, wall->name, sizeof now.name) == 0 && now.kind == wall->kind && first >= -1 &&
-            second >= -1 && first < count && second < count && (first < 0) == (second < 0);
+    s->ok = s->ok && strncmp(now.name, wall->name, sizeof now.name) == 0 && now.kind == wall->kind &&
+            now.group == wall->group && first >= -1 && second >= -1 && first < count && second < count &&
+            (first < 0) == (second < 0);
     *wall = s->ok ? now : *wall;
 }
 
@@ -84,9 +85,14 @@ static void pass_all(stream *s, dem *d, const counts *n, dem_progress *progress,
     PASS(d->account);
     PASS(d->offset);
     PASS(d->last_offset);
+    PASS(d->last_size);
+    PASS(d->sides);
+    PASS(d->stress);
     PASS(d->pull);
     PASS(d->shear_work);
-    PASS(d->settings.shear);
+    PASS(d->settings.rates);
+    PASS(d->settings.low);
+    PASS(d->settings.high);
     PASS(d->settings.gravity);
     PASS(d->laws);
     for (size_t w = 0; w < d->wall_count; w++)

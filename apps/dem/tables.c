@@ -46,7 +46,7 @@ FILE *dem_open_csv(dem *d, const char *path, uint64_t *position) {
         fprintf(file, "%s", HEAD);
         for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
             fprintf(file, ",%s_x,%s_y,%s_fx,%s_fy", w->name, w->name, w->name, w->name);
-        fprintf(file, "\n");
+        fprintf(file, d->settings.strained ? ",width,height\n" : "\n");
         *position = (uint64_t)ftell(file);
     }
     return file;
@@ -60,6 +60,8 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
             s->yy, m->contacts, m->coordination, m->deepest, m->fastest);
     for (const dem_body *b = d->bodies + d->grain_count; b < d->bodies + d->body_count; b++)
         fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", b->position.x, b->position.y, b->force.x, b->force.y);
+    if (d->settings.strained)
+        fprintf(csv, ",%.9g,%.9g", dem_cell_size(d).x, dem_cell_size(d).y);
     fprintf(csv, "\n");
     return fflush(csv) == 0 && !ferror(csv);
 }

@@ -90,37 +90,34 @@ static void open_frame(frame *f, size_t cell_count) {
 
 /* ------------------------------------------------------------------------------------------------ outlines */
 
-/* A chord that spans the angle 2 a is r (1 - cos a) from its arc. An arc's end is left out where the next one, or the
- * first, starts there. */
-static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, vec *out) {
-    size_t used = 0;
-    for (size_t i = 0; i < count; i++) {
-        const narc_arc *arc = &arcs[i], *next = &arcs[(i + 1) % count];
-        const double sweep = arc->end - arc->start + (arc->end < arc->start ? 2 * DEM_PI : 0);
-        const double share = fmin(tolerance / fmax(arc->radius, tolerance), 1);
-        const size_t chords = arc->radius > tolerance ? (size_t)ceil(sweep / (2 * acos(1 - share))) : 1;
-        for (size_t j = 0; j <= chords && used < MOST_CORNERS; j++) {
-            const double angle = arc->start + sweep * (double)j / (double)chords;
-            const vec p = {arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
-            const double next_x = next->center_x + next->radius * cos(next->start) - p.x;
-            const double next_y = next->center_y + next->radius * sin(next->start) - p.y;
-            if (j < chords || hypot(next_x, next_y) > 0.1 * tolerance)
-                out[used++] = p;
-        }
-    }
-    return used;
-}
-
+/* Of a part; of a chain the front of a piece, drawn as thick as a grain. */
 static size_t put_outline(const dem *d, const dem_part *part, vec *points) {
     const dem_body *b = &d->bodies[part->body];
-    narc_arc arcs[NARC_MAX_ARCS];
-    narc_mass mass;
-    const size_t count = narc_get_arcs(d->store, part->outline, arcs);
-    narc_compute_mass(arcs, count, &mass);
-    const size_t corners = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / DEM_PI), points);
-    for (size_t i = 0; i < corners; i++)
-        points[i] = plus(b->position, rotate(times((double)b->scale, b->turn), points[i]));
-    return corners;
+    const dem_outline *outline = &d->outlines[part->outline];
+    const bool chain = d->shapes[b->shape].is_chain, hollow = chain && outline->side_count == 1;
+    narc_arc all[NARC_MAX_ARCS], *arcs = all;
+    narc_mass mass = {.area = DEM_PI / 4 * d->grain_extent * d->grain_extent};
+    narc_point at[MOST_CORNERS / 2];
+    size_t count = narc_get_arcs(d->store, outline->stored, arcs), corners = 0;
+    if (chain && !hollow) { /* its front */
+        arcs++;
+        count -= 6;
+    }
+    if (!chain)
+        narc_compute_mass(arcs, count, &mass);
+    narc_flatten_arcs(arcs, count, !chain, NULL, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / DEM_PI), at, MOST_CORNERS / 2,
+                      &corners, NULL);
+    for (size_t i = 0; i < corners; i++) {
+        const vec p = {at[i].x + outline->at.x, at[i].y + outline->at.y};
+        points[i] = plus(b->position, rotate(times((double)b->scale, b->turn), p));
+    }
+    for (size_t i = 0; i < corners && chain; i++) { /* and back, behind it: to the left of its way */
+        const vec here = points[corners - 1 - i], way = minus(points[i + 1 < corners ? corners - 1 - i : 1],
+                                                              points[i + 1 < corners ? corners - 2 - i : 0]);
+        const double length = sqrt(dot(way, way));
+        points[corners + i] = plus(here, times(0.5 * d->grain_extent / length, (vec){-way.y, way.x}));
+    }
+    return chain ? 2 * corners : corners;
 }
 
 /* The part of a plate that lies along the box, as a strip as thick as a grain: corners counter-clockwise. */

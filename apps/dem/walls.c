@@ -6,7 +6,15 @@
 
 #include "dem.h"
 
-vec dem_wall_force(const dem *d, size_t wall) { return d->bodies[d->grain_count + wall].force; }
+/* Walls of a group count together. */
+vec dem_wall_force(const dem *d, size_t wall) {
+    const uint32_t group = d->walls[wall].group;
+    vec sum = {0, 0};
+    for (size_t w = group > 0 ? 0 : wall; w < (group > 0 ? d->wall_count : wall + 1); w++)
+        if (d->walls[w].group == group)
+            sum = plus(sum, d->bodies[d->grain_count + w].force);
+    return sum;
+}
 
 /* ------------------------------------------------------------------------------------------------ servo control */
 
@@ -43,7 +51,7 @@ void dem_steer_walls(dem *d) {
                                   : s->force;
         const double missing = target + force.x * s->direction.x + force.y * s->direction.y;
         const double speed = fmin(fmax(s->gain * missing, -s->max_speed), s->max_speed);
-        wall->velocity = times(speed, s->direction);
+        wall->speed = speed;
         count_idle_way(d, wall, speed, force.x != 0 || force.y != 0);
     }
 }
@@ -56,13 +64,14 @@ void dem_move_walls(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_body *b = &d->bodies[d->grain_count + w];
         dem_wall *wall = &d->walls[w];
-        b->velocity = wall->velocity;
-        b->spin = wall->spin;
+        const vec velocity = plus(wall->velocity, times(wall->speed, wall->servo.direction));
+        b->velocity = b->ahead = velocity;
+        b->spin = b->spin_ahead = wall->spin;
         if (wall->kind == DEM_PLATE) {
-            b->position = plus(b->position, times(dt * dot(wall->velocity, wall->normal), wall->normal));
+            b->position = plus(b->position, times(dt * dot(velocity, wall->normal), wall->normal));
             continue;
         }
-        const vec way = times(dt, wall->velocity), turn = dem_find_turn(dt * wall->spin);
+        const vec way = times(dt, velocity), turn = dem_find_turn(dt * wall->spin);
         b->position = plus(b->position, way);
         wall->pivot = plus(wall->pivot, way);
         if (wall->spin == 0)
@@ -70,7 +79,7 @@ void dem_move_walls(dem *d) {
         const vec arm = rotate(turn, minus(b->position, wall->pivot));
         b->turn = dem_turn(b->turn, turn);
         b->position = plus(wall->pivot, arm);
-        b->velocity = (vec){b->velocity.x - wall->spin * arm.y, b->velocity.y + wall->spin * arm.x};
+        b->velocity = b->ahead = (vec){velocity.x - wall->spin * arm.y, velocity.y + wall->spin * arm.x};
     }
 }
 
@@ -81,5 +90,7 @@ void dem_count_work(dem *d) {
         const dem_body *b = &d->bodies[d->grain_count + w];
         d->walls[w].work -= half * (dot(b->force, b->velocity) + b->torque * b->spin);
     }
-    d->shear_work -= half * dem_find_drift(d) * d->pull;
+    if (d->drifts)
+        d->shear_work -= half * (dot(dem_find_drift(d, &(dem_image){.right = 1}), d->pull.right) +
+                                 dot(dem_find_drift(d, &(dem_image){.up = 1}), d->pull.up));
 }

@@ -50,26 +50,33 @@ static void run_in_team(void *context, unsigned task_count, void (*task)(void *a
 
 void dem_start(dem *d) {
     dem_settings *s = &d->settings;
-    const double shortest = dem_find_shortest_contact(d), rate = s->shear;
+    const double shortest = dem_find_shortest_contact(d);
+    const dem_rates rates = s->rates;
     if (s->time_step > shortest / 5)
         dem_fail(d,
                  "time step %g is more than a fifth of what the shortest contact lasts, %g. Take a 15th, or less stiff "
                  "contacts",
                  s->time_step, shortest);
-    if (s->sheared && (!s->periodic_x || !s->periodic_y || d->wall_count > 0 || s->gravity.x != 0 || s->gravity.y != 0))
-        dem_fail(d, "a sheared cell is periodic in x and y, and has neither walls nor gravity");
+    d->drifts = s->sheared || s->strained;
+    if (d->drifts && (!s->periodic_x || !s->periodic_y || d->wall_count > 0 || s->gravity.x != 0 || s->gravity.y != 0))
+        dem_fail(d, "a cell that is sheared or strained is periodic in x and y, and has neither walls nor gravity");
+    if (!(s->time_step * s->drag < 1))
+        dem_fail(d, "drag %g is more than one by the time step", s->drag);
+    for (size_t i = 0; i < d->material_count * d->material_count; i++)
+        d->range = fmax(d->range, d->laws[i / d->material_count][i % d->material_count].range);
     if (s->periodic_x)
         s->high.x = s->low.x + round_width(d, "x", s->high.x - s->low.x);
     if (s->periodic_y)
         s->high.y = s->low.y + round_width(d, "y", s->high.y - s->low.y);
     dem_add_walls(d);
     d->workers = (narc_workers){.count = dem_team(d), .run = run_in_team};
-    s->shear = 0;
-    dem_set_shear(d, rate);
+    s->rates = (dem_rates){0, 0, 0};
+    dem_set_rates(d, rates);
     d->shear_work = 0; /* grains begin so */
     const dem_region all = dem_bound(d, true);
     d->diagonal = hypot(all.high.x - all.low.x, all.high.y - all.low.y);
-    d->margin = 4 * NARC_ERROR_BOUND * d->grain_reach + (d->wall_count > 0 ? 2e-7 * d->diagonal : 0); /* along plates */
+    d->margin = 4 * NARC_ERROR_BOUND * d->grain_reach +
+                (d->wall_count > 0 ? 2e-7 * d->diagonal : 0) /* along plates */ + d->range;
     dem_renew_images(d);
     dem_find_first_forces(d);
 }

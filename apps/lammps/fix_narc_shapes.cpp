@@ -25,7 +25,7 @@ using narc_lammps::Form;
 
 namespace {
 
-constexpr int memory_size = 6; /* doubles of a packed memory */
+constexpr int memory_size = 7; /* doubles of a packed memory */
 
 /* The text of a file, which rank 0 reads; false if it cannot. */
 bool read_file(MPI_Comm world, const char *path, std::string &text) {
@@ -304,6 +304,7 @@ int FixNarcShapes::pack(const std::vector<Memory> &list, double *buffer) {
         buffer[n++] = kept.springs.x;
         buffer[n++] = kept.springs.y;
         buffer[n++] = kept.springs.angle;
+        buffer[n++] = kept.springs.stiffening;
     }
     return n;
 }
@@ -314,7 +315,7 @@ int FixNarcShapes::unpack(const double *buffer, std::vector<Memory> &list) {
     for (int k = 0; k < count; k++, n += memory_size)
         list.push_back({static_cast<tagint>(buffer[n]),
                         {static_cast<uint32_t>(buffer[n + 1]), static_cast<uint32_t>(buffer[n + 2])},
-                        {buffer[n + 3], buffer[n + 4], buffer[n + 5]}});
+                        {buffer[n + 3], buffer[n + 4], buffer[n + 5], buffer[n + 6]}});
     return n;
 }
 

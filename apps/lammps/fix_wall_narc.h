@@ -4,13 +4,14 @@
  *
  *   fix ID group wall/narc LAW WALL [velocity VX VY] [spin OMEGA PX PY] [every N]
  *
- *   LAW    hooke/history or hertz/history, and the numbers of the pair styles
+ *   LAW    hooke/history, hertz/history or mindlin/rescale, and the numbers of the pair styles
  *   WALL   plate PX PY NX NY                a half plane: its border goes through (PX, PY), grains are where N points
  *          box CX CY WIDTH HEIGHT DEGREES   a box around (CX, CY), turned
+ *          chain FILE NAME X Y DEGREES      a chain of a shapes file: ground, whose origin is (X, Y), turned
  *
  *   VX VY OMEGA   numbers, or equal-style variables (v_NAME), which may look at the wall's force: a servo. They are
  *                 evaluated in steps whose number is a multiple of N, each if left out
- *   PX PY         about which a box turns; it moves with the wall
+ *   PX PY         about which a box or a chain turns; it moves with the wall
  *
  * Vector: 1, 2 the force on the wall; 3, 4 how far it has moved; 5 the torque on it about (PX, PY); 6 the angle by
  * which it has turned. Scalar: the elastic energy of its contacts. With fix_modify ID virial yes pressures and stresses
@@ -57,47 +58,63 @@ class FixWallNarc : public Fix {
     std::vector<narc_lammps::ContactRow> rows; /* of this rank, in the last step; ID 0 is the wall */
 
   private:
+    /* A box, or a piece of a chain. */
+    struct Piece {
+        uint32_t shape; /* in the store */
+        double x, y;    /* its origin in the wall */
+        std::vector<touch_side> sides;
+    };
+
     /* A grain that touches, A, and the wall's place from its centre. */
     struct Contact {
         int grain;
-        size_t part;
-        touch at;
-        double way_x, way_y;
+        touch_parts parts;
+        size_t memory; /* index of its springs */
     };
 
-    narc_lammps::Springs *springs_of(int i) { return &springs[static_cast<size_t>(i) * shapes->most_parts]; }
-    size_t spring_index(const Contact &c) const { return static_cast<size_t>(c.grain) * shapes->most_parts + c.part; }
+    /* The memory of a part of a grain: of so many pieces at once. */
+    struct Memory {
+        double piece; /* 1 + its index; 0: none */
+        narc_lammps::Springs springs;
+    };
+    static constexpr size_t memory_size = sizeof(Memory) / sizeof(double);
+    size_t most_memories() const { return shapes->most_parts * (pieces.size() > 1 ? 4 : 1); }
+
+    Memory *memories_of(int i) { return &memories[static_cast<size_t>(i) * most_memories()]; }
+    size_t find_memory(const Contact &contact);
     int read_wall(int i, int count, char **arguments);
+    void read_chain(const char *path, const char *name);
+    void add_contact(int i, size_t part, size_t piece, const touch_grain &wall, double way_x, double way_y,
+                     unsigned feature);
+    void join_contacts();
     int read_motion(int i, int count, char **arguments);
-    void place_box();
+    void place_pieces();
     void find_plate_contacts();
-    void find_box_contacts();
+    void find_piece_contacts();
     void apply_contact(const Contact &contact, double step);
     void sum_ranks();
 
     narc_lammps::ContactLaw law;
     FixNarcShapes *shapes = nullptr;
     bool plate = false;
-    double place_x = 0, place_y = 0, normal_x = 0,
-           normal_y = 0;                    /* at the start; a box: of its angle, cosine and sine */
-    double pivot[2] = {0, 0};               /* at the start */
-    double half_width = 0, half_height = 0; /* a box */
-    double velocity[3] = {0, 0, 0};         /* the third is the spin */
+    double place_x = 0, place_y = 0, normal_x = 0, normal_y = 0; /* at the start; else of its angle, cosine and sine */
+    double pivot[2] = {0, 0};                                    /* at the start */
+    double reach = 0;               /* from its place to its furthest point; of a plate 0 */
+    double velocity[3] = {0, 0, 0}; /* the third is the spin */
     int every = 1;
     std::string variables[3]; /* equal-style ones that give them; empty: constant */
     double moved[3] = {0, 0, 0};
-    std::vector<touch_side> sides; /* of the box; of a plate a segment, which lies under each grain */
-    narc_shapes *store = nullptr;  /* a box: all parts of grains, and the box behind them */
-    narc_body box = {};            /* where it is now */
-    uint32_t box_shape = 0;
-    double box_cosine = 1, box_sine = 0;
-    narc_lammps::Motion motion = {0, 0, 0}; /* of the wall, at the middle of a box */
+    std::vector<Piece> pieces;                           /* of a plate a segment, which lies under each grain */
+    uint32_t forms = 0;                                  /* parts of grains */
+    narc_shapes *store = nullptr;                        /* all parts of grains, and the pieces behind them */
+    double wall_x = 0, wall_y = 0, cosine = 1, sine = 0; /* where it is now */
+    narc_lammps::Motion motion = {0, 0, 0};              /* of the wall, at the middle of a box */
 
     std::vector<Contact> contacts;
-    std::vector<narc_lammps::Springs> springs; /* of each part of each atom */
-    std::vector<char> touched;                 /* by the wall, in the last step */
-    double mine[4] = {0, 0, 0, 0};             /* force on the wall, torque, energy: of this rank */
-    double total[4] = {0, 0, 0, 0};            /* and of all, if summed */
+    std::vector<Memory> memories;   /* of each atom */
+    std::vector<char> touched;      /* of these: in the last step */
+    double mine[4] = {0, 0, 0, 0};  /* force on the wall, torque, energy: of this rank */
+    double total[4] = {0, 0, 0, 0}; /* and of all, if summed */
     bool summed = false;
 };
 

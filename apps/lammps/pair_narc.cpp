@@ -22,8 +22,9 @@
 
 using namespace LAMMPS_NS;
 
-PairNarc::PairNarc(LAMMPS *lammps, bool hertz) : Pair(lammps) {
+PairNarc::PairNarc(LAMMPS *lammps, bool hertz, bool rescaled) : Pair(lammps) {
     law.hertz = hertz;
+    law.rescaled = rescaled;
     single_enable = 0;
     no_virial_fdotr_compute = 1; /* forces do not act along the line of the centres */
     centroidstressflag = CENTROID_NOTAVAIL;
@@ -56,10 +57,10 @@ void PairNarc::allocate() {
 narc_lammps::ContactLaw PairNarc::read_law(int count, char **arguments) {
     narc_lammps::ContactLaw read;
     const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
-    if (narc_lammps::read_law(read, law.hertz, force->nktv2p, count, arguments, number) != count)
+    if (narc_lammps::read_law(read, law.hertz, law.rescaled, force->nktv2p, count, arguments, number) != count)
         error->all(FLERR,
                    std::string("pair_style narc: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] "
-                               "[restitution E] are wanted, none of them negative or out of range"));
+                               "[restitution E] [cohesion F RANGE] are wanted, none of them negative or out of range"));
     return read;
 }
 
@@ -102,6 +103,7 @@ void PairNarc::init_style() {
             frozen = modify->fix[i]->groupbit;
 
     find_radii();
+    range = find_range();
     Pair::init_style();
 }
 
@@ -141,7 +143,14 @@ void PairNarc::check_atoms() const {
 double PairNarc::init_one(int i, int j) {
     if (!allocated)
         allocate();
-    return type_radius[static_cast<size_t>(i)] + type_radius[static_cast<size_t>(j)];
+    return type_radius[static_cast<size_t>(i)] + type_radius[static_cast<size_t>(j)] + find_range();
+}
+
+double PairNarc::find_range() const {
+    double most = 0;
+    for (const narc_lammps::ContactLaw &of_types : laws)
+        most = std::max(most, of_types.range);
+    return most;
 }
 
 /* ---------------------------------------------------------------------------- the list of pairs */
@@ -157,7 +166,7 @@ void PairNarc::add_pairs(bool of_discs) {
             const int j = list->firstneigh[i][m] & NEIGHMASK;
             if ((shapes->form(i).is_disc && shapes->form(j).is_disc) != of_discs)
                 continue;
-            const double reach = atom->radius[i] + atom->radius[j] + neighbor->skin;
+            const double reach = atom->radius[i] + atom->radius[j] + range + neighbor->skin;
             const double dx = atom->x[j][0] - x[0], dy = atom->x[j][1] - x[1];
             if (dx * dx + dy * dy >= reach * reach)
                 continue;
@@ -181,7 +190,7 @@ void PairNarc::build_pairs() {
     add_pairs(true);
     disc_pairs = first.size();
     add_pairs(false);
-    springs.assign(first.size(), {0, 0, 0});
+    springs.assign(first.size(), {0, 0, 0, 0});
     contacts.resize(first.size() - disc_pairs);
     const size_t local = static_cast<size_t>(atom->nlocal);
     for (size_t k = 0; k < first.size(); k++) {
@@ -231,7 +240,8 @@ void PairNarc::find_contacts() {
     narc_openmp_workers(static_cast<unsigned>(comm->nthreads), &workers);
     size_t skipped = 0;
     narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
-    query.margin = static_cast<float>(4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
+    query.margin =
+        static_cast<float>(range + 4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
     query.workers = &workers;
     query.out_skipped = &skipped;
     narc_error failure = {};
@@ -246,6 +256,9 @@ void PairNarc::find_contacts() {
 /* Inline, so that a contact of discs stays in registers. */
 [[gnu::always_inline]] inline void PairNarc::apply_contact(uint32_t pair, int a, int b, narc_lammps::Contact contact,
                                                            double step) {
+    const narc_lammps::ContactLaw &by = laws[static_cast<size_t>(atom->type[a] * (atom->ntypes + 1) + atom->type[b])];
+    if (!(contact.depth > -by.range))
+        return;
     touching.push_back(pair);
     const double *x_a = atom->x[a], *v_a = atom->v[a], *v_b = atom->v[b];
     contact.a = {v_a[0], v_a[1], atom->omega[a][2]};
@@ -257,7 +270,6 @@ void PairNarc::find_contacts() {
     if (atom->mask[b] & frozen)
         contact.mass = mass_a;
     contact.radius = 0;
-    const narc_lammps::ContactLaw &by = laws[static_cast<size_t>(atom->type[a] * (atom->ntypes + 1) + atom->type[b])];
     if (by.hertz || by.rolling > 0) {
         const double radius_a = shapes->equal_radius(a), radius_b = shapes->equal_radius(b);
         contact.radius = radius_a * radius_b / (radius_a + radius_b);
@@ -286,31 +298,47 @@ void PairNarc::apply_discs(double step) {
         const int a = static_cast<int>(shapes->row_atom[first[pair]]),
                   b = static_cast<int>(shapes->row_atom[second[pair]]);
         const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
-        const double radius_a = atom->radius[a], radius_b = atom->radius[b], reach = radius_a + radius_b;
+        const double radius_a = atom->radius[a], radius_b = atom->radius[b], reach = radius_a + radius_b + range;
         if (x * x + y * y >= reach * reach)
             continue;
         const touch_end end = meet_discs(radius_a, radius_b, x, y);
         if (!std::isfinite(end.depth))
             error->one(FLERR, "pair_style narc: atoms " + std::to_string(atom->tag[a]) + " and " +
                                   std::to_string(atom->tag[b]) + ": the place of one is no number");
-        if (end.depth > 0)
-            apply_contact(pair, a, b, {end, end.depth, nullptr, x, y, {}, {}, 0, 0}, step);
+        apply_contact(pair, a, b, {end, end.depth, 1, true, nullptr, x, y, {}, {}, 0, 0}, step);
     }
 }
 
-/* What the library has found may be apart after all. */
+/* What the library has found may be apart after all. The contacts of two grains follow each other: those of one surface are
+ * one, and if what bears its load changes the spring goes along. */
 void PairNarc::apply_others(double step) {
-    for (size_t k = 0; k < found_count; k++) {
-        const uint32_t pair = static_cast<uint32_t>(disc_pairs) + contacts[k].pair, row_a = first[pair],
-                       row_b = second[pair];
-        const int a = static_cast<int>(shapes->row_atom[row_a]), b = static_cast<int>(shapes->row_atom[row_b]);
-        const touch_grain outline_a = shapes->outline(a, shapes->row_part(row_a));
-        const touch_grain outline_b = shapes->outline(b, shapes->row_part(row_b));
+    for (size_t k = 0, next; k < found_count; k = next) {
+        const uint32_t *row_a = &first[disc_pairs], *row_b = &second[disc_pairs];
+        const int a = static_cast<int>(shapes->row_atom[row_a[contacts[k].pair]]);
+        const int b = static_cast<int>(shapes->row_atom[row_b[contacts[k].pair]]);
         const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
-        touch at;
-        find_touch(&outline_a, &outline_b, x, y, contacts[k].feature, &at);
-        if (at.depth > 0)
-            apply_contact(pair, a, b, {at.end[0], at.depth, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0}, step);
+        parts.clear();
+        for (next = k; next < found_count; next++) {
+            const uint32_t pair = contacts[next].pair, p = row_a[pair], q = row_b[pair];
+            if (shapes->row_atom[p] != static_cast<uint32_t>(a) || shapes->row_atom[q] != static_cast<uint32_t>(b))
+                break;
+            parts.push_back(
+                {shapes->outline(a, shapes->row_part(p)), shapes->outline(b, shapes->row_part(q)), x, y, p, q, {}});
+            touch_parts &now = parts.back();
+            find_touch(&now.a, &now.b, x, y, contacts[next].feature, &now.at);
+            if (!(now.at.depth > -range))
+                now.at.count = 0;
+        }
+        narc_lammps::Springs *of_pairs = &springs[disc_pairs];
+        if (parts.size() > 1)
+            narc_lammps::join_contacts(parts, [&](size_t i) { return &of_pairs[contacts[k + i].pair]; });
+        for (size_t i = 0; i < parts.size(); i++) {
+            const touch &at = parts[i].at;
+            if (at.count > 0)
+                apply_contact(
+                    static_cast<uint32_t>(disc_pairs) + contacts[k + i].pair, a, b,
+                    {at.end[0], at.depth, at.part, at.leads, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0}, step);
+        }
     }
 }
 
@@ -332,7 +360,7 @@ void PairNarc::compute(int energy, int virial_kind) {
         while (next < touching.size() && touching[next] < pair)
             next++;
         if (next == touching.size() || touching[next] != pair)
-            springs[pair] = {0, 0, 0};
+            springs[pair] = {0, 0, 0, 0};
     }
 }
 

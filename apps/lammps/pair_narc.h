@@ -5,10 +5,11 @@
  *
  *   pair_style narc/hooke/history LAW
  *   pair_style narc/hertz/history LAW
+ *   pair_style narc/mindlin/rescale LAW     the same but for the tangential spring, where its stiffness changes
  *   pair_coeff I J [LAW]
  *
- *   LAW    kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] [restitution E]; types without
- *          one have the pair style's
+ *   LAW    kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] [restitution E] [cohesion F RANGE];
+ *          types without one have the pair style's
  */
 #ifndef NARC_LAMMPS_PAIR_NARC_H
 #define NARC_LAMMPS_PAIR_NARC_H
@@ -23,7 +24,7 @@ namespace LAMMPS_NS {
 
 class PairNarc : public Pair {
   public:
-    PairNarc(class LAMMPS *lammps, bool hertz);
+    PairNarc(class LAMMPS *lammps, bool hertz, bool rescaled);
     ~PairNarc() override;
 
     void compute(int energy, int virial_kind) override;
@@ -51,6 +52,7 @@ class PairNarc : public Pair {
     void allocate();
     narc_lammps::ContactLaw read_law(int count, char **arguments);
     void find_radii();
+    double find_range() const;
     void check_atoms() const;
     void add_pairs(bool of_discs);
     void find_contacts();
@@ -63,6 +65,7 @@ class PairNarc : public Pair {
     FixNarcShapes *shapes = nullptr;
     int frozen = 0; /* group bit of fix freeze */
     std::vector<double> type_radius;
+    double range = 0; /* of cohesion, the largest */
 
     /* Pairs of parts, by their rows, A of the grain with the lower ID: the order of a pair does not depend on the
      * ranks, nor do its bits. First come those of two discs, which need no search. */
@@ -74,16 +77,22 @@ class PairNarc : public Pair {
     std::vector<uint32_t> before;       /* and in the one before it */
     std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair of others */
     size_t found_count = 0;
+    std::vector<touch_parts> parts; /* of two grains */
 };
 
 class PairNarcHooke : public PairNarc {
   public:
-    explicit PairNarcHooke(class LAMMPS *lammps) : PairNarc(lammps, false) {}
+    explicit PairNarcHooke(class LAMMPS *lammps) : PairNarc(lammps, false, false) {}
 };
 
 class PairNarcHertz : public PairNarc {
   public:
-    explicit PairNarcHertz(class LAMMPS *lammps) : PairNarc(lammps, true) {}
+    explicit PairNarcHertz(class LAMMPS *lammps) : PairNarc(lammps, true, false) {}
+};
+
+class PairNarcMindlin : public PairNarc {
+  public:
+    explicit PairNarcMindlin(class LAMMPS *lammps) : PairNarc(lammps, true, true) {}
 };
 
 } // namespace LAMMPS_NS

@@ -31,6 +31,7 @@ template <class Style> Compute *make_compute(LAMMPS *lammps, int count, char **a
 void narc_lammps::register_styles(LAMMPS *lammps) {
     (*lammps->force->pair_map)["narc/hooke/history"] = make_pair_style<PairNarcHooke>;
     (*lammps->force->pair_map)["narc/hertz/history"] = make_pair_style<PairNarcHertz>;
+    (*lammps->force->pair_map)["narc/mindlin/rescale"] = make_pair_style<PairNarcMindlin>;
     (*lammps->modify->fix_map)["narc/shapes"] = make_fix<FixNarcShapes>;
     (*lammps->modify->fix_map)["narc/nve"] = make_fix<FixNVENarc>;
     (*lammps->modify->fix_map)["wall/narc"] = make_fix<FixWallNarc>;

@@ -5,9 +5,12 @@
 #include "shape_file.h"
 
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
+#include <narc_chains.h>
 #include <narc_files.h>
 
 namespace narc_lammps {
@@ -98,6 +101,55 @@ uint32_t store_parts(const std::vector<Form> &forms, narc_shapes **out_store) {
         }
     }
     return next;
+}
+
+std::vector<ChainPiece> read_chain(const std::string &path, const std::string &name, narc_shapes *store,
+                                   double &reach) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (!file)
+        throw std::runtime_error(path + ": cannot be read");
+    narc_shape_list *list;
+    narc_error error;
+    if (narc_read_shapes(text.str().data(), text.str().size(), nullptr, nullptr, &list, &error) != NARC_OK)
+        throw std::runtime_error(path + ": " + error.message);
+    const std::unique_ptr<narc_shape_list, void (*)(narc_shape_list *)> owner(list, narc_destroy_shape_list);
+    const size_t k = narc_find_named_shape(list, name.c_str());
+    if (k == list->count || list->items[k].form == NARC_FORM_SHAPE)
+        throw std::runtime_error(path + ": it has no chain '" + name + "'");
+    const narc_named_shape &chain = list->items[k];
+    narc_chain_options options = {};
+    options.closed = chain.form == NARC_FORM_CLOSED_CHAIN;
+    size_t count = 0;
+    narc_status status = narc_add_chain(store, chain.arcs, chain.arc_count, &options, nullptr, 0, &count, &error);
+    std::vector<narc_chain_entry> entries(count);
+    if (status == NARC_ERROR_CAPACITY)
+        status = narc_add_chain(store, chain.arcs, chain.arc_count, &options, entries.data(), count, &count, &error);
+    if (status != NARC_OK)
+        throw std::runtime_error(path + ": chain '" + name + "': " + error.message);
+    std::vector<ChainPiece> pieces;
+    for (const narc_chain_entry &e : entries) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        ChainPiece piece = {e.shape, e.x, e.y, std::vector<touch_side>(NARC_MAX_ARCS)};
+        const size_t sides = narc_get_arcs(store, e.shape, arcs);
+        make_touch_sides(arcs, sides, piece.sides.data());
+        piece.sides.resize(sides);
+        if (sides == 1) { /* the end of a concave arc */
+            piece.sides.resize(2);
+            make_touch_sides(arcs, 1, piece.sides.data());
+        }
+        for (touch_side &side : piece.sides) {
+            side.x += e.x;
+            side.y += e.y;
+        }
+        pieces.push_back(piece);
+    }
+    reach = 0;
+    for (size_t i = 0; i < chain.arc_count; i++)
+        reach = std::fmax(reach,
+                          std::hypot(chain.arcs[i].center_x, chain.arcs[i].center_y) + std::fabs(chain.arcs[i].radius));
+    return pieces;
 }
 
 } // namespace narc_lammps

@@ -37,6 +37,16 @@ std::vector<Form> parse_forms(const std::string &path, const std::string &text);
 /* Stores the parts of all forms, one after the other; how many they are. Throws std::runtime_error. */
 uint32_t store_parts(const std::vector<Form> &forms, narc_shapes **out_store);
 
+/* A piece of a chain: its shape in a store, where its origin is in the chain, and its sides there. */
+struct ChainPiece {
+    uint32_t shape;
+    double x, y;
+    std::vector<touch_side> sides;
+};
+
+/* Reads a chain of a shapes file; `reach` is how far it goes from its origin. Throws std::runtime_error. */
+std::vector<ChainPiece> read_chain(const std::string &path, const std::string &name, narc_shapes *store, double &reach);
+
 /* Writes a form as a Wavefront OBJ file: its parts as polygons, scaled so that it reaches 1 from the centroid. A
  * particle's mesh is this one times its radius. Throws std::runtime_error. */
 void write_mesh(const Form &form, const std::string &path);

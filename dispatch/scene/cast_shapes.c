@@ -10,14 +10,17 @@
 #include "column.h"
 #include "error.h"
 #include "index.h"
+#include "store.h"
 
 /* Movers of a part. */
 enum { PART = 256 };
 
 struct job {
     narc_cast_job casts;
-    const narc_index *index;
+    narc_index *index;
     const narc_bodies *movers;
+    const narc_owners *owners;
+    narc_float_column targets; /* of movers */
     narc_box_batch boxes;
     size_t pair_count;
 };
@@ -77,6 +80,65 @@ static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
         boxes[k] = sweep_box(job, k, angle == 0 ? boxes[k] : turn_box(job, k), x, y);
     }
     atomic_fetch_add_explicit(&job->casts.skipped, skipped, memory_order_relaxed);
+}
+
+/* ------------------------------------------------------------------------------------------------ things */
+
+/* How far apart pairs first .. end - 1 are at the start; infinite where that says nothing, as of pieces of chains. */
+static void find_separations(const struct job *job, size_t first, size_t end) {
+    const narc_batch *const all = job->casts.batch.batch;
+    narc_start *const starts = job->index->starts;
+    const narc_query query = {.margin = INFINITY, .dense = 1};
+    const narc_rows rows = {.base = (char *)&starts->separation, .stride = sizeof *starts};
+    narc_batch batch = *all;
+    size_t skipped = 0;
+    batch.query = &query;
+    for (size_t k = first, count; k < end; k += count) {
+        count = end - k < NARC_ROW_GROUP ? end - k : NARC_ROW_GROUP;
+        job->casts.batch.kernels->separation(&batch, k, count, &skipped, &rows);
+    }
+    for (size_t k = first; k < end && all->shapes->piece_count > all->shapes->plane_count; k++)
+        for (int side = 0; side < 2; side++)
+            if (narc_is_of_chain(&all->shapes->headers[narc_find_side(all, k, side).shape]))
+                starts[k].separation = INFINITY;
+}
+
+static uint32_t find_owner(const struct job *job, size_t pair) {
+    return narc_index_at(job->owners->owner, narc_index_at(job->casts.batch.batch->pairs->b, pair));
+}
+
+/* Targets and depths of a mover's pairs, first .. end - 1. One that is at its target from a part of a thing counts as that
+ * deep in all others. */
+static void find_depths(const struct job *job, size_t mover, size_t first, size_t end) {
+    const narc_cast_batch *const casts = &job->casts.batch;
+    const float target = narc_float_or(job->targets, mover, casts->target), infinite = INFINITY;
+    narc_start *const starts = job->index->starts;
+    for (size_t k = first; k < end; k++) {
+        starts[k].target = target;
+        starts[k].depth = infinite;
+    }
+    for (size_t k = first; k < end; k++) {
+        const uint32_t owner = find_owner(job, k);
+        if (!(starts[k].separation <= target) || owner == UINT32_MAX)
+            continue;
+        for (size_t i = first; i < end; i++)
+            if (find_owner(job, i) == owner && starts[k].separation < starts[i].depth)
+                starts[i].depth = starts[k].separation;
+    }
+    for (size_t k = first; k < end; k++)
+        if (!(starts[k].separation <= target) && starts[k].depth < infinite) {
+            starts[k].target = fminf(target, starts[k].depth - casts->parting);
+            starts[k].depth = infinite;
+        }
+}
+
+static void measure_starts(void *argument, size_t part, size_t first, size_t end) {
+    const struct job *const job = argument;
+    const narc_region *const regions = job->index->regions;
+    (void)part;
+    find_separations(job, regions[first].row, regions[end - 1].row + regions[end - 1].count);
+    for (size_t k = first; k < end; k++)
+        find_depths(job, k, regions[k].row, regions[k].row + regions[k].count);
 }
 
 /* ------------------------------------------------------------------------------------------------ the call */
@@ -148,6 +210,15 @@ narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const
     job.casts.batch.batch = &batch;
     job.casts.batch.out = out_rows;
     job.casts.batch.nearest = true;
+    if (q->owners && o->parting > 0 && pairs.count > 0) {
+        if (narc_reserve_starts(index, pairs.count) != NARC_OK)
+            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)pairs.count, "no memory for %zu pairs", pairs.count);
+        job.owners = q->owners;
+        job.targets = job.casts.batch.targets;
+        narc_run_ranges(q->workers, movers->count, PART, measure_starts, &job);
+        job.casts.batch.targets = NARC_COLUMN(index->starts, target);
+        job.casts.batch.depths = NARC_COLUMN(index->starts, depth);
+    }
     narc_run_ranges(q->workers, movers->count, PART, cast_movers, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.casts.skipped, memory_order_relaxed);

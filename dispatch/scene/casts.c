@@ -87,7 +87,7 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     casts.motions[0] = *both[0];
     casts.motions[1] = pairs->other_bodies ? *both[1] : *both[0];
     casts.target = options->target;
-    casts.targets.base = NULL;
+    casts.targets.base = casts.depths.base = NULL;
     casts.tolerance = options->tolerance;
     casts.parting = options->parting;
     casts.nearest = false;
@@ -144,6 +144,7 @@ narc_status narc_check_casts(const narc_motions *motions, const narc_motions *ot
     out_job->batch.tolerance = options->tolerance;
     out_job->batch.parting = options->parting;
     out_job->batch.targets = options->targets;
+    out_job->batch.depths = (narc_float_column){NULL, 0};
     out_job->batch.nearest = false;
     out_job->batch.front_only = options->front_only != 0;
     atomic_init(&out_job->skipped, 0);

@@ -10,6 +10,7 @@
  * something has changed are fitted.
  */
 #include "column.h"
+#include "compiler.h"
 #include "dispatch.h"
 #include "error.h"
 #include "leaves.h"
@@ -127,28 +128,38 @@ static inline void look_at(updating *u, uint32_t body, uint32_t place) {
 
 /* ------------------------------------------------------------------------------------------------ to a leaf */
 
-/* Of some slots the one whose box grows least, of several the smallest one; quarters, so that all are finite. The first slot
- * of the node if they are all empty. */
-static size_t choose_slot(const narc_index_node *node, const narc_box *box, unsigned slots) {
+static inline float find_lower(float a, float b) { return a < b ? a : b; }
+
+static inline float find_least(const float number[NARC_NODE_SLOTS]) {
+    float least[NARC_NODE_SLOTS / 2];
+    for (size_t k = 0; k < NARC_NODE_SLOTS / 2; k++)
+        least[k] = find_lower(number[k], number[k + NARC_NODE_SLOTS / 2]);
+    return find_lower(find_lower(least[0], least[1]), find_lower(least[2], least[3]));
+}
+
+/* Of some slots the one whose box grows least, of several the smallest one; quarters, so that all are finite. The first of them
+ * if they are all empty. Which it is can't be foreseen: without a branch. */
+static size_t choose_slot(const narc_index_node *node, const narc_box *given, unsigned slots) {
+    const narc_box box = *given;
     float growth[NARC_NODE_SLOTS], size[NARC_NODE_SLOTS];
     for (size_t k = 0; k < NARC_NODE_SLOTS; k++) {
-        const float min_x = box->min_x < node->min_x[k] ? box->min_x : node->min_x[k];
-        const float min_y = box->min_y < node->min_y[k] ? box->min_y : node->min_y[k];
-        const float max_x = box->max_x > node->max_x[k] ? box->max_x : node->max_x[k];
-        const float max_y = box->max_y > node->max_y[k] ? box->max_y : node->max_y[k];
-        const float old =
-            (node->max_x[k] * 0.25f - node->min_x[k] * 0.25f) + (node->max_y[k] * 0.25f - node->min_y[k] * 0.25f);
+        const float low_x = node->min_x[k], low_y = node->min_y[k], high_x = node->max_x[k], high_y = node->max_y[k];
+        const float min_x = find_lower(box.min_x, low_x), max_x = box.max_x > high_x ? box.max_x : high_x;
+        const float min_y = find_lower(box.min_y, low_y), max_y = box.max_y > high_y ? box.max_y : high_y;
+        const float old = (high_x * 0.25f - low_x * 0.25f) + (high_y * 0.25f - low_y * 0.25f);
         size[k] = (max_x * 0.25f - min_x * 0.25f) + (max_y * 0.25f - min_y * 0.25f);
         growth[k] = size[k] - old;
     }
-    float least = INFINITY;
-    size_t chosen = 0;
+    for (size_t k = 0; k < NARC_NODE_SLOTS && slots != UINT8_MAX; k++)
+        growth[k] = slots >> k & 1 ? growth[k] : INFINITY;
+    const float least = find_least(growth);
     for (size_t k = 0; k < NARC_NODE_SLOTS; k++)
-        if (slots >> k & 1 && (growth[k] < least || (growth[k] == least && size[k] < size[chosen]))) {
-            least = growth[k];
-            chosen = k;
-        }
-    return chosen;
+        size[k] = growth[k] <= least ? size[k] : INFINITY;
+    const float smallest = find_least(size);
+    uint32_t chosen = 0;
+    for (size_t k = 0; k < NARC_NODE_SLOTS; k++)
+        chosen |= (uint32_t)(size[k] <= smallest) << k;
+    return (size_t)FIND_LOWEST(least < INFINITY ? chosen : slots > 0 ? slots : 1);
 }
 
 static void grow(narc_box *box, const narc_box *by) {

@@ -318,12 +318,12 @@ INLINE struct manifold_points find_manifold_points(const struct call *call, cons
     if (!vm_any(offered)) {
         const vi id = find_touching_id(a, b, s->place.y, s->number_a, s->number_b);
         const vf zero = v_set(0);
-        return (struct manifold_points){vi_set(1),
-                                        answer->radius_a,
-                                        answer->radius_b,
-                                        {answer->point.x, answer->point.y, answer->separation,
-                                         v_of_bits(vi_select(s->named, id, answer->feature))},
-                                        {zero, zero, zero, zero}};
+        return (struct manifold_points){
+            vi_set(1),
+            answer->radius_a,
+            answer->radius_b,
+            {answer->point.x, answer->point.y, answer->separation, v_of_bits(vi_select(s->named, id, answer->feature))},
+            {zero, zero, zero, zero}};
     }
     const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
     const vm stretch = is_stretch(&low, &high, answer->separation, s->n, s->position_b);

@@ -72,8 +72,8 @@ static void write_row(const narc_cast_batch *given, const narc_casts *casts, siz
 /* The caller's target of a cast. */
 static float find_target(const narc_cast_batch *given, const narc_casts *casts, size_t slot) {
     const size_t pair = casts->pair[slot];
-    return narc_float_or(given->targets, given->nearest ? narc_index_at(given->batch->pairs->a, pair) : pair,
-                         given->target);
+    const bool of_movers = given->nearest && !given->depths.base;
+    return narc_float_or(given->targets, of_movers ? narc_index_at(given->batch->pairs->a, pair) : pair, given->target);
 }
 
 #if NARC_PIECES
@@ -108,11 +108,11 @@ INLINE bool is_let_go(const narc_cast_batch *given, const narc_casts *casts, siz
 static int let_go(const struct cast_call *call, narc_casts *casts, size_t slot, int outcome) {
     const narc_cast_batch *const given = call->given;
     const float looked = call->looked[slot % V_WIDTH], separation = casts->contact[slot].separation,
-                enough = (float)casts->enough[slot], wanted = find_target(given, casts, slot),
-                target = casts->target[slot];
+                depth = narc_float_or(given->depths, casts->pair[slot], INFINITY), enough = (float)casts->enough[slot],
+                wanted = find_target(given, casts, slot), target = casts->target[slot];
     const bool is_gone = target < wanted;
     if (outcome == NARC_CAST_HIT && (is_gone || (target <= wanted && !(casts->time[slot] > 0)))) {
-        const float deeper = separation - given->parting - enough;
+        const float deeper = (separation < depth ? separation : depth) - given->parting - enough;
         casts->target[slot] = is_gone ? FLT_MAX : deeper < wanted ? deeper : nextafterf(wanted, -INFINITY);
         casts->time[slot] = 0;
     } else if (is_gone && (outcome == NARC_CAST_MISS || (outcome == CAST_GOES_ON && casts->time[slot] >= looked)) &&
@@ -240,7 +240,8 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     load_ways(from, item[0], item[1], casts->x + to, casts->y + to);
     v_store(out->shift_x, load_column_or(from->pairs.shift_x, number, 0));
     v_store(out->shift_y, load_column_or(from->pairs.shift_y, number, 0));
-    v_store(casts->target + to, load_column_or(given->targets, given->nearest ? item[0] : number, given->target));
+    v_store(casts->target + to,
+            load_column_or(given->targets, given->nearest && !given->depths.base ? item[0] : number, given->target));
     v_store(casts->back + to, v_set(CAST_FREE));
     v_store(casts->rounds + to, v_set(0));
     memcpy(casts->pair + to, number, V_WIDTH * sizeof(int32_t));

@@ -160,7 +160,9 @@ static void check_pointers(void) {
            AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40) && AT(form, 44));
     LAYOUT(narc_shape_list, 16, AT(count, 0) && AT(items, 8));
     LAYOUT(narc_contours, 40, AT(points, 0) && AT(point_count, 8) && AT(ends, 16) && AT(count, 24) && AT(flatness, 32));
-    LAYOUT(narc_image_request, 32, AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24));
+    LAYOUT(narc_image_request, 48,
+           AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24) && AT(trace, 32) &&
+               AT(out_exact, 40));
     LAYOUT(narc_parts_request, 48,
            AT(most, 0) && AT(tolerance, 8) && AT(lap, 16) && AT(flatness, 24) && AT(reserved, 32));
     LAYOUT(narc_parts, 32, AT(paths, 0) && AT(count, 8) && AT(distance, 16) && AT(area, 24));

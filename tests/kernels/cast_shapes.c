@@ -254,4 +254,61 @@ TEST(test_known) {
     assert_int_equal(i.count, NARC_CAST_MISS);
 }
 
+/* A box that is 1 mm deep in a floor of tiles slides over their seams if they are one thing, and is stopped by a wall of the
+ * same thing, no deeper than it is in the floor but for `parting`; step by step it does not creep. Tiles that are things by
+ * themselves stop it at the next one. */
+TEST(a_thing_lets_go_as_one) {
+    enum { TILES = 20 };
+    narc_shapes *const shapes = empty_store();
+    const uint32_t box = store_shape(shapes, box_of(1, 1, 0));
+    const float depth = 1e-3f, parting = 1e-4f;
+    narc_body tiles[TILES + 1], mover = {0.3, 1 - (double)depth, 1, 0, 1, box};
+    uint32_t owner[TILES + 1];
+    narc_box boxes[TILES + 1];
+    narc_bodies ground, movers;
+    narc_index *index;
+    narc_error error;
+    narc_impact row;
+    for (uint32_t k = 0; k <= TILES; k++) {
+        tiles[k] = (narc_body){k, 0, 1, 0, 1, box};
+        owner[k] = 7;
+    }
+    tiles[TILES] = (narc_body){10, 1, 1, 0, 1, box}; /* the wall */
+    narc_view_bodies(tiles, TILES + 1, &ground);
+    narc_view_bodies(&mover, 1, &movers);
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    expect_ok(narc_compute_boxes(shapes, &ground, NULL, boxes, &error), &error);
+    expect_ok(narc_build_index(index, boxes, TILES + 1, NULL, &error), &error);
+    const float right = 8, down = -0.5f, none = 0, far = 12;
+    const narc_owners owners = {.owner = NARC_ARRAY(owner)};
+    const narc_index_query things = {.owners = &owners};
+    const narc_cast_options lets_go = {.parting = parting};
+    const narc_motions slides = {.x = {&right, 0}}, sinks = {.x = {&right, 0}, .y = {&down, 0}},
+                       goes_far = {.x = {&far, 0}, .y = {&none, 0}};
+    expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &slides, NULL, &lets_go, &row, 1, &error), &error);
+    assert_int_equal(row.count, NARC_CAST_HIT); /* the side of a tile */
+    assert_true(row.fraction < 0.2f);
+    expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &slides, &things, &lets_go, &row, 1, &error), &error);
+    assert_int_equal(row.count, NARC_CAST_MISS);
+    expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &sinks, &things, &lets_go, &row, 1, &error), &error);
+    assert_int_equal(row.count, NARC_CAST_HIT);
+    assert_true(row.fraction == 0 && row.normal_y == -1);
+    for (int step = 0; step < 20; step++) {
+        expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &goes_far, &things, &lets_go, &row, 1, &error),
+                  &error);
+        assert_int_equal(row.count, NARC_CAST_HIT);
+        assert_int_equal(row.body, TILES);
+        mover.x += (double)row.fraction * (double)far;
+        assert_true(mover.x <= 9 + (double)depth + (double)parting + 1e-5);
+    }
+    assert_true(mover.x >= 9 - 1e-5);
+    for (uint32_t k = 0; k <= TILES; k++) /* all things by themselves, but that they have owners */
+        owner[k] = UINT32_MAX;
+    mover.x = 0.3;
+    expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &slides, &things, &lets_go, &row, 1, &error), &error);
+    assert_int_equal(row.count, NARC_CAST_HIT);
+    narc_destroy_index(index);
+    narc_destroy_shapes(shapes);
+}
+
 TEST_MAIN("cast_shapes")

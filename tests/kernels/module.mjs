@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The core as a WebAssembly module, from JavaScript: node module.mjs MODULE MOST_BYTES ISA. It has at most so many bytes as
-// gzip packs it, imports nothing, has this instruction set, builds a capsule, stores it and gives it back.
+// gzip packs it, imports nothing, but for shared memory, has this instruction set, builds a capsule, stores it and gives it back.
 import assert from "node:assert";
 import { readFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
@@ -9,10 +9,13 @@ const [path, most, isa] = process.argv.slice(2), bytes = readFileSync(path), pac
 console.log(`${path}: ${bytes.length} bytes, ${packed} packed, at most ${most}`);
 assert(packed <= Number(most));
 
-const { instance } = await WebAssembly.instantiate(bytes);
-instance.exports._initialize();
-const narc = instance.exports, view = () => new DataView(narc.memory.buffer), place = narc.malloc(4096);
-const name = new Uint8Array(narc.memory.buffer, narc.narc_get_isa(), isa.length + 1);
+const module = await WebAssembly.compile(bytes), imports = WebAssembly.Module.imports(module);
+assert.deepEqual(imports.filter(({ module, name, kind }) => `${module} ${name} ${kind}` !== "env memory memory"), []);
+const shared = imports.length > 0 ? new WebAssembly.Memory({ initial: 64, maximum: 32768, shared: true }) : undefined;
+const { exports: narc } = await WebAssembly.instantiate(module, { env: { memory: shared } }), memory = shared ?? narc.memory;
+narc._initialize();
+const view = () => new DataView(memory.buffer), place = narc.malloc(4096);
+const name = new Uint8Array(memory.buffer, narc.narc_get_isa(), isa.length + 1);
 assert.equal(String.fromCharCode(...name), `${isa}\0`);
 assert.equal(narc.narc_create_shapes(0, place), 0);
 const shapes = view().getUint32(place, true);

@@ -131,6 +131,23 @@ TEST(refuses_owners) {
     expect_untouched();
 }
 
+/* A world that an index without worlds has not: it would find bodies of all. */
+TEST(refuses_worlds_that_are_none) {
+    const narc_index_query search = {.world = NARC_ARRAY(first_body)};
+    const narc_ray_options by_rays = {.search = search};
+    const narc_nearest_options by_points = {.search = search};
+    narc_pairs pairs;
+    REFUSED(ARGUMENT, "options.search.world is asked for",
+            narc_cast_rays(room.index, store, &bodies, &rays, &by_rays, out.hits, ROWS, &error));
+    REFUSED(ARGUMENT, "options.search.world is asked for",
+            narc_find_nearest(room.index, store, &bodies, &points, &by_points, out.distances, ROWS, &error));
+    REFUSED(ARGUMENT, "query.world is asked for",
+            narc_query_index(room.index, room.boxes, BODIES, &search, &pairs, &error));
+    REFUSED(ARGUMENT, "search.world is asked for",
+            narc_cast_shapes(room.index, store, &bodies, &bodies, NULL, &search, NULL, out.impacts, ROWS, &error));
+    expect_untouched();
+}
+
 TEST(refuses_movers) {
 #define CAST(index, shapes, bodies, movers, motions, search, options, rows, capacity)                                  \
     narc_cast_shapes(index, shapes, bodies, movers, motions, search, options, rows, capacity, &error)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """python3 cases.py PROGRAM FOLDER [--sand SHAPES] [--jobs N] CASE ...: runs cases of apps/dem/README.md and tells what
 they found; inputs, tables and pictures go to FOLDER. --small PROGRAM FOLDER CASE: a small version, which must be right.
---seed N: other places and sizes of grains than those of the inputs.
-CASE is one of the functions below: sand (with --sand), pile, biaxial, hopper; or all."""
+--seed N, --seeds M: of places and sizes; bars are deviations over them.
+CASE is one of the functions below: sand (with --sand), pile, packing, shear, hopper; or all."""
 import argparse
 import concurrent.futures
 import json
@@ -24,10 +24,15 @@ SHAPES = os.path.join(HERE, "shapes.json")
 
 
 class Cases:
-    def __init__(self, program, folder, small, sand, jobs, seed):
+    def __init__(self, program, folder, small, sand, jobs, seed, seeds):
         self.program, self.folder = os.path.abspath(program), folder
         self.small, self.sand, self.seed = small, sand, seed
+        self.seeds = range(seed, seed + (1 if small else seeds))
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
+
+    def bar(self, values):
+        """The mean, and the deviation over seeds."""
+        return "%.4f" % np.mean(values) + (" +- %.4f" % np.std(values, ddof=1) if len(values) > 1 else "")
 
     def run(self, case, name, change, shapes=SHAPES):
         """The case's input, changed, in a folder of its own, and run there. Returns the folder and the input."""
@@ -55,7 +60,8 @@ class Cases:
 
     def save(self, figure, name):
         figure.tight_layout()
-        figure.savefig(os.path.join(self.folder, name), dpi=110)
+        for kind in ".png", ".pdf":
+            figure.savefig(os.path.join(self.folder, name + kind), dpi=110, bbox_inches="tight")
 
 
 def find_frames(folder, case):
@@ -63,7 +69,7 @@ def find_frames(folder, case):
                   if re.fullmatch(case + r"-\d+\.csv", name))
 
 
-# ----------------------------------------------------------------------------------------------- piles, biaxial tests
+# ----------------------------------------------------------------------------------------------- piles, cells
 
 
 def names_of(shapes, begin):
@@ -96,13 +102,15 @@ def run_pile(cases, name, shapes, begin):
 
 def pile(cases):
     """Angles of repose. The flanks of discs, which roll, are less steep than those of long grains, which do not."""
-    kinds = [("pile-disc", SHAPES, "disc"), ("pile-long", SHAPES, "long")]
-    angles = list(cases.pool.map(lambda kind: run_pile(cases, *kind), kinds))
-    means = [np.mean(both) for both in angles]
+    means = []
+    for begin in "disc", "long":
+        both = []
+        for cases.seed in cases.seeds:
+            both += run_pile(cases, "pile-%s-%d" % (begin, cases.seed), SHAPES, begin)
+        means.append(np.mean(both))
+        cases.tell("pile of %s: angle of repose %s degrees, both sides of each" % (begin, cases.bar(both)))
     # 50 grains along the table tell it within some degrees.
-    cases.tell("\n".join("%s: %.1f and %.1f degrees, mean %.1f" % (kind[0], both[0], both[1], np.mean(both))
-                         for kind, both in zip(kinds, angles)),
-               10 < means[0] < 27, 22 < means[1] < 45, means[1] > means[0] + 4)
+    cases.tell("", 10 < means[0] < 27, 22 < means[1] < 45, means[1] > means[0] + 4)
 
 
 def sand(cases):
@@ -115,71 +123,78 @@ def sand(cases):
     grains.draw(last, os.path.join(cases.folder, "flow.png"), color="none", forces=False)
 
 
-def run_biaxial(cases, name, shapes, begin, friction):
-    """Contacts of a grain that is no rattler and the share of rattlers before shear; strains and stresses from there;
-    the angle of friction, over the last third: its sine is (s_yy - s_xx) / (s_yy + s_xx)."""
+def run_cell(cases, name, change):
+    """A periodic cell of discs of 0.7 to 1 that holds a stress of 1 (kn is 1000) with its own sides: no walls."""
 
-    def change(world):
-        filling, walls = world["grains"][0], {wall["name"]: wall for wall in world["walls"]}
-        filling["shapes"], world["contact"]["friction"] = names_of(shapes, begin), friction
-        count = 289 if cases.small else 1250
-        smaller = math.sqrt(count / 5000)
-        half = 57 * smaller + 1
-        filling.update(count=count, region=[-half, -half, half, half])
-        for wall in walls.values():
-            wall["plate"]["point"] = [math.copysign(half, x) if x else 0 for x in wall["plate"]["point"]]
-            if "servo" in wall:
-                wall["servo"]["gain"] /= smaller
-        world["stages"][0]["duration"], world["output"]["every"] = 40 * round(15 * smaller + 1), 5
-        world["stages"][1]["walls"]["top"]["velocity"] = [0, -0.01 * smaller]
-        world["stages"][1]["duration"] = 250 if cases.small else 500
+    def begin(world):
+        count = 300 if cases.small else 1000
+        side = 1.15 * math.ceil(math.sqrt(count))
+        world["boundary"].update(x=[0, side], y=[0, side])
+        world["grains"][0].update(count=count, region=[0, 0, side, side])
+        change(world)
 
-    folder, world = cases.run("biaxial", name, change, shapes)
-    pressed, table = world["stages"][0]["duration"], grains.read_table(os.path.join(folder, "biaxial.csv"))
-    start = int(np.argmin(abs(table["time"] - pressed)))
-    if min(table["stress_xx"][start], table["stress_yy"][start]) < 0.9:
-        sys.exit("biaxial: the first stage ends before the stress is there")
-    bearing = grains.read_table(find_frames(folder, "biaxial")[round(pressed / world["output"]["every"])],
-                         )["bearing"]
-    # A plate's place is the middle of its block, so distances of plates count from those at the start, which are known.
-    size = 2 * next(wall["plate"]["point"][0] for wall in world["walls"] if wall["name"] == "right")
-    wide, high = [size + (table[b] - table[a]) - (table[b][0] - table[a][0])
-                  for a, b in (("left_x", "right_x"), ("bottom_y", "top_y"))]
-    strain = 1 - high[start:] / high[start]
-    loss = 1 - (wide * high)[start:] / (wide * high)[start]
-    xx, yy = table["stress_xx"][start:], table["stress_yy"][start:]
-    sine = (yy - xx) / (yy + xx)
-    angle = math.degrees(math.asin(sine[strain > strain[-1] * 2 / 3].mean()))
-    return bearing[bearing > 0].mean(), np.mean(bearing == 0), angle, strain, sine, loss
+    return cases.run("cell", name, begin)
 
 
-def biaxial(cases):
-    """Discs without friction carry a load with 4 contacts each in the limit of small overlaps, counting those with
-    walls once, so a little less in a small box; with friction it is between 3 and 4. Their angle of friction is 5 to 6
-    degrees, and 15 to 20 with friction of 0.5; 289 of them tell it within 5."""
-    kinds = [("biaxial-smooth", SHAPES, "disc", 0), ("biaxial-disc", SHAPES, "disc", 0.5)]
-    kinds += [("biaxial-sand", cases.sand, "", 0.5)] if cases.sand else []
-    found = list(cases.pool.map(lambda kind: run_biaxial(cases, *kind), kinds))
-    smooth, rough = found[:2]
-    cases.tell("\n".join("%s: contacts %.3f, rattlers %.3f, angle of friction %.1f" % ((kind[0],) + one[:3])
-                         for kind, one in zip(kinds, found)),
-               3.7 < smooth[0] < 4.2, smooth[1] < 0.15, smooth[2] < 11, 3 < rough[0] < 3.6, 10 < rough[2] < 25,
-               rough[2] > smooth[2] + 3)
+def packing(cases):
+    """Discs without friction are jammed by a small stress at 0.84 of the area (O'Hern and others 2003), with 4 contacts of a
+    grain that bears."""
+
+    def one(seed):
+        cases.seed = seed
+
+        def change(world):
+            world["contact"]["friction"] = 0
+            world["stages"] = [{"name": "press", "duration": 120 if cases.small else 600}]
+
+        folder, world = run_cell(cases, "packing-%d" % seed, change)
+        table = grains.read_table(os.path.join(folder, "cell.csv"))
+        last = grains.read_table(find_frames(folder, "cell")[-1])
+        share = np.sum(np.pi / 4 * last["size"] ** 2) / (table["width"][-1] * table["height"][-1])
+        return share, last["bearing"][last["bearing"] > 0].mean()
+
+    found = np.array([one(seed) for seed in cases.seeds])
+    cases.tell("packing: %s of the area is discs (0.842, O'Hern 2003), %s contacts (4)"
+               % tuple(map(cases.bar, found.T)), 0.82 < found[:, 0].mean() < 0.86, 3.7 < found[:, 1].mean() < 4.3)
+
+
+def shear(cases):
+    """Simple shear at constant pressure: the ratio of shear stress to pressure and the share of the area, over the inertial
+    number I = rate d sqrt(density / pressure)."""
+
+    def one(seed, friction, rate):
+        cases.seed = seed
+
+        def change(world):
+            world["contact"]["friction"] = friction
+            world["boundary"]["shear"] = 0
+            time = (1 if cases.small else 2) / rate
+            world["stages"] = [{"name": "press", "duration": 100}, {"name": "shear", "duration": time, "shear": rate,
+                                                                   "strain": {"x": {"rate": 0}}}]
+
+        folder, world = run_cell(cases, "shear-%g-%g-%d" % (friction, rate, seed), change)
+        table = grains.read_table(os.path.join(folder, "cell.csv"))
+        late = table["time"] > 100 + world["stages"][1]["duration"] / 2
+        ratio = -0.5 * (table["stress_xy"] + table["stress_yx"]) / table["stress_yy"]
+        return ratio[late].mean()
+
+    rates = [0.03] if cases.small else [0.003, 0.01, 0.03, 0.1]
+    means = {}
+    for friction in 0, 0.5:
+        found = np.array([[one(seed, friction, rate) for rate in rates] for seed in cases.seeds])
+        means[friction] = found
+        for rate, values in zip(rates, found.T):
+            cases.tell("shear: friction %g, I %.3g: shear stress by pressure %s" % (friction, 0.85 * rate, cases.bar(values)))
+    cases.tell("shear: da Cruz and others 2005 have 0.11 and 0.25 to 0.28 for small I", means[0].mean() < means[0.5].mean(),
+               0.05 < means[0].mean() < 0.25, 0.2 < means[0.5].mean() < 0.45)
     if cases.small:
         return
-    pyplot = grains.open_plots()
-    figure, both = pyplot.subplots(1, 2, figsize=(9, 3.8))
-    for kind, one in zip(kinds, found):
-        for axes, values in zip(both, (one[4], 100 * one[5])):
-            axes.plot(100 * one[3], values, label="%s, friction %g" % (kind[2] or "sand", kind[3]))
-    for axes, label in zip(both, ("sine of the angle of friction", "loss of area, %")):
-        axes.set(xlabel="strain, %", ylabel=label)
-        axes.legend()
-    cases.save(figure, "biaxial.png")
-    if cases.sand:
-        last = find_frames(os.path.join(cases.folder, "biaxial-sand"), "biaxial")[-1].replace(".csv", ".vtk")
-        grains.draw(last, os.path.join(cases.folder, "forces.png"), color="coordination", width=6,
-                    region=[-22, -22, -6, -12.7])
+    figure, axes = grains.open_plots().subplots(figsize=(5, 3.8))
+    for friction, found in means.items():
+        axes.errorbar(0.85 * np.array(rates), found.mean(0), found.std(0), fmt="o-", capsize=3, label="friction %g" % friction)
+    axes.set(xlabel="inertial number I", ylabel="shear stress by pressure", xscale="log", ylim=(0, None))
+    axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
+    cases.save(figure, "shear")
 
 
 # ----------------------------------------------------------------------------------------------- hoppers
@@ -234,24 +249,25 @@ def hopper(cases):
         return
     axes.set(xlabel="opening, grains", ylabel="flow^(2/3)", xlim=(0, 20), ylim=(0, None))
     axes.legend()
-    cases.save(figure, "hopper.png")
+    cases.save(figure, "hopper")
 
 
 # ----------------------------------------------------------------------------------------------- the command
 
 
 def main():
-    known = {case.__name__: case for case in (sand, pile, biaxial, hopper)}
+    known = {case.__name__: case for case in (sand, pile, packing, shear, hopper)}
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--small", action="store_true")
     parser.add_argument("--sand", help="a file of fitted grains")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("program")
     parser.add_argument("folder")
     parser.add_argument("cases", nargs="+", choices=list(known) + ["all"])
     options = parser.parse_args()
-    cases = Cases(options.program, options.folder, options.small, options.sand, options.jobs, options.seed)
+    cases = Cases(options.program, options.folder, options.small, options.sand, options.jobs, options.seed, options.seeds)
     for name in known if options.cases == ["all"] else options.cases:
         known[name](cases)
 

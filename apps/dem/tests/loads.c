@@ -14,7 +14,7 @@ static double sample_reach(const dem *d, const dem_shape *shape) {
     double reach = 0;
     for (uint32_t k = 0; k < shape->outline_count; k++) {
         narc_arc arcs[NARC_MAX_ARCS];
-        const size_t count = narc_get_arcs(d->store, shape->first_outline + k, arcs);
+        const size_t count = narc_get_arcs(d->store, d->outlines[shape->first_outline + k].stored, arcs);
         for (int i = 0; i < 100000; i++) {
             narc_point p;
             assert_true(narc_find_support(arcs, count, cos(i * PI / 50000), sin(i * PI / 50000), &p, NULL));

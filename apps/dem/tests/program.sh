@@ -184,8 +184,8 @@ wrong 's/-9.81\]/-9.81, 0]/' "gravity: is not a list of 2 numbers"
 wrong 's/"x": \[0, 4\]/"x": [4, 0]/' "boundary.x: is not a range \[low, high\] '\[4,0\]'"
 wrong 's/"x": \[0, 4\]/"x": [0, 1]/' "the periodic cell is too small"
 wrong 's/"x": \[0, 4\]/"y": [0, 20]/' "wall 'floor': a plate with normal 0, 1 crosses a periodic border"
-wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/; s/"gravity": \[1, -9\], //' "a sheared cell is periodic in x and y, and has neither walls nor gravity"
-wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/' "stages\[1\].gravity: is not for a sheared cell"
+wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/; s/"gravity": \[1, -9\], //' "a cell that is sheared or strained is periodic in x and y, and has neither walls nor gravity"
+wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/' "stages\[1\].gravity: is not for a sheared or strained cell"
 wrong 's/"friction": 0.4/"friction": 0.4, "shear": 1/' "stages\[1\].shear: is of a cell whose boundary has shear '1'"
 wrong 's/"name": "steel"/"name": "sand"/' "materials\[1\].name: is the name of another material 'sand'\|materials\[1\].name: is the name of another material"
 wrong 's/"shapes.json"/"none.json"/' "\|dem: none.json"
@@ -229,8 +229,8 @@ wrong 's/\["floor", "block"\]/["floor", "lid"]/' "walls\[2\].servo.between\[1\]:
 wrong 's/"stress": 100/"force": 100/' "walls\[2\].servo.between: is for stress, not for force"
 wrong 's/"between": \["floor", "block"\], //' "walls\[2\].servo.between: is missing"
 wrong 's/"direction": \[0, -1\]/"direction": [1, 0]/' "walls\[2\].servo.direction: runs along the plate, which has no ends '\[1,0\]'"
-wrong 's/"gain": 1, "max_speed": 1}/"gain": 1, "max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
-wrong 's/"block": {"spin": -1}/"lid": {"velocity": [1, 0]}/' "stages\[1\].walls.lid.velocity: is of a wall that its servo moves"
+wrong 's/"gain": 1, "max_speed": 1}/"gain": 1, "max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is not across the direction of the wall's servo"
+wrong 's/"block": {"spin": -1}/"lid": {"velocity": [1, 0.1]}/' "stages\[1\].walls.lid.velocity: is not across the direction of the wall's servo"
 sed 's/"law": "hertz"/"law": "hertz", "kn": 1e7/' hertz.json >bad.json
 fails "kn with hertz" "dem: bad.json: contact.kn: is not of the Hertz law: stiffness comes from the materials" bad.json
 
@@ -262,11 +262,13 @@ grep -q 'time step' err.txt && miss "a step that is short enough is told"
 # Too fast: which grain, and what to do.
 sed 's/"velocity": \[1, 0\]/"velocity": [300, -800]/' good.json >bad.json
 fails "too fast" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json
-# Ground is no grain.
+# Ground is no grain; it may be a wall.
 sed 's/\]}$/, {"name": "ground", "chain": {"closed": false, "arcs": [{"center": [0, 0], "radius": 0, "start": 1.5707963267948966, "end": 1.5707963267948966}, {"center": [-2, 0], "radius": 0, "start": 1.5707963267948966, "end": 1.5707963267948966}]}}]}/' \
     shapes.json >ground.json
-sed 's/"shapes.json"/"ground.json"/' good.json >bad.json
-fails "a chain" "dem: ground.json: shape 'ground' is a chain" bad.json
+sed 's/"shapes.json"/"ground.json"/; s/\["disc", "brick"\]/["ground"]/' good.json >bad.json
+fails "a chain" "dem: bad.json: grains\[0\].shapes: names a chain, which only walls can be" bad.json
+sed 's/"shapes.json"/"ground.json"/; s/"plate": {"point": \[0, 0\], "normal": \[0, 1\]}/"shape": "ground", "size": 1/' good.json >bad.json
+fails "a size of a chain" "dem: bad.json: walls\[0\].size: is not for a chain" bad.json
 # Grains that overlap before the run begins.
 sed 's/"at": \[2, 9.5\]/"at": [2, 0.3]/' good.json >bad.json
 fails "grains in a wall" "dem: bad.json: step 0: grain 28 overlaps wall .*They are placed so" bad.json

@@ -13,7 +13,7 @@ static dem_settings sheared_settings(void) {
     dem_settings settings = plain_settings();
     settings.periodic_x = settings.periodic_y = settings.sheared = true;
     settings.high.x = settings.high.y = SIDE;
-    settings.shear = RATE;
+    settings.rates.shear = RATE;
     return settings;
 }
 

@@ -3,6 +3,7 @@
  * test_lammps.cpp - the styles against LAMMPS' own, against closed forms, and against themselves on other ranks.
  *   mpirun -np 4 test_lammps TEST
  */
+#include <fstream>
 #include <cstring>
 #include <map>
 
@@ -444,6 +445,69 @@ void test_rough() {
     check_at_most("and moves", std::fabs(heap.states()[0].x - before - 0.1), 1e-12);
 }
 
+/* On a chain of nine pieces a disc without friction keeps its speed; in a bowl, a concave arc, it is a pendulum of the length
+ * R - r. */
+void test_ground() {
+    const double pi = std::acos(-1.0);
+    std::ofstream file("ground.json");
+    file.precision(17);
+    file << "{\"shapes\": [{\"name\": \"flat\", \"chain\": {\"closed\": false, \"arcs\": [";
+    for (int k = 0; k < 9; k++)
+        file << (k ? ", " : "") << "{\"center\": [" << 24 - 3 * k << ", 0], \"radius\": 0, \"start\": " << pi / 2
+             << ", \"end\": " << pi / 2 << "}";
+    file << "]}}, {\"name\": \"bowl\", \"chain\": {\"closed\": false, \"arcs\": [{\"center\": [0, 0], \"radius\": -5, "
+         << "\"start\": " << 0.9 * pi << ", \"end\": " << 0.1 * pi << "}]}}]}\n";
+    file.close();
+    for (const bool bowl : {false, true}) {
+        const double h = pi / 4 / 1e5, begin = 0.05, length = 4.5;
+        const Grain on_flat = {1, 1.5, 2.5 - h, 0.5, 0, 1, 0, 0};
+        const Grain in_bowl = {1, 12 + length * std::sin(begin), 12 - length * std::cos(begin), 0.5, 0, 0, 0, 0};
+        Packing packing = {24, 24, {bowl ? in_bowl : on_flat}};
+        Simulation one(MPI_COMM_WORLD);
+        one.create(packing, "f f p");
+        const std::string law = "hooke/history 1e5 NULL 0 NULL 0 0";
+        const double time = bowl ? pi * std::sqrt(length) * (1 + begin * begin / 16) : 20;
+        one.run(grains("disc", "narc/" + law) + "fix ground all wall/narc " + law + " chain ground.json " +
+                (bowl ? "bowl 12 12 0\n" : "flat 0 2 0\n") +
+                "fix gravity all gravity 1 vector 0 -1 0\ntimestep 5e-4\nrun " +
+                std::to_string(static_cast<int>(time / 5e-4 + 0.5)));
+        const State s = one.states()[0];
+        if (bowl)
+            check_at_most("half a swing in a bowl", std::fabs(s.x - 12 + length * std::sin(begin)), 1e-3);
+        else
+            check_at_most("speed on a chain", std::fabs(s.velocity_x - 1), 1e-9);
+    }
+}
+
+/* Two discs rest where the spring bears the cohesion, and do not pull further apart than its range. */
+void test_cohesion() {
+    for (const double gap : {-0.01, 0.01, 0.03}) {
+        Packing packing = {10, 10, {{1, 4, 5, 0.5, 0, 0, 0, 0}, {1, 5 + gap, 5, 0.5, 0, 0, 0, 0}}};
+        Simulation both(MPI_COMM_WORLD);
+        both.create(packing);
+        both.run(grains("disc", "narc/hooke/history 1000 NULL 0 NULL 0.5 1 cohesion 10 0.02") + "run 0");
+        check_at_most("cohesion", std::fabs(both.states()[0].force_x - (gap < 0 ? 0 : gap < 0.02 ? 5 : 0)), 1e-9);
+    }
+}
+
+/* A gas with friction and without dashpots: with the rescaled law its energy only falls. */
+void test_mindlin() {
+    Packing packing = make_lattice(10, 10, 0.9, 0.1, 1, 5);
+    Simulation gas(MPI_COMM_WORLD);
+    gas.create(packing);
+    gas.run(grains("disc", "narc/mindlin/rescale 1e5 1e5 0 NULL 50 0") + "timestep 1e-4\nrun 1");
+    double before = kinetic_energy(gas) + gas.pair_energy(), most = 0;
+    const double first = before;
+    for (int k = 0; k < 40; k++) {
+        gas.run("run 500 pre no post no");
+        const double now = kinetic_energy(gas) + gas.pair_energy();
+        most = std::max(most, now - before);
+        before = now;
+    }
+    check_at_most("energy from friction", most / first, 1e-3);
+    check_at_most("energy that is left", before / first, 0.99);
+}
+
 /* A disc in a pocket of three boxes that turn about a point goes round with them: it has the velocity w r, the spin w,
  * and the walls' force on it is m w^2 r towards the point. Its spring is m w^2 r / kn = 1e-5
  * deep, and friction acts so much from the surface. */
@@ -653,6 +717,9 @@ const std::map<std::string, void (*)()> tests = {
     {"restart", test_restart},
     {"walls", test_walls},
     {"rough", test_rough},
+    {"ground", test_ground},
+    {"cohesion", test_cohesion},
+    {"mindlin", test_mindlin},
     {"flips", test_flips},
     {"by_atom", test_by_atom},
     {"plugin", test_plugin},

@@ -20,7 +20,7 @@ TABLE = 24.0
 class Pile:
     """Grains of a few shapes, of which row after row falls on the middle of a table."""
 
-    def __init__(self, count=300, corners=True, friction=FRICTION, seed=3):
+    def __init__(self, count=240, corners=True, friction=FRICTION, seed=3):
         random = np.random.default_rng(seed)
         self.friction = friction
         self.shapes = shapes = narc.Shapes()
@@ -102,7 +102,8 @@ class Pile:
         return found, push
 
     def slopes(self):
-        """(degrees, line) on the left and on the right, from the tops of columns between the foot and the summit."""
+        """(degrees, line) on the left and on the right, from the tops of columns between the foot and the summit, of which a side
+        may have too few."""
         here = self.place[:-1][(self.place[:-1, 1] > 0) & (np.abs(self.place[:-1, 0]) < TABLE / 2)]
         edges = np.arange(-TABLE / 2, TABLE / 2 + 0.01, 0.8)
         bins = np.digitize(here[:, 0], edges)
@@ -111,12 +112,14 @@ class Pile:
         out = []
         for side in (-1, 1):
             flank = tops[(side * (tops[:, 0] - summit) >= 0) & (tops[:, 1] < 0.9 * high) & (tops[:, 1] > 0.12 * high)]
+            if len(flank) < 2:
+                continue
             rise, foot = np.polyfit(*flank.T, 1)
             out.append((float(np.degrees(np.arctan(-side * rise))), np.array([[x, rise * x + foot] for x in flank[[0, -1], 0]])))
         return out
 
 
-def main(picture="dem.png", count=300, steps=16000):
+def main(picture="dem.png", count=240, steps=16000):
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -128,7 +131,7 @@ def main(picture="dem.png", count=300, steps=16000):
         pile = Pile(count, corners)
         found, push = pile.settle(steps)
         slopes = pile.slopes()
-        angle = np.mean([degrees for degrees, _ in slopes])
+        angle = np.mean([degrees for degrees, _ in slopes] or 0)
         print(f"{what}: {(pile.place[:-1, 1] > -1).sum()} of {count} grains stay, {len(push)} contacts, "
               f"angle of repose {angle:.1f} degrees")
         grains = pile.bodies[:-1]

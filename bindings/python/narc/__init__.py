@@ -12,6 +12,9 @@
 Answers are the same to the last bit on every processor and with any number of threads. Rows are structured arrays; bodies and
 columns stay in your arrays and are not copied. Errors are narc.Error (a ValueError) with `status`, `index`, `value`."""
 
+from importlib import import_module as _import_module
+from typing import Any as _Any
+
 from ._batch import (bodies, box_pairs, boxes, casts, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
                      refine, separations, validate)
 from ._fits import Fit, NamedShape, Outline, cut, fit, fit_chains, hull, read_shapes, write_shapes
@@ -22,6 +25,14 @@ from ._shapes import (Shapes, adjust, bounding_box, bounding_circle, center, con
                       mirror, move, outlines, perimeter, radius_range, support, union_mass, validate_arcs, weld)
 from ._tables import (AABB, ARC, BODY, BOX, CHAIN_ENTRY, CIRCLE, CONSTANTS, CONTACT, DISTANCE, IMPACT, MANIFOLD, MASS, RAY_HIT,
                       REFINED_CONTACT, TOUCH_EVENT)
+
+
+
+def __getattr__(name: str) -> _Any:
+    if name == "plot":  # which needs matplotlib
+        return _import_module("narc.plot")
+    raise AttributeError(f"module 'narc' has no attribute {name!r}")
+
 
 __all__ = ["AABB", "ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "CONTACT", "Contacts", "DISTANCE", "Error",
            "Fit", "IMPACT", "Index", "MANIFOLD", "MASS", "NamedShape", "NoAnswer", "OutOfRange", "Outline", "RAY_HIT",

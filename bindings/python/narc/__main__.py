@@ -63,7 +63,7 @@ def write_pages(folder: pathlib.Path) -> None:
     things = [(name, getattr(narc, name)) for name in narc.__all__ if callable(getattr(narc, name))]
     for name, thing in sorted(things, key=lambda pair: (not isinstance(pair[1], type), pair[0])):
         lines += [f"## narc.{name}", "", "```python", f"narc.{name}{signature(thing)}", "```", "", words(thing), ""]
-        own = vars(thing) if isinstance(thing, type) else {}
+        own: dict[str, Any] = dict(vars(thing)) if isinstance(thing, type) else {}
         for method, value in own.items():
             if not method.startswith("_") and words(value):
                 lines += [f"### narc.{name}.{method}{signature(getattr(thing, method))}", "", words(value), ""]

@@ -28,11 +28,24 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
     places = np.asarray(xy, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 2:
         raise ValueError(f"xy: the shape is to be (n, 2), not {places.shape}")
-    out = np.zeros(len(places), BODY)
-    out["xy"] = places
-    out["cosine"], out["sine"] = np.cos(angle), np.sin(angle)
-    out["scale"], out["shape"] = scale, shape
+    count = len(places)
+    out = np.zeros(count, BODY)
+    turn = _each("angle", angle, count)
+    out["xy"], out["cosine"], out["sine"] = places, np.cos(turn), np.sin(turn)
+    out["scale"], out["shape"] = _each("scale", scale, count), _each("shape", shape, count, whole=True)
     return out
+
+
+def _each(name: str, given: ArrayLike, count: int, whole: bool = False) -> NDArray[Any]:
+    """One number for all, or one for each."""
+    array = np.asarray(given)
+    if array.dtype.kind not in ("iu" if whole else "fiub") and array.size:
+        raise TypeError(f"{name}: {'whole ' if whole else ''}numbers are wanted, not {array.dtype}")
+    if array.ndim and array.shape != (count,):
+        raise ValueError(f"{name}: the shape is to be ({count},), not {array.shape}")
+    if whole and array.size and not (0 <= array.min() and array.max() < 2**32):
+        raise _narc.OutOfRange(f"{name}: {array.min()} to {array.max()} are no numbers of shapes")
+    return array
 
 
 def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
@@ -96,7 +109,8 @@ def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies
     if others is None:
         return box_pairs(around, threads=threads, **(filters or {}))
     index = _narc.Handle("Index")
-    _narc.build_index(index, boxes(shapes, others, margin=margin / 2, threads=threads, **options), {"workers": threads, **options})
+    theirs = boxes(shapes, others, margin=margin / 2, threads=threads, **options)
+    _narc.build_index(index, theirs, {"workers": threads, **options})
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
@@ -107,6 +121,8 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
     if "origin" in rest:
         filters = {**(filters or {}), "origin": rest.pop("origin")}
     if given is None:
+        if not isinstance(margin, (int, float, np.number)):
+            raise TypeError(f"margin: a number is wanted, not {margin!r}")
         if not margin < np.inf:
             raise ValueError("margin: without pairs it must be finite")
         given = pairs(shapes, bodies, margin=max(margin, 0.0), others=others, threads=threads, **(filters or {}))
@@ -119,13 +135,25 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
     return given, {**(given if isinstance(given, dict) else {"ab": given}), "other_bodies": others}, rest
 
 
-def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any, count: int) -> None:
+def _fill(call: Callable[..., int], shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any], out: Any,
+          count: int) -> None:
     """Something for each pair, where its number says."""
     if count <= SLICE or {"selection", "first", "count"} & query.keys():
         call(shapes, bodies, told, query, out)
         return
     for part in slices(count):
         call(shapes, bodies, told, {**query, "first": part.start, "count": part.stop - part.start}, out)
+
+
+def _in_slices(call: Callable[..., int], room: int) -> Callable[..., int]:
+    """A call that lists rows, for some of the pairs at a time."""
+    def ask(shapes: Shapes, bodies: Bodies, told: Any, query: dict[str, Any] | None, rows: Rows) -> int:
+        count = 0
+        for part in slices(room):
+            some = {**(query or {}), "first": part.start, "count": part.stop - part.start}
+            count += call(shapes, bodies, told, some, rows[count:])
+        return count
+    return ask
 
 
 def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bodies: Bodies, given: Any, margin: float,
@@ -139,17 +167,13 @@ def _rows(call: Callable[..., int], kind: np.dtype[np.void], shapes: Shapes, bod
         rows = np.zeros(room, kind)
     elif (rows := out).dtype is not kind and rows.dtype != kind:
         raise TypeError(f"out: rows of {kind} are wanted")
-    if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys():
-        count = call(shapes, bodies, told, query, rows)
-    else:
-        count = 0
-        for part in slices(room):
-            count += call(shapes, bodies, told, {**(query or {}), "first": part.start, "count": part.stop - part.start},
-                          rows[count:])
+    ask = call if room <= SLICE or {"dense", "selection", "first", "count"} & options.keys() else _in_slices(call, room)
+    count = ask(shapes, bodies, told, query, rows)
     if count > len(rows):
         if out is not None:
             raise ValueError(f"out has {len(rows)} rows, {count} are needed")
-        return _rows(call, kind, shapes, bodies, given, margin, others, np.zeros(count, kind), threads, options)
+        rows = np.zeros(count, kind)
+        ask(shapes, bodies, told, query, rows)
     if options and options.get("dense"):
         count = room
     if count != len(rows):
@@ -238,7 +262,7 @@ def _hold_turns(shapes: Shapes, bodies: Bodies, around: Rows) -> None:
     shape = np.asarray(own["shape"] if "shape" in names else 0)
     scale = np.asarray(own["scale"] if "scale" in names else 1.0, np.float64)
     numbers, which = np.unique(shape, return_inverse=True)
-    extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max() for arcs in map(shapes.arcs, numbers)])
+    extents = np.array([(np.hypot(*arcs["center"].T) + arcs["radius"]).max(initial=0) for arcs in map(shapes.arcs, numbers)])
     grow = np.nextafter((2 * scale * extents[which].reshape(shape.shape)).astype(np.float32), np.float32(np.inf))
     around["min"] = np.nextafter(around["min"] - np.atleast_1d(grow)[:, None], np.float32(-np.inf))
     around["max"] = np.nextafter(around["max"] + np.atleast_1d(grow)[:, None], np.float32(np.inf))
@@ -260,7 +284,8 @@ def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: PairsLike | 
     if pairs is None and count_of(bodies):
         filters, rest = split(options, "narc_pair_filter")
         reach = {"origin": rest.pop("origin")} if "origin" in rest else {}
-        around = boxes(shapes, bodies, margin=max(float(rest.get("target", 0.0)), 0.0), motion=ways["xy"], threads=threads, **reach)
+        margin = max(float(rest.get("target", 0.0)), 0.0)
+        around = boxes(shapes, bodies, margin=margin, motion=ways["xy"], threads=threads, **reach)
         if angle is not None:
             _hold_turns(shapes, bodies, around)
         found = told = box_pairs(around, threads=threads, **(filters or {}))

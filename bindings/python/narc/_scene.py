@@ -28,10 +28,17 @@ def _floats(given: ArrayLike) -> Any:
     return array.astype(np.float64) if array.dtype.kind in "iu" or array.size == 0 else array
 
 
+def _places(xy: ArrayLike) -> Any:
+    """Points (n, 2); one place is (1, 2)."""
+    points = _floats(xy)
+    return points[None] if points.shape == (2,) else points
+
+
 def _rays(xy: ArrayLike, motion: ArrayLike, fraction: Any) -> dict[str, Any]:
-    start = _floats(xy)
+    start, motion = _floats(xy), narrow(motion)
     place = {"x": float(start[0]), "y": float(start[1])} if start.shape == (2,) else {"xy": start}
-    return {**place, "motion": narrow(motion), "fraction": None if fraction is None else narrow(fraction)}
+    return {**place, "motion": motion[None] if motion.shape == (2,) else motion,
+            "fraction": None if fraction is None else narrow(fraction)}
 
 
 def _of_all(name: str) -> bool:
@@ -122,15 +129,15 @@ class Index(_narc.Handle):
         count = len(given["motion"])
         out = np.zeros(count * max(most, 1), RAY_HIT)
         search, options = _search(options, threads)
-        _ask(_narc.cast_rays, (self, self._shapes, self._bodies), {"rays": given, "options": {"search": search, "most": most, **options}},
-             out, count, max(most, 1))
+        _ask(_narc.cast_rays, (self, self._shapes, self._bodies),
+             {"rays": given, "options": {"search": search, "most": most, **options}}, out, count, max(most, 1))
         return out.reshape(-1, most) if most > 1 else out
 
     def nearest(self, xy: ArrayLike, *, distance: float = 0.0, most: int = 1, threads: int = 1, **options: Any) -> Rows:
-        """The bodies nearest to each point of `xy` (n, 2): rows of narc.DISTANCE, `count` 0 where there is none; (n, most) where
-        more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that the point is
-        within."""
-        points = _floats(xy)
+        """The bodies nearest to each point of `xy` (n, 2), or to one: rows of narc.DISTANCE, `count` 0 where there is none;
+        (n, most) where more than one is wanted. `distance`: only what is nearer; 0: any. `options`: inside, 1: only bodies that
+        the point is within."""
+        points = _places(xy)
         out = np.zeros(len(points) * max(most, 1), DISTANCE)
         search, options = _search(options, threads)
         _ask(_narc.find_nearest, (self, self._shapes, self._bodies),
@@ -138,7 +145,8 @@ class Index(_narc.Handle):
              max(most, 1))
         return out.reshape(-1, most) if most > 1 else out
 
-    def casts(self, movers: Bodies, motion: ArrayLike, angle: ArrayLike | None = None, *, threads: int = 1, **options: Any) -> Rows:
+    def casts(self, movers: Bodies, motion: ArrayLike, angle: ArrayLike | None = None, *, threads: int = 1,
+              **options: Any) -> Rows:
         """What each mover hits first on its way, `motion` (n, 2) while it turns by `angle`: rows of narc.IMPACT.
         `options` are those of narc_cast_options: target, tolerance, targets, front_only, parting."""
         count = count_of(movers)
@@ -156,19 +164,20 @@ def _index(shapes: Shapes, bodies: Bodies, options: dict[str, Any]) -> Index:
 
 def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> Rows:
     """How far each point of `xy` (n, 2) is from one body: from number `body`[k], or from body k. Rows of narc.DISTANCE."""
-    points = _floats(xy)
+    points = _places(xy)
     out = np.zeros(len(points), DISTANCE)
-    _ask(lambda xy, body, out: int(_narc.find_distances(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
-         out, len(points))
+    _ask(lambda xy, body, out: int(_narc.find_distances(shapes, bodies, xy, body, threads, out)), (),
+         {"points": points, "body": body}, out, len(points))
     return out
 
 
-def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> NDArray[np.bool_]:
+def inside(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *,
+           threads: int = 1) -> NDArray[np.bool_]:
     """Which points of `xy` (n, 2) are within body number `body`[k], one number for all, or body k: (n,) of bool."""
-    points = _floats(xy)
+    points = _places(xy)
     words = np.zeros((len(points) + 63) // 64, np.uint64)
-    _ask(lambda xy, body, out: int(_narc.find_inside(shapes, bodies, xy, body, threads, out)), (), {"points": points, "body": body},
-         words, len(points), bits=64)
+    _ask(lambda xy, body, out: int(_narc.find_inside(shapes, bodies, xy, body, threads, out)), (),
+         {"points": points, "body": body}, words, len(points), bits=64)
     return from_bits(words, len(points))
 
 

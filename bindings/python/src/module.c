@@ -207,7 +207,7 @@ static narc_status copy_user(const handle *contacts, const uint32_t *slots, size
 static narc_status get_arcs(const narc_shapes *shapes, size_t shape, narc_arc *out, size_t *out_count,
                             narc_error *error) {
     *out_count = narc_get_arcs(shapes, number(shape), out);
-    if (*out_count)
+    if (*out_count || narc_shape_flags(shapes, number(shape)) & NARC_SHAPE_HALF_PLANE)
         return NARC_OK;
     snprintf(error->message, sizeof error->message, "there is no shape %zu", shape);
     error->index = shape;
@@ -319,7 +319,8 @@ static bool read_signature(const call *of, signature *out) {
 
 static bool take_handle(frame *f, const argument *a, PyObject *given, int slot) {
     if (!PyObject_TypeCheck(given, handle_type) || ((handle *)given)->kind != a->kind) {
-        PyErr_Format(PyExc_TypeError, "%s: a narc.%s is wanted, not %R", a->name, kinds[a->kind], given);
+        PyErr_Format(PyExc_TypeError, "%s: a narc.%s is wanted, not %R", a->name, kinds[a->kind],
+                     (PyObject *)Py_TYPE(given));
         return false;
     }
     handle *const h = (handle *)given;
@@ -639,9 +640,8 @@ static PyObject *hear_of_fork(PyObject *self, PyObject *given) {
     (void)self;
     if (when == 0)
         before_fork();
-    else if (when > 0)
-        after_fork(when == 2);
-    fork_count += when == 2;
+    else if (when > 0 && after_fork(when == 2))
+        fork_count += when == 2;
     if (PyErr_Occurred())
         return NULL;
     Py_RETURN_NONE;

@@ -19,9 +19,9 @@ typedef struct work {
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t wanted = PTHREAD_COND_INITIALIZER, ended = PTHREAD_COND_INITIALIZER;
-static work *open;           /* what helpers may come to */
-static unsigned pool_size;   /* threads that there are */
-static unsigned spare_count; /* of them those that sleep */
+static work *open; /* what helpers may come to */
+static unsigned pool_size;
+static bool is_forking;
 
 static void take_tasks(work *w) {
     for (unsigned index; (index = atomic_fetch_add(&w->next, 1)) < w->count;)
@@ -41,11 +41,8 @@ static void *help(void *unused) {
     pthread_mutex_lock(&lock);
     for (;;) {
         work *w;
-        while (!(w = find_work())) {
-            spare_count++;
+        while (!(w = find_work()))
             pthread_cond_wait(&wanted, &lock);
-            spare_count--;
-        }
         w->helpers++;
         pthread_mutex_unlock(&lock);
         take_tasks(w);
@@ -56,16 +53,18 @@ static void *help(void *unused) {
     return NULL;
 }
 
-/* Where no more threads are to be had, those that there are do all. */
-static void want_helpers(unsigned count) {
+/* With the lock: as many helpers as all callers want. Where no more threads are to be had, those that there are do all. */
+static void want_helpers(void) {
     pthread_attr_t detached;
     pthread_t made;
-    if (pthread_attr_init(&detached))
+    unsigned count = 0;
+    for (const work *w = open; w; w = w->other)
+        count += w->count - 1;
+    if (pool_size >= count || pthread_attr_init(&detached))
         return;
     pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
-    for (unsigned more = spare_count; more < count && pool_size < MOST_THREADS; more++, pool_size++)
-        if (pthread_create(&made, &detached, help, NULL))
-            break;
+    while (pool_size < count && pool_size < MOST_THREADS && !pthread_create(&made, &detached, help, NULL))
+        pool_size++;
     pthread_attr_destroy(&detached);
 }
 
@@ -75,7 +74,7 @@ void run_in_threads(void *context, unsigned task_count, void (*task)(void *argum
     pthread_mutex_lock(&lock);
     w.other = open;
     open = &w;
-    want_helpers(task_count - 1);
+    want_helpers();
     pthread_cond_broadcast(&wanted);
     pthread_mutex_unlock(&lock);
     take_tasks(&w);
@@ -89,14 +88,24 @@ void run_in_threads(void *context, unsigned task_count, void (*task)(void *argum
     pthread_mutex_unlock(&lock);
 }
 
-void before_fork(void) { pthread_mutex_lock(&lock); }
+bool before_fork(void) {
+    const bool is_first = !is_forking;
+    if (is_first)
+        pthread_mutex_lock(&lock);
+    is_forking = true;
+    return is_first;
+}
 
-void after_fork(int is_child) {
+bool after_fork(bool is_child) {
+    if (!is_forking)
+        return false;
+    is_forking = false;
     if (is_child) {
         open = NULL;
-        pool_size = spare_count = 0;
+        pool_size = 0;
         wanted = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
         ended = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
     }
     pthread_mutex_unlock(&lock);
+    return true;
 }

@@ -6,6 +6,8 @@
 #ifndef NARC_THREADS_H
 #define NARC_THREADS_H
 
+#include <stdbool.h>
+
 #include <narc_workers.h>
 
 enum { MOST_THREADS = 256 };
@@ -13,8 +15,9 @@ enum { MOST_THREADS = 256 };
 /* narc_workers.run */
 void run_in_threads(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument);
 
-/* Around a fork, whose child begins threads of its own. */
-void before_fork(void);
-void after_fork(int is_child);
+/* Around a fork, whose child begins threads of its own; with Python's lock. Called several times they do so once, and tell
+ * when it is. */
+bool before_fork(void);
+bool after_fork(bool is_child);
 
 #endif

@@ -233,6 +233,7 @@ def test_lists_are_columns(scene):
     assert (index.rays((3, 3), ways) == index.rays(np.array([(3, 3)] * 3), np.float32(ways))).all()
     assert (narc.distances(shapes, lists, [[0, 0], [1, 1]], [3, 4]) == narc.distances(shapes, plain, np.eye(2)[[0, 0]] * [0, 0] + [[0], [1]],
                                                                                   np.array([3, 4]))).all()
+    assert index.nearest((3, 4)).tobytes() == index.nearest([[3, 4]]).tobytes() and narc.inside(shapes, lists, (3, 4), 0).shape == (1,)
     for wrong, words in (([[0, 1], [2]], "pairs: "), ([[0.5, 1]], "pairs: a list of whole numbers is wanted, not of float64"),
                          (["ab"], "pairs: a list of whole numbers is wanted"), ([[0, -1]], "pairs.*item 0 is -1")):
         with pytest.raises((TypeError, ValueError), match=words):
@@ -279,7 +280,7 @@ REFUSED = [
     (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], world=np.zeros(300, "u4")), TypeError, "world: this is for pairs that are"),
     (lambda s: narc.separations(s.shapes, s.bodies), ValueError, "margin: without pairs it must be finite"),
     (lambda s: narc.Index(s.shapes, s.bodies).rays((0, 0), [["a", "b"]]), TypeError, "motion"),
-    (lambda s: narc.Index(s.shapes, s.bodies).nearest([1, 2]), ValueError, r"points: the shape is to be \(n, 2\)"),
+    (lambda s: narc.Index(s.shapes, s.bodies).nearest([1, 2, 3]), ValueError, r"points: the shape is to be \(n, 2\)"),
     (lambda s: narc.contacts(s.shapes, np.zeros(3, narc.MANIFOLD), [[0, 1]]), TypeError, "format is narc_manifold"),
     (lambda s: narc._narc.compute_mass(s.shapes.arcs(0), np.zeros(0, narc.MASS)), ValueError, "out has 0 rows, 1 are needed"),
     (lambda s: narc._narc.build_box(1, 1, 0, np.zeros(4, narc.ARC)), ValueError, "out has 4 rows, 64 are needed"),
@@ -287,6 +288,12 @@ REFUSED = [
     (lambda s: narc._narc.find_overlaps(s.shapes, s.bodies, np.zeros((65, 2), "u4"), None, np.zeros(1, "u8")), ValueError,
      "out has 1 rows, where there are 2"),
     (lambda s: narc.bodies([1, 2, 3]), ValueError, "xy: the shape"),
+    (lambda s: narc.bodies([[1, 2]], "east"), TypeError, "angle: numbers are wanted"),
+    (lambda s: narc.bodies([[1, 2]], scale=[1, 2]), ValueError, r"scale: the shape is to be \(1,\), not \(2,\)"),
+    (lambda s: narc.bodies([[1, 2]], shape=0.5), TypeError, "shape: whole numbers are wanted"),
+    (lambda s: narc.bodies([[1, 2]], shape=-1), narc.OutOfRange, "shape: -1 to -1"),
+    (lambda s: narc.contacts(s.bodies, s.shapes), TypeError, "shapes: a narc.Shapes is wanted, not <class 'numpy.ndarray'>"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, margin="3"), TypeError, "margin: a number is wanted"),
     (lambda s: s.shapes.arcs(-1), narc.OutOfRange, "shape is -1"),
     (lambda s: s.shapes.remove(2**70), IndexError, "shape is 1180591620717411303424"),
     (lambda s: narc._narc.compute_mass(np.frombuffer(bytes(81), "u1")[1:].view(narc.ARC), np.zeros(1, narc.MASS)), ValueError,

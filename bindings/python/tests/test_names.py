@@ -57,6 +57,11 @@ def test_the_first_page_runs():
     assert len(scope["rows"]) > 0 and len(scope["hits"]) == 2
 
 
+def test_plots_are_there_at_once():
+    pytest.importorskip("matplotlib")
+    assert narc.plot.draw_bodies and not hasattr(narc, "plots")
+
+
 def test_what_is_public_has_words():
     for name in narc.__all__:
         thing = getattr(narc, name)

@@ -144,6 +144,27 @@ def test_ground_holds_balls(random):
     assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
 
 
+def test_steps_that_are_kept_stay_what_they_were(scene):
+    contacts, kept = narc.Contacts(), []
+    for _ in range(8):
+        scene.bodies["xy"] += 0.05 * (np.arange(600).reshape(-1, 2) % 7)
+        step = contacts.update(scene.shapes, scene.bodies, margin=0.1)
+        kept.append((step.rows[1:], step.rows[1:].copy(), step.pairs, step.pairs.copy()))
+        del step
+    assert all((rows == own).all() and (pairs == same).all() for rows, own, pairs, same in kept)
+
+
+def test_half_planes_are_ground_without_end():
+    shapes = narc.Shapes()
+    ground, ball = shapes.half_plane(), shapes.circle(0.5)
+    assert len(shapes.arcs(ground)) == 0 and shapes.flags(ground) == narc.CONSTANTS["NARC_SHAPE_HALF_PLANE"]
+    bodies = narc.bodies([[0, 0], [1e6, 0.4], [3, 2]], shape=[ground, ball, ball])
+    rows, pairs = narc.contacts(shapes, bodies)
+    assert pairs[rows["pair"]].tolist() == [[0, 1]] and rows["separation"] == pytest.approx(-0.1, abs=1e-6)
+    hits, pairs = narc.casts(shapes, bodies, [[0, 0], [0, 0], [0, -3]], angle=[0, 0, 1])
+    assert pairs[hits["count"] > 0].tolist() == [[0, 1], [0, 2]] and hits["fraction"][-1] == pytest.approx(0.5, abs=1e-3)
+
+
 def circle_scene(random, count=400):
     shapes = narc.Shapes()
     bodies = narc.bodies(random.random((count, 2)) * 60, shape=shapes.circle(1.0))

@@ -20,8 +20,9 @@ export type PairList = Uint32Array | Numbers<Uint32Array> | (PairsOptions & { co
 export interface LoadOptions {
     /** The fast one needs simd128, the small one has no chains and no compounds. By default what runs here. */
     build?: "fast" | "small";
-    /** The module's bytes, or itself compiled; by default the file beside this one. With threads it is narc_threads.wasm. */
-    module?: BufferSource | WebAssembly.Module;
+    /** Where the module is, its bytes, or itself compiled; by default the file beside this one, which bundlers are to copy.
+     * With threads it is narc_threads.wasm. */
+    module?: URL | BufferSource | WebAssembly.Module;
     /** So many workers take parts of large batches of pairs: 0, none, by default. They need shared memory, which pages have that are
      * isolated (crossOriginIsolated), and the fast build. */
     threads?: number;
@@ -39,7 +40,7 @@ async function fetchModule(url: URL): Promise<BufferSource> {
     if (url.protocol !== "file:") {
         const response = await fetch(url);
         if (!response.ok)
-            throw new Error(`${url}: ${response.status} ${response.statusText}`);
+            throw new Error(`${url}: ${response.status} ${response.statusText}; where a bundler does not copy it, load({ module: url }) tells where it is`);
         return response.arrayBuffer();
     }
     const files = "node:fs/promises";
@@ -59,8 +60,9 @@ export async function load(options: LoadOptions = {}): Promise<Narc> {
         throw new TypeError("threads: the small build has none");
     if (threads > 0 && typeof SharedArrayBuffer !== "function")
         throw new Error("threads: there is no shared memory here; the page is to be isolated (crossOriginIsolated)");
-    const given = options.module ?? await fetchModule(threads > 0 ? new URL("./narc_threads.wasm", import.meta.url)
+    const from = options.module ?? (threads > 0 ? new URL("./narc_threads.wasm", import.meta.url)
         : build === "fast" ? new URL("./narc.wasm", import.meta.url) : new URL("./narc_small.wasm", import.meta.url));
+    const given = from instanceof URL ? await fetchModule(from) : from;
     const module = given instanceof WebAssembly.Module ? given : await WebAssembly.compile(given);
     if (threads === 0)
         return new Narc(new Memory(await WebAssembly.instantiate(module), build));

@@ -38,11 +38,13 @@ export class Threads {
     }
 
     static async start(memory: Memory, module: WebAssembly.Module, shared: WebAssembly.Memory, count: number): Promise<Threads> {
-        const threads = new Threads(memory), node = "node:worker_threads";
-        const Made = typeof Worker === "function" ? Worker : (await import(/* webpackIgnore: true */ /* @vite-ignore */ node) as { Worker: typeof Worker }).Worker;
+        const threads = new Threads(memory), node = "node:worker_threads", beside = "./worker.js";
+        const page = typeof Worker === "function", Node = page ? undefined : (await import(/* webpackIgnore: true */ /* @vite-ignore */ node) as { Worker: new (url: URL) => Thread }).Worker;
         const ready: Promise<unknown>[] = [];
         for (let k = 0; k < count; k++) {
-            const thread = new Made(new URL("./worker.js", import.meta.url), { type: "module" }) as unknown as Thread;
+            // Bundlers know the first one as it stands.
+            const thread = page ? new Worker(new URL("./worker.js", import.meta.url), { type: "module" }) as unknown as Thread
+                : new Node!(new URL(beside, import.meta.url));
             const place = memory.allocate(4 * JOB.size), stack = memory.allocate(STACK + 16) + STACK & ~15;
             threads.#threads.push(thread);
             threads.#places.push(place);

@@ -18,15 +18,14 @@ async function work({ module, memory, stack, place }: Job, ready: () => void): P
 }
 
 interface Port {
-    once?(name: "message", run: (job: Job) => void): void;
+    once(name: "message", run: (job: Job) => void): void;
     postMessage(message: string): void;
-    onmessage?: ((event: { data: Job }) => void) | null;
 }
 
-const node = "node:worker_threads";
-const port = (typeof postMessage === "function" ? globalThis : (await import(/* webpackIgnore: true */ /* @vite-ignore */ node) as { parentPort: unknown }).parentPort) as unknown as Port;
-const begin = (job: Job): Promise<void> => work(job, () => port.postMessage("ready"));
-if (port.once)
-    port.once("message", begin);
-else
-    port.onmessage = (event) => void begin(event.data);
+if (typeof postMessage === "function")
+    onmessage = (event: { data: Job }) => void work(event.data, () => postMessage("ready"));
+else {
+    const node = "node:worker_threads";
+    void import(/* webpackIgnore: true */ /* @vite-ignore */ node).then(({ parentPort }: { parentPort: Port }) =>
+        parentPort.once("message", (job) => void work(job, () => parentPort.postMessage("ready"))));
+}

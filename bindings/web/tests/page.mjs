@@ -230,6 +230,19 @@ try {
             return fast.count > 1000 && fast.count === plain.count && fast.u8.subarray(0, bytes).every((byte, k) => byte === plain.u8[k]);
         });
         assert(same);
+        const threads = await tab.evaluate(async () => { // the same in a page that is isolated, by workers
+            const { load } = await import("./narc/narc.js"), answers = [];
+            for (const narc of [await load(), await load({ threads: 2 })]) {
+                const shapes = narc.shapes(), shape = shapes.ellipse(0.6, 0.4, 8), bodies = narc.bodies(4000);
+                for (let k = 0; k < 4000; k++)
+                    Object.assign(bodies.at(k), { x: 0.7 * (k % 60), y: 0.7 * Math.floor(k / 60), cosine: Math.cos(k), sine: Math.sin(k), shape });
+                const rows = narc.contacts(shapes, bodies, narc.pairs(shapes, bodies));
+                answers.push(rows.u8.slice(0, rows.count * rows.size));
+                narc.end();
+            }
+            return crossOriginIsolated && answers[0].length > 1e5 && answers[0].length === answers[1].length && answers[0].every((byte, k) => byte === answers[1][k]);
+        });
+        assert(threads);
         for (let k = 0; k < 4; k++)
             await tab.evaluate(() => page.own.many.step());
         await wait(300);

@@ -13,6 +13,8 @@ export function serve(folder, port = 0) {
         try {
             const path = normalize(decodeURIComponent(new URL(request.url, "http://127.0.0.1").pathname));
             const file = path.endsWith("/") ? `${path}index.html` : path;
+            response.setHeader("Cross-Origin-Opener-Policy", "same-origin"); // so pages are isolated, and have shared memory
+            response.setHeader("Cross-Origin-Embedder-Policy", "require-corp");
             response.setHeader("Content-Type", TYPES[extname(file)] ?? "application/octet-stream");
             response.end(await readFile(join(folder, file)));
         } catch {

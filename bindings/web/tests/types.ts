@@ -9,6 +9,7 @@ const rows: Rows<Contact> = narc.contacts(shapes, bodies, pairs, { margin: 1, ma
 const separation: number = rows.at(0).separation;
 const id: bigint = narc.contactsThatStay().update(shapes, { x: 0, y: new Float64Array(1), cosine: 1, sine: 0, shape: 0 }).began(0).idA;
 export const used = [separation, id, NarcError];
+await load({ module: new URL("./narc.wasm", import.meta.url), threads: 2 });
 // @ts-expect-error: no such option
 narc.contacts(shapes, bodies, pairs, { margn: 1 });
 // @ts-expect-error: positions of integers
