@@ -61,7 +61,7 @@ TEST(test_geometry) {
         {"<path d='M10 10h20v20h-20zm5 5h10v10h-10z'/>", 400, 1},
         {"<path fill-rule='evenodd' d='M10 10h20v20h-20zm5 5h10v10h-10z'/>", 500, 2},
         {"<path d='M10 10H30V30H10Z'/><rect x='15' y='15' width='3' height='3' fill='red'/>", 400, 1},
-        {"<path d='M20 50a10 10 0 0 1 20 0a10 10 0 0120 0z'/>", PI * 100, 1},
+        {"<path d='M20 50a10 10 0 0 1 20 0a10 10 0 01-20 0z'/>", PI * 100, 1},
         {"<path d='M30 50A20 20 0 1 0 50 30L50 50z'/>", PI * 300, 1},
         {"<path d='M30 50A20 20 0 1 1 50 70L50 50z'/>", PI * 300, 1},
         {"<path d='M30 50A20 20 0 0 0 50 70L50 50z'/>", PI * 100, 1},
