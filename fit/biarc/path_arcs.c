@@ -5,6 +5,7 @@
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "biarc/biarc.h"
 #include "error.h"
@@ -151,11 +152,28 @@ static narc_status add_fewest(struct builder *builder, const narc_path *path, na
         joints[kept++] = joints[0] || curved;
     }
     const narc_polyline line = {points, kept, !builder->open, path->slack, joints};
-    narc_status status = narc_add_fewest(&line, tolerance, &builder->list, builder->error);
+    narc_arc_list *const list = &builder->list;
+    const size_t first = list->count;
+    const double distance = list->distance;
+    list->distance = 0;
+    narc_status status = narc_add_fewest(&line, tolerance, list, builder->error);
     free(points);
     free(joints);
-    builder->list.distance += flatness;
-    return status == NARC_ERROR_NO_SOLUTION ? add_contour(builder, path, move) : status;
+    if (status == NARC_ERROR_MEMORY)
+        return status;
+    const size_t second = list->count, found = status ? SIZE_MAX : second - first;
+    const double of_fewest = fmax(distance, list->distance + flatness);
+    list->distance = distance;
+    status = add_contour(builder, path, move); /* on a circle, say, these may be fewer */
+    if (!status && list->count - second < found) {
+        memmove(list->arcs + first, list->arcs + second, (list->count - second) * sizeof *list->arcs);
+        list->count -= second - first;
+    } else if (found < SIZE_MAX && status != NARC_ERROR_MEMORY) {
+        list->count = second;
+        list->distance = of_fewest;
+        status = NARC_OK;
+    }
+    return status;
 }
 
 /* A contour's own lines, or the chords of its curves. */

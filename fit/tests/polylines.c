@@ -249,6 +249,30 @@ TEST(test_exact_shapes) {
     narc_destroy_path(path);
 }
 
+/* Of circles, too, where two halves have to meet just across: the smooth pieces are taken where they are fewer. */
+TEST(fewest_are_no_more_than_smooth_ones) {
+    for (size_t corners = 100; corners <= 500; corners += 100) {
+        for (double tolerance = 0.1; tolerance > 1e-3; tolerance /= 4) {
+            narc_path *path = make_path();
+            narc_arc_chains chains;
+            narc_error error;
+            narc_point points[500];
+            for (size_t k = 0; k < corners; k++) {
+                const double angle = 2 * PI * (double)k / (double)corners;
+                points[k] = (narc_point){2 * cos(angle), 2 * sin(angle)};
+            }
+            draw_polygon(path, points, corners);
+            expect_ok(narc_fit_chains(path, tolerance, false, &chains, &error), &error);
+            const size_t fewest = count_fewest(path, tolerance);
+            if (fewest > chains.arc_count)
+                fail_msg("%zu corners, tolerance %g: %zu pieces, but %zu smooth ones", corners, tolerance, fewest,
+                         chains.arc_count);
+            narc_release_chains(&chains);
+            narc_destroy_path(path);
+        }
+    }
+}
+
 /* ---------------------------------------------------------------------------- smooth chains */
 
 enum { COUNT = 600 };
