@@ -336,14 +336,16 @@ static const narc_query all_rows = {.margin = INFINITY};
 /* What touches at the times of casts `first` ...: a row each. */
 NOINLINE void ask_contacts(const narc_shapes *shapes, narc_casts *casts, size_t first, size_t count) {
     static const float zeros[CAST_SLOTS];
-    const narc_bodies a = view_side(casts, 0, zeros, zeros), b = view_side(casts, 1, casts->x_now, casts->y_now);
-    const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &b};
     const narc_rows rows = {.base = (char *)&casts->contact[first], .stride = sizeof casts->contact[0]};
     size_t unused = 0;
-    narc_batch batch; /* an initialiser would clear its own sets, too */
+    /* An initialiser would clear all of it. Its own sets are these, or the stack would have two more. */
+    narc_batch batch;
+    batch.filled[0] = view_side(casts, 0, zeros, zeros);
+    batch.filled[1] = view_side(casts, 1, casts->x_now, casts->y_now);
+    const narc_pairs pairs = {.count = CAST_SLOTS, .other_bodies = &batch.filled[1]};
     batch.shapes = shapes;
-    batch.a = &a;
-    batch.b = &b;
+    batch.a = &batch.filled[0];
+    batch.b = &batch.filled[1];
     batch.pairs = &pairs;
     batch.query = &all_rows;
     batch.first = 0;
