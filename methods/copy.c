@@ -100,7 +100,8 @@ narc_status narc_refresh_methods(narc_methods *methods, narc_error *error) {
         return NARC_OK;
     if (store->piece_count > 0)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)store->piece_count,
-                         "the store has %zu pieces of chains and half-planes, which other methods do not know", store->piece_count);
+                         "the store has %zu pieces of chains and half-planes, which other methods do not know",
+                         store->piece_count);
     size_t records = 0;
     for (size_t k = 0; k < store->count; k++)
         records += narc_count_records(&store->headers[k]) + 1;

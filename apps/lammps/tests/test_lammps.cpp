@@ -3,8 +3,8 @@
  * test_lammps.cpp - the styles against LAMMPS' own, against closed forms, and against themselves on other ranks.
  *   mpirun -np 4 test_lammps TEST
  */
-#include <fstream>
 #include <cstring>
+#include <fstream>
 #include <map>
 
 #include <dlfcn.h>
