@@ -562,7 +562,7 @@ static void draw_shape(struct reader *r, const struct state *state, enum kind ki
     const bool is_stroke = width > 0;
     const double out = width / 2;
     const char *text = NULL;
-    double x, y, w, h, rx, ry;
+    double x = 0, y = 0, w = 0, h = 0, rx = 0, ry = 0;
     bool plain = true;
     switch (kind) {
     case CIRCLE:
@@ -601,7 +601,7 @@ static void draw_shape(struct reader *r, const struct state *state, enum kind ki
             draw_rectangle(r, c, (narc_point){half.x - out, half.y - out}, in, in, true);
         break;
     case LINE: {
-        double x2, y2;
+        double x2 = 0, y2 = 0;
         plain = has_length("x1", names, values, 0, &x) && has_length("y1", names, values, 0, &y) &&
                 has_length("x2", names, values, 0, &x2) && has_length("y2", names, values, 0, &y2);
         const narc_point p = {x, y}, q = {x2, y2};
@@ -679,13 +679,13 @@ static void start_element(GMarkupParseContext *context, const char *name, const 
         return;
     r->frame = state->frame;
     if (counts(r, state->fill && kind != LINE, state->alpha * state->fill_alpha)) {
-        draw_shape(r, state, kind, names, values, 0);
+        draw_shape(r, state, (enum kind)kind, names, values, 0);
         add_shape(r, state->even_odd);
     }
     if (r->plain && counts(r, state->stroke && state->width != 0, state->alpha * state->stroke_alpha)) {
         r->plain = state->width > 0;
         if (r->plain)
-            draw_shape(r, state, kind, names, values, state->width);
+            draw_shape(r, state, (enum kind)kind, names, values, state->width);
         add_shape(r, false);
     }
 }
