@@ -90,7 +90,7 @@ def answer(shapes, bodies, threads=2):
 
 def test_a_child_of_a_fork_goes_on(scene, heap):
     before = answer(scene.shapes, scene.bodies)
-    busy = threading.Thread(target=lambda: [answer(heap[0], heap[1][:1000].copy(), 3) for _ in range(20)])
+    busy = threading.Thread(target=lambda: [answer(heap[0], heap[1][:1000].copy(), 3) for _ in range(2 if SANITIZED else 20)])
     busy.start()  # its threads are not the child's
     for _ in range(5):
         child = os.fork()
