@@ -100,8 +100,7 @@ TEST(test_what_is_not_plain) {
         "<circle cx='50' cy='50' r='20' fill='none' stroke='red' stroke-dasharray='4 4'/>",
         "<path d='M20 20L60 20L60 60' fill='none' stroke='red'/>",
         "<path d='M20 20L60 60L60 20L20 60z'/>",
-        "<g clip-path='url(#c)'><circle cx='50' cy='50' r='20'/></g><clipPath id='c'><rect x='40' width='90' "
-        "height='90'/></clipPath>",
+        "<g clip-path='url(#c)'><circle r='50'/></g><clipPath id='c'><rect width='40' height='40'/></clipPath>",
         "<rect width='20%' height='20'/>",
     };
     for (size_t k = 0; k < sizeof bodies / sizeof bodies[0]; k += stride(3)) {
