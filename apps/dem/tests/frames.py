@@ -27,7 +27,7 @@ WORLD = {
         {"name": "slope", "material": "sand", "plate": {"point": [-0.2, 0], "normal": [2, 1]}},
         {"name": "block", "material": "sand", "box": {"width": 0.5, "height": 0.5}, "at": [7.2, 0.5], "angle": 0.3}],
     "gravity": [0, -9.81],
-    "contact": {"law": "linear", "kn": 1e7, "restitution": 0.5, "friction": 0.5},
+    "contact": {"law": "linear", "kn": 4e7, "restitution": 0.5, "friction": 0.5},
     "time_step": 1e-4, "skin": 0.1,
     "stages": [{"duration": 0.6}, {"duration": 0.4}],
     "output": {"every": 0.1, "csv": "table.csv", "grains": "out.csv", "vtk": "out", "restart": "out.restart"},
