@@ -32,9 +32,11 @@ cp fits/rectangle.svg fits/kind.csv
 works "a kind told by content" fit fits/kind.csv --arcs 1 --out named.json
 
 # A polygon with 32 sides around a circle of radius 2 has corners that are 2 / cos(pi / 32) - 2 = 0.0097 away; it
-# leaves room for a pixel, a 4096th of 4, and tells another.
-fails "tolerance beyond reach" "narc: fits/circle.svg: .*0\\.011.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
+# leaves room for a pixel, a 4096th of 4, and tells another, where it is traced.
+fails "tolerance beyond reach" "narc: fits/circle.svg: .*0\\.0099.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
     --polygon --starts 1 --out new.json
+fails "traced, beyond reach" "narc: fits/circle.svg: .*0\\.011.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
+    --polygon --starts 1 --trace --out new.json
 
 # A drawing: its pixels are told.
 works "circle" fit fits/circle.svg --arcs 1 --out one.json
