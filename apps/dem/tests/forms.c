@@ -302,8 +302,10 @@ TEST(test_flat_ground_of_pieces) {
             wall.shape = dem_add_chain(&d, "flat", flat, 9, false);
             dem_add_wall(&d, wall);
         }
-        for (int k = 0; k < 12 && !chain; k++)
-            snprintf(add_box(&d, SQUARE, 2, 2.0 * k, -1)->name, 8, "box %d", k);
+        for (int k = 0; k < 12 && !chain; k++) {
+            dem_wall *const box = add_box(&d, SQUARE, 2, 2.0 * k, -1);
+            snprintf(box->name, sizeof box->name, "box %d", k);
+        }
         add_grain(&d, DISC, 1.5, 1 - PI / law.kn, 1, 0);
         dem_start(&d);
         step(&d, 40000);
