@@ -244,6 +244,17 @@ static unsigned long long read_unsigned(PyObject *given) {
     return value;
 }
 
+/* What is said of a number that Python's error does not name: one that its place can't have, or none at all. */
+static bool refuse_number(frame *f, const char *wanted, PyObject *given) {
+    const bool is_number = PyErr_ExceptionMatches(PyExc_OverflowError);
+    PyErr_Clear();
+    if (is_number)
+        PyErr_Format(PyExc_ValueError, "%s: %R is out of range", frame_name(f), given);
+    else
+        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %R", frame_name(f), wanted, given);
+    return false;
+}
+
 /* One number for all: as the column's own type. */
 static bool set_constant(frame *f, const char *type, void *column, PyObject *given) {
     numbers one = {.count = -1, .item = {.order = '@', .size = 8, .code = 'd'}};
@@ -271,11 +282,8 @@ static bool set_constant(frame *f, const char *type, void *column, PyObject *giv
             memcpy(room, &byte, 1);
         }
     }
-    if (PyErr_Occurred()) {
-        PyErr_Clear();
-        PyErr_Format(PyExc_TypeError, "%s: a number or an array is wanted, not %R", frame_name(f), given);
-        return false;
-    }
+    if (PyErr_Occurred())
+        return refuse_number(f, "a number or an array", given);
     one.base = room;
     return set_column(f, type, column, &one, 0);
 }
@@ -391,11 +399,7 @@ static bool set_number(frame *f, void *place, const char *type, size_t size, PyO
         else if (!PyErr_Occurred())
             PyErr_SetString(PyExc_OverflowError, "");
     }
-    if (!PyErr_Occurred())
-        return true;
-    PyErr_Clear();
-    PyErr_Format(PyExc_TypeError, "%s: a number is wanted, not %R", frame_name(f), given);
-    return false;
+    return !PyErr_Occurred() || refuse_number(f, "a number", given);
 }
 
 static bool set_member(frame *f, const narc_layout *layout, const narc_member *m, char *structure, PyObject *given,

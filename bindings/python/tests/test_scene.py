@@ -144,6 +144,17 @@ def test_ground_holds_balls(random):
     assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
 
 
+def test_filters_stay_where_rows_need_more_room():
+    shapes = narc.Shapes()
+    bowl = shapes.chain([[0, 0, -5, np.pi / 2 + 0.9, np.pi / 2 - 0.9]])  # where a bar stands on both ends
+    bar = shapes.box(6, 0.2)
+    some = narc.bodies([*bowl["xy"], [0, -4], [0, -4]], shape=[*bowl["shape"], bar, bar])
+    every, pairs = narc.contacts(shapes, some)
+    assert len(pairs) == 3 and len(every) == 5
+    rows, pairs = narc.contacts(shapes, some, world=np.array([1, 1, 2], np.uint32))
+    assert pairs.tolist() == [[0, 1]] and rows["pair"].tolist() == [0, 0]
+
+
 def test_steps_that_are_kept_stay_what_they_were(scene):
     contacts, kept = narc.Contacts(), []
     for _ in range(8):
