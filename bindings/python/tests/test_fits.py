@@ -138,7 +138,7 @@ def test_what_is_wrong_is_said(wrong, kind, words):
         wrong()
 
 
-def test_control_c_ends_a_fit():
+def test_control_c_ends_a_fit(ctrl_c):
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):

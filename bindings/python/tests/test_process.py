@@ -153,14 +153,6 @@ def test_slices_are_one_answer(heap, random, monkeypatch, threads):
         narc.distances(shapes, bodies, points, some[:5])
 
 
-@pytest.fixture
-def ctrl_c():
-    """Is heard, as in a terminal: what a shell starts in the background inherits that it is not."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 def test_ctrl_c_ends_a_long_call(heap, random, ctrl_c):
     shapes, bodies = heap
     pairs = random.integers(0, 3000, (4_000_000, 2), dtype=np.uint32)
