@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._shapes import Arcs, _arcs
-from ._tables import ARC
+from ._shapes import Arcs, as_arcs
+from ._tables import ARC, as_points
 
 _fit: Any = None
 _missing: ImportError | None = None
@@ -73,7 +73,7 @@ class Outline:
     line and value."""
 
     def __init__(self, contours: ArrayLike | Sequence[ArrayLike]) -> None:
-        parts = [_points("contours", part) for part in _list_contours(contours)]
+        parts = [as_points("contours", part) for part in _list_contours(contours)]
         ends = np.cumsum([len(part) for part in parts], dtype=np.uint64)
         self._path = _library().draw(np.concatenate(parts) if parts else np.zeros((0, 2)), ends)
 
@@ -121,13 +121,6 @@ def _whole(name: str, value: int, most: int = 2**31 - 1) -> int:
     return operator.index(value)
 
 
-def _points(name: str, xy: ArrayLike) -> NDArray[np.float64]:
-    points = np.ascontiguousarray(xy, np.float64)
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise ValueError(f"{name}: an array (n, 2) is wanted, not {points.shape}")
-    return points
-
-
 def _list_contours(contours: Any) -> list[Any]:
     first = contours[0] if len(contours) else None
     return list(contours) if first is not None and np.ndim(first) == 2 else [contours]
@@ -169,7 +162,7 @@ def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: fl
 
 def hull(xy: ArrayLike) -> NDArray[np.float64]:
     """The corners of the convex hull of points (n, 2), counter-clockwise, no three in line."""
-    corners = _library().hull(_points("xy", xy))
+    corners = _library().hull(as_points("xy", xy))
     return np.frombuffer(corners, np.float64).reshape(-1, 2).copy()
 
 
@@ -196,10 +189,9 @@ def write_shapes(file: str | pathlib.Path, shapes: Mapping[str, NamedShape | Fit
     """Writes a shapes file: fits, shapes that were read, or plain lists of arcs, by name. An old file is replaced in one step."""
     rows = []
     for name, shape in shapes.items():
-        if not isinstance(shape, (NamedShape, Fit)):
-            shape = NamedShape(np.array([tuple(row) for row in _arcs(shape)], ARC))
-        form = _FORMS.index(shape.form) if isinstance(shape, NamedShape) else 0
-        rows.append((name, shape.arcs.tobytes(), shape.origin, form))
+        known = shape if isinstance(shape, (NamedShape, Fit)) else NamedShape(as_arcs(shape))
+        form = _FORMS.index(known.form) if isinstance(known, NamedShape) else 0
+        rows.append((name, as_arcs(known.arcs).tobytes(), known.origin, form))
     text = _library().write_shapes(rows)
     path = pathlib.Path(file)
     beside = path.with_name(path.name + ".new")
