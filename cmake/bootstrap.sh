@@ -451,10 +451,16 @@ dem() {
     ls -ld out/dem/*
 }
 
+# Of what is random two fifths of the trials, where all would take minutes more: these are for who changes a kernel.
+few_trials=0.4
+
 # One build, the one that users have, and what answers in minutes; the gate has the rest. Or another preset's.
 test_build() {
     case $1 in
-    ci) require_packages $gate_packages ;;
+    ci)
+        require_packages $gate_packages
+        export NARC_TEST_TRIALS="$few_trials"
+        ;;
     *) require_packages $test_packages ;;
     esac
     build "$1" all
@@ -480,8 +486,7 @@ gate() {
     build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
     test_app dem
-    # Of what is random two fifths of the trials: all of them take minutes, and are for who changes a kernel.
-    NARC_TEST_TRIALS=0.4 ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
+    NARC_TEST_TRIALS="$few_trials" ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
         fail "tests failed in build/ci"
     # What these libraries do for the kernels is the same on each instruction set: plain C is built.
     cmake --preset bare -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF ||
