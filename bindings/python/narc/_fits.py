@@ -22,9 +22,9 @@ try:
 except ImportError as _error:  # of a wheel that was built where the libraries of fits are not, or is where they are not
     _missing = _error
 
-Family = Literal["n-arc", "edges", "polygon", "paper"]
+Family = Literal["n-arc", "edges", "polygon", "paper", "plain"]
 Goal = Literal["area", "perimeter", "distance", "nearest", "difference"]
-_FAMILIES = ("n-arc", "edges", "polygon", "paper")
+_FAMILIES = ("n-arc", "edges", "polygon", "paper", "plain")
 _GOALS = ("area", "perimeter", "distance", "nearest", "difference")
 _FORMS: tuple[Literal["shape"], Literal["open"], Literal["closed"]] = ("shape", "open", "closed")
 _READERS = ("svg", "png", "csv", "json")
@@ -135,7 +135,8 @@ def fit(outline: Outline | ArrayLike | Sequence[ArrayLike], arcs: int = 8, *, to
     """Fits one convex arc shape to an outline's hull: the best that is found with at most `arcs` arcs, or, with arcs=0, the one
     of fewest arcs whose largest distance from the hull is at most `tolerance`.
 
-    `family`: "n-arc" (arcs with continuous tangents), "edges" (straight edges between arcs, too), "polygon", "paper".
+    `family`: "n-arc" (arcs with continuous tangents), "edges" (straight edges between arcs, too), "polygon", "paper"; with arcs=0,
+    "plain" (a circle, capsule, box, rounded box or regular polygon, if one is within `tolerance`).
     `goal`: shapes that bound the outline with the least "area", "perimeter" or largest "distance", or those with the least
     largest distance ("nearest") or area between ("difference"). It takes about a second; Ctrl-C ends it. Raises narc.Error."""
     found, numbers = _library().fit(_outline(outline), _whole("arcs", arcs), tolerance, _choose("family", family, _FAMILIES),

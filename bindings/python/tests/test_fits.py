@@ -36,6 +36,13 @@ def test_a_fit_bounds_what_it_is_of():
     assert narc.Shapes().add(fit.arcs) == 0
 
 
+def test_plain_shapes_are_seen():
+    plain = narc.fit(circle(400) * 2 + 1, 0, tolerance=0.01, family="plain")
+    assert len(plain.arcs) == 1 and plain.arcs["radius"][0] == pytest.approx(2, abs=0.01)
+    with pytest.raises(narc.Error):
+        narc.fit(L_SHAPE, 0, tolerance=0.01, family="plain")
+
+
 def test_few_arcs_serve_where_they_can():
     assert len(narc.fit(circle(), 0, tolerance=1e-3, goal="nearest").arcs) == 1
     box = narc.fit([[0, 0], [3, 0], [3, 1], [0, 1]], 4, family="edges")
