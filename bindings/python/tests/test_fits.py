@@ -37,7 +37,7 @@ def test_a_fit_bounds_what_it_is_of():
 
 
 def test_plain_shapes_are_seen():
-    plain = narc.fit(circle(400) * 2 + 1, 0, tolerance=0.01, family="plain")
+    plain = narc.fit(circle() + 1, 0, tolerance=0.01, family="plain")
     assert len(plain.arcs) == 1 and plain.arcs["radius"][0] == pytest.approx(2, abs=0.01)
     with pytest.raises(narc.Error):
         narc.fit(L_SHAPE, 0, tolerance=0.01, family="plain")
