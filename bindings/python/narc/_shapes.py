@@ -229,7 +229,7 @@ def bounding_box(arcs: ArrayLike, angle: float = 0.0) -> np.void:
 
 def support(arcs: ArrayLike, direction: ArrayLike) -> tuple[NDArray[np.float64], int]:
     """The point that lies furthest in a direction, and its arc."""
-    x, y = direction  # type: ignore[misc]
+    x, y = np.asarray(direction, np.float64)
     out = np.zeros((1, 2))
     arc = _narc.find_support(as_arcs(arcs), x, y, out)
     return out[0], int(arc)
