@@ -301,6 +301,17 @@ NARC_API narc_status narc_cut_path(const narc_path *path, const narc_parts_reque
                                    narc_error *error);
 NARC_API void narc_release_parts(narc_parts *parts);
 
+/* Cuts an outline of straight lines and convex arcs into convex parts that are just it, but for single precision: no
+ * tolerance, no laps, arcs stay whole or become arcs of their circles. An L is two boxes. Inside is what an odd number of
+ * contours is around. With c corners that turn inwards and h holes there are at most c + 1 - h parts, and one less for each cut
+ * that serves two corners; not always the fewest. Of a part's fit areas, perimeter, edges and origin are set, distances are 0.
+ * *out_count is also set if `capacity` is less. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (no points),
+ * NARC_ERROR_NO_SOLUTION (a curve, a concave arc, which no convex part has, or an outline traced in an image: error->index is the
+ * contour, from 0, and error->value the number of the line, arc or curve in it), NARC_ERROR_NOT_SIMPLE (contours that cross or
+ * touch; as before), NARC_ERROR_CAPACITY, NARC_ERROR_MEMORY, and those of narc_add_shape(): a part is too thin or small. */
+NARC_API narc_status narc_cut_exactly(const narc_path *path, narc_fit_result *out_parts, size_t capacity,
+                                      size_t *out_count, narc_error *error);
+
 /* ------------------------------------------------------------------------------------------------ biarcs */
 
 /* One piece of an open, tangent-continuous arc spline. */

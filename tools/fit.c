@@ -20,7 +20,7 @@
 #include "text.h"
 
 static const char HELP[] =
-    "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
+    "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
     "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
@@ -45,7 +45,8 @@ static const char HELP[] =
     "                  capsules, boxes and regular polygons within T become just that\n"
     "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
     "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
-    "                  outline, or with --arcs, which is for each, the nearest\n"
+    "                  outline, or with --arcs, which is for each, the nearest; with neither:\n"
+    "                  exactly the outline, of lines and convex arcs, without overlap\n"
     "  --bound         the shape contains the outline; the default\n"
     "  --approximate   it may also lie inside\n"
     "  --objective NAME\n"
@@ -144,8 +145,16 @@ static void check_combinations(const option *options) {
         fail("--smooth is for --chain: shapes are smooth without it");
     if (options[NO_EDGES].value && !options[PARTS].value && !options[TOLERANCE].value)
         fail("--no-edges is for --parts and --tolerance: other shapes have edges with --edges alone");
-    if (!options[ARCS].value && !options[TOLERANCE].value)
+    if (options[ARCS].value || options[TOLERANCE].value)
+        return;
+    if (!options[PARTS].value)
         fail("--arcs or --tolerance is missing");
+    static const int of_fits[] = {BOUND,   APPROXIMATE, OBJECTIVE, EDGES,      NO_EDGES,
+                                  POLYGON, PAPER,       FLATNESS,  MIN_RADIUS, STARTS};
+    for (size_t k = 0; k < sizeof of_fits / sizeof of_fits[0]; k++)
+        if (options[of_fits[k]].value)
+            fail("%s is for fits: --parts alone, without --arcs or --tolerance, cuts the outline exactly",
+                 options[of_fits[k]].name);
 }
 
 static narc_fit_goal choose_goal(const option *options) {
@@ -340,13 +349,33 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
     return measure_union(out, error);
 }
 
+/* Parts that are just the outline. */
+static bool cut_exactly(fitting *how, const outline *of, collider *out, narc_error *error) {
+    out->fits = allocate(how->parts, sizeof *out->fits);
+    if (narc_cut_exactly(of->path, out->fits, how->parts, &out->count, error) != NARC_OK)
+        return false;
+    for (size_t k = 0; k < out->count; k++) {
+        narc_fit_result *part = &out->fits[k];
+        out->outline_area += part->area;
+        for (size_t i = 0; i < part->arc_count && how->request.keep_origin; i++) {
+            part->arcs[i].center_x += part->origin.x;
+            part->arcs[i].center_y += part->origin.y;
+        }
+        if (how->request.keep_origin)
+            part->origin = (narc_point){0, 0};
+    }
+    return measure_union(out, error);
+}
+
 static bool fit_outline(fitting *how, const outline *of, collider *out, narc_error *error) {
     narc_fit_request request = how->request;
     const double begin = seconds_now();
     request.flatness = how->flatness > 0 ? how->flatness * measure_extent(of) : 0;
     *out = (collider){.count = 1};
-    const bool done = how->parts ? fit_parts(how, of, request, out, error)
-                                 : fit_each(how, &(narc_path *){of->path}, request, out, error);
+    const bool exact = request.arc_count == 0 && !(request.tolerance > 0);
+    const bool done = exact        ? cut_exactly(how, of, out, error)
+                      : how->parts ? fit_parts(how, of, request, out, error)
+                                   : fit_each(how, &(narc_path *){of->path}, request, out, error);
     out->seconds = seconds_now() - begin;
     if (!done)
         free(out->fits);

@@ -239,6 +239,15 @@ works "an open stroke" fit fits/square.csv --chain --open --tolerance 0.1 --out 
 check "an open stroke: two corners, two ends" test "$(grep -c '"radius": 0,' chain.json)" = 4
 check "an open stroke: open" grep -q '"chain": {"closed": false' chain.json
 
+# Exact parts: boxes with their numbers.
+printf '0,0\n2,0\n2,1\n1,1\n1,2\n0,2\n' >fits/ell.csv
+works "exact parts" fit fits/ell.csv fits/frame.csv --parts 4 --out exact.json
+check "exact parts: an L is two boxes" grep -q '"ell/2", "origin": \[0.5, 1.5\], "box": {"width": 1, "height": 1}' exact.json
+check "exact parts: the frame has four" test "$(grep -c '"frame/[1-4]".*"box"' exact.json)" = 4
+check "exact parts: nothing is off" test "$(value ell 8)" = 0
+fails "exact parts: too few" "narc: fits/frame.csv: it takes 4 convex parts, more than 3" fit fits/frame.csv --parts 3 --out new.json
+fails "exact parts of a bow-tie" "narc: fits/cross.csv: contour 0, piece 0 crosses" fit fits/cross.csv --parts 3 --out new.json
+
 # Parts: the frame is four boxes; three cannot do it.
 works "parts" fit fits/frame.csv fits/square.csv --parts 9 --tolerance 0.1 --edges --starts 1 --out parts.json \
     --picture parts.svg

@@ -17,6 +17,7 @@ nofit() {
 }
 fails "fit: no input" "narc: INPUT is missing" fit --arcs 8 --out new.json
 nofit "neither arcs nor tolerance" "narc: --arcs or --tolerance is missing"
+nofit "exact parts and a goal" "narc: --bound is for fits: --parts alone" --parts 4 --bound
 nofit "arcs and tolerance" "narc: --arcs and --tolerance exclude" --arcs 4 --tolerance 0.1
 for arcs in 0 33 8.5 x -1 ""; do
     nofit "arcs '$arcs'" "narc: --arcs .*" --arcs "$arcs"
