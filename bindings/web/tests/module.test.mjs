@@ -53,6 +53,11 @@ test("both builds give the same bytes", () => {
         const rays = { x: many(0, 14), y: many(0, 14), motionX: many(-9, 9), motionY: many(-9, 9) };
         all.push(index.rays(rays, { most: 3 }), index.nearest({ x: rays.x, y: rays.y }, { most: 2 }), narc.distances(shapes, bodies, { x: rays.x, y: rays.y }, 7),
             narc.inside(shapes, bodies, { x: rays.x, y: rays.y }, 7), narc.rayPairs(shapes, bodies, rays, 3));
+        const { depth, nodes } = index.statistics, levels = Array.from({ length: depth }, (_, level) => index.nodes(level));
+        assert.equal(levels.reduce((sum, level) => sum + level.count, 0), nodes);
+        assert.equal(levels[depth - 1].count, 1);
+        assert.equal(index.nodes(depth).count, 0);
+        all.push(...levels);
         const motions = { x: Float32Array.from(bodies, () => next(-5, 5)), y: 1, angle: 0.5 };
         all.push(narc.castPairs(shapes, bodies, motions, pairs), index.casts(bodies, motions, { parting: 0.01 }));
         const stay = narc.contactsThatStay();
