@@ -124,6 +124,11 @@ test("wrong calls are errors with names", () => {
     }
     assert.throws(() => small.placeParts(small.bodies(1), small.bodies(1), 0), /not in the small build/);
     assert.throws(() => small.shapes().addChain(new Float64Array(5)), /not in the small build/);
+    assert.throws(() => small.shapes().halfPlane(), /not in the small build/);
+    const shapes = fast.shapes(), disc = shapes.circle(1), ground = shapes.halfPlane(), bodies = fast.bodies(2);
+    Object.assign(bodies.at(0), { x: 1e6, y: 0.5, shape: disc });
+    bodies.at(1).shape = ground;
+    assert.equal(fast.contact(shapes, bodies, 0, 1).separation, -0.5);
 });
 
 // Each load() has a memory of its own: a place in one is another thing, or nothing, in the other.
