@@ -41,7 +41,8 @@ static const char HELP[] =
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
-    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull\n"
+    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"
+    "                  capsules, boxes and regular polygons within T become just that\n"
     "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
     "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
     "                  outline, or with --arcs, which is for each, the nearest\n"
@@ -55,7 +56,7 @@ static const char HELP[] =
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
     "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
-    "  --no-edges      not in these either\n"
+    "  --no-edges      not in these either, nor plain shapes with a tolerance\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
 static const char MORE_HELP[] =
@@ -141,8 +142,8 @@ static void check_combinations(const option *options) {
         fail("--open is for --chain: shapes are closed");
     if (options[SMOOTH].value && !options[CHAIN].value)
         fail("--smooth is for --chain: shapes are smooth without it");
-    if (options[NO_EDGES].value && !options[PARTS].value)
-        fail("--no-edges is for --parts: other shapes have edges with --edges alone");
+    if (options[NO_EDGES].value && !options[PARTS].value && !options[TOLERANCE].value)
+        fail("--no-edges is for --parts and --tolerance: other shapes have edges with --edges alone");
     if (!options[ARCS].value && !options[TOLERANCE].value)
         fail("--arcs or --tolerance is missing");
 }
@@ -240,7 +241,14 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
     out->fits = allocate(out->count, sizeof *out->fits);
     for (how->at.part = 0; how->at.part < out->count; how->at.part++) {
         narc_fit_result *fit = &out->fits[how->at.part];
+        const narc_fit_family family = request.family;
+        const bool may_be_plain =
+            request.arc_count == 0 && !how->no_edges && (family == NARC_FIT_N_ARC || family == NARC_FIT_EDGES);
+        request.family = may_be_plain ? NARC_FIT_PLAIN : family;
         narc_status status = narc_fit_path(paths[how->at.part], &request, fit, error);
+        request.family = family;
+        if (status == NARC_ERROR_NO_SOLUTION && may_be_plain)
+            status = narc_fit_path(paths[how->at.part], &request, fit, error);
         if (status == NARC_ERROR_NO_SOLUTION && how->parts && !how->no_edges && request.family == NARC_FIT_N_ARC) {
             request.family = NARC_FIT_EDGES;
             status = narc_fit_path(paths[how->at.part], &request, fit, error);

@@ -99,6 +99,9 @@ check "tolerance for the nearest circle: kept" less "$(value square 8)" 0.21
 works "a circle is not enough" fit fits/square.csv --tolerance 0.1 --out some.json
 check "a circle is not enough: arcs" less 3 "$(value square 2)"
 check "a circle is not enough: kept" less "$(value square 8)" 0.1
+check "a circle is not enough: a box, with its numbers" grep -q '"box": {"width": 2.00000[0-9]*, "height": 2.00000[0-9]*}' some.json
+works "no edges, not even a box's" fit fits/square.csv --tolerance 0.1 --no-edges --starts 1 --out some.json
+check "no edges, not even a box's: arcs" grep -q '"arcs"' some.json
 works "tolerance with edges" fit fits/square.csv --tolerance 1e-3 --edges --out some.json
 check "tolerance with edges: kept" less "$(value square 8)" 1e-3
 # A collider lies over its outline, at its origin or with the input's own coordinates: discs of radius 0.01 at the
