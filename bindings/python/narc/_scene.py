@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from . import _narc
 from ._batch import SLICE, boxes, count_of, from_bits, narrow, slices
 from ._shapes import Shapes
-from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, Bodies, Pairs, Rows,
+from ._tables import (BOX, CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, Bodies, Pairs, Rows,
                       split, whole_numbers)
 
 
@@ -109,6 +109,11 @@ class Index(_narc.Handle):
         _narc.describe_index(self, out)
         row: np.void = out[0]
         return row
+
+    def nodes(self, level: int) -> Rows:
+        """The boxes of a level of the tree, rows of narc.BOX: 0 are the leaves; none from statistics()["depth"] on."""
+        out = np.zeros(int(self.statistics()["nodes"]), BOX)
+        return out[:_narc.copy_nodes(self, level, out)]
 
     def __len__(self) -> int:
         return count_of(self._bodies)

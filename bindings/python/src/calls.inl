@@ -75,6 +75,7 @@ CALL(write_user, "contacts:Contacts! slots:<4 rows:<1", COUNT, copy_user(f->hand
 CALL(build_index, "index:Index! boxes:<narc_box@B options:narc_index_options@B", COUNT, narc_build_index(p[0], p[1], n[1], p[2], e))
 CALL(update_index, "index:Index! boxes:<narc_box@B changed:narc_index_column options:narc_index_options@B", COUNT, narc_update_index(p[0], p[1], n[1], p[2], n[2], p[3], e))
 CALL(describe_index, "index:Index out:>narc_index_statistics*1", COUNT, narc_describe_index(p[0], p[1], e))
+CALL(copy_nodes, "index:Index level:size out:>narc_box", COUNT, narc_copy_nodes(p[0], number(n[1]), p[2], 0, n[2], &f->count, e))
 CALL(query_index, "index:Index!@B boxes:<narc_box@Q query:narc_index_query@Q", PAIRS, narc_query_index(p[0], p[1], n[1], p[2], &f->pairs, e))
 CALL(cast_rays, "index:Index shapes:Shapes bodies:narc_bodies@B rays:narc_rays@Q options:narc_ray_options@Q out:>narc_ray_hit", COUNT, narc_cast_rays(p[0], p[1], p[2], p[3], p[4], p[5], n[5], e))
 CALL(cast_ray_pairs, "shapes:Shapes bodies:narc_bodies@B rays:narc_rays@Q body:narc_index_column@Q options:narc_ray_options@Q out:>narc_ray_hit", COUNT, narc_cast_ray_pairs(p[0], p[1], p[2], p[3], p[4], p[5], n[5], e))

@@ -243,6 +243,11 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     assert len(index.regions(boxes)) == 0 and repr(index) == "<narc.Index of 400 bodies>"
     index.update(bodies[:50].copy())
     assert len(index) == 50 and index.statistics()["bodies"] == 50
+    tree = index.statistics()
+    levels = [index.nodes(level) for level in range(tree["depth"])]
+    assert sum(map(len, levels)) == tree["nodes"] and len(levels[0]) == tree["leaves"] and len(index.nodes(tree["depth"])) == 0
+    of = narc.boxes(shapes, bodies[:50])
+    assert len(levels[-1]) == 1 and levels[-1]["min_x"][0] == of["min_x"].min() and levels[-1]["max_y"][0] == of["max_y"].max()
 
 
 def test_bodies_that_come_bring_their_worlds(random):
