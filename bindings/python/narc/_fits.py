@@ -153,6 +153,12 @@ def cut(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float = 0
     return [Outline._of(path) for path in paths]
 
 
+def cut_exactly(outline: Outline | ArrayLike | Sequence[ArrayLike]) -> list[Fit]:
+    """Cuts an outline of straight lines and convex arcs into few convex shapes that are just it: an L is two boxes. Each has its
+    place in `origin`. Raises narc.Error, which names the contour, where that can't be."""
+    return [Fit(np.frombuffer(arcs, ARC).copy(), **numbers) for arcs, numbers in _library().cut_exactly(_outline(outline))]
+
+
 def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float, *, open: bool = False,
                smooth: bool = True) -> list[Arcs]:
     """Follows each contour with arcs and lines that join with a common tangent, within `tolerance`: rows of narc.ARC for

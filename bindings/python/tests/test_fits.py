@@ -36,6 +36,17 @@ def test_a_fit_bounds_what_it_is_of():
     assert narc.Shapes().add(fit.arcs) == 0
 
 
+def test_cuts_without_tolerance():
+    parts = narc.cut_exactly(L_SHAPE)
+    assert len(parts) == 2 and sum(part.area for part in parts) == pytest.approx(area(np.array(L_SHAPE, float)), rel=1e-6)
+    teeth = [[x, y] for k in range(39, -1, -1) for x, y in ((2 * k + 1, 0), (2 * k + 1, 1), (2 * k, 1), (2 * k, 0))]
+    comb = [[-1, 0], [-1, -1], [80, -1], [80, 0], *teeth]
+    parts = narc.cut_exactly(comb)
+    assert len(parts) > 16 and sum(part.area for part in parts) == pytest.approx(area(np.array(comb, float)), rel=1e-6)
+    with pytest.raises(narc.Error, match="cross|touch"):
+        narc.cut_exactly([[0, 0], [1, 1], [1, 0], [0, 1]])
+
+
 def test_plain_shapes_are_seen():
     plain = narc.fit(circle() + 1, 0, tolerance=0.01, family="plain")
     assert len(plain.arcs) == 1 and plain.arcs["radius"][0] == pytest.approx(2, abs=0.01)

@@ -247,7 +247,7 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     levels = [index.nodes(level) for level in range(tree["depth"])]
     assert sum(map(len, levels)) == tree["nodes"] and len(levels[0]) == tree["leaves"] and len(index.nodes(tree["depth"])) == 0
     of = narc.boxes(shapes, bodies[:50])
-    assert len(levels[-1]) == 1 and levels[-1]["min_x"][0] == of["min_x"].min() and levels[-1]["max_y"][0] == of["max_y"].max()
+    assert len(levels[-1]) == 1 and (levels[-1]["min"][0] == of["min"].min(0)).all() and (levels[-1]["max"][0] == of["max"].max(0)).all()
 
 
 def test_bodies_that_come_bring_their_worlds(random):
