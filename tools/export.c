@@ -107,6 +107,14 @@ static void add_corner(piece *to, size_t *capacity, double x, double y, double b
     to->corners[to->count++] = (corner){x, y, bulge};
 }
 
+/* An arc begins, or ends, as near to the last corner as single precision has the arcs of fits: at one corner, in the middle. */
+static bool join_corners(corner *end, double x, double y, double bulge, double near) {
+    if (!(hypot(x - end->x, y - end->y) <= near))
+        return false;
+    *end = (corner){(end->x + x) / 2, (end->y + y) / 2, bulge};
+    return true;
+}
+
 /* Drops corners that lie where the next one is, and with `straight` those between two edges in one line. */
 static void drop_corners(piece *of, bool straight) {
     const double near = MERGED * measure_piece(of);
@@ -144,16 +152,28 @@ static piece outline_shape(const narc_named_shape *shape, const exporting *how) 
                   .name = shape->name};
     size_t capacity = 0;
     const double s = how->scale, up = how->y_down ? -s : s;
+    double near = 0, first_near = 0; /* of this arc or the one before, and of the first one */
     for (size_t i = 0; i < shape->arc_count; i++) {
         const narc_arc *arc = &shape->arcs[i];
         const double turn = find_turn(arc);
         const int steps = turn == 0 ? 0 : fabs(turn) > 0.51 * FULL_TURN ? 2 : 1;
+        const double before = near;
+        near = 4 * (double)FLT_EPSILON * s * (hypot(arc->center_x, arc->center_y) + fabs(arc->radius));
+        first_near = i == 0 ? near : first_near;
         for (int k = 0; k <= steps; k++) {
-            const double at = arc->start + (steps ? turn * k / steps : 0);
-            add_corner(&made, &capacity, s * (arc->center_x + arc->radius * cos(at) + shape->origin.x),
-                       up * (arc->center_y + arc->radius * sin(at) + shape->origin.y),
-                       k < steps ? tan(turn / steps / 4) : 0);
+            const double at = arc->start + (steps ? turn * k / steps : 0),
+                         bulge = k < steps ? tan(turn / steps / 4) : 0,
+                         x = s * (arc->center_x + arc->radius * cos(at) + shape->origin.x),
+                         y = up * (arc->center_y + arc->radius * sin(at) + shape->origin.y);
+            if (made.count == 0 || !join_corners(&made.corners[made.count - 1], x, y, bulge, fmax(before, near)))
+                add_corner(&made, &capacity, x, y, bulge);
         }
+    }
+    const corner *const begin = made.corners;
+    if (made.kind != LINE && made.count > 3 &&
+        join_corners(&made.corners[made.count - 1], begin->x, begin->y, begin->bulge, fmax(near, first_near))) {
+        made.corners[0] = made.corners[made.count - 1];
+        made.count--;
     }
     /* Turned over, arcs turn the other way; backwards, as before. */
     for (size_t i = 0, j = made.count - 1; how->y_down && i < j; i++, j--) {
@@ -225,6 +245,20 @@ static size_t count_steps(const exporting *how, const piece *of, const bent *arc
     return (size_t)fmax(steps, 1);
 }
 
+/* Of a convex shape's polygon, whatever was rounded, the convex hull: no further out than the tolerance either. */
+static void make_convex(piece *of) {
+    narc_point *points = allocate(of->count, sizeof *points);
+    size_t count;
+    for (size_t k = 0; k < of->count; k++)
+        points[k] = (narc_point){of->corners[k].x, of->corners[k].y};
+    if (narc_compute_hull(points, of->count, points, &count, NULL) == NARC_OK && count > 2) {
+        for (size_t k = 0; k < count; k++)
+            of->corners[k] = (corner){points[k].x, points[k].y, 0};
+        of->count = count;
+    }
+    free(points);
+}
+
 static void flatten_piece(piece *of, const exporting *how) {
     piece flat = *of;
     size_t capacity = 0;
@@ -244,6 +278,8 @@ static void flatten_piece(piece *of, const exporting *how) {
         }
     }
     drop_corners(&flat, true);
+    if (flat.kind == OUTLINE)
+        make_convex(&flat);
     free(of->corners);
     *of = flat;
 }
@@ -346,6 +382,8 @@ static void place_body(export_body *of, const exporting *how) {
             *numbers[i] = shorten(*numbers[i]);
         for (size_t i = 0; i < p->count; i++)
             p->corners[i] = (corner){shorten(p->corners[i].x), shorten(p->corners[i].y), shorten(p->corners[i].bulge)};
+        if (p->kind == OUTLINE && !(how->to->keeps & ARCS)) /* in the digits that are written, too */
+            make_convex(p);
     }
     free(of->pieces);
     *of = placed;
