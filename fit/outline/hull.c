@@ -127,11 +127,17 @@ narc_status narc_make_hull(const narc_point *points, size_t count, narc_hull *ou
     return status;
 }
 
+/* Of the perimeter: a side as long as that was drawn as one, and keeps both ends. */
+static const double LONG_SIDE = 1.0 / 64;
+
 /* Are the corners between `first` and `last` within the tolerance of the segment between these two? */
 static bool is_flat_run(const narc_hull *hull, size_t first, size_t last, double tolerance) {
     const narc_point a = hull->corners[first], side = minus(hull->corners[last % hull->count], a);
     if (last - first >= hull->count)
         return false;
+    for (size_t k = first; k < last; k++)
+        if (length(minus(hull->corners[(k + 1) % hull->count], hull->corners[k])) > LONG_SIDE * hull->perimeter)
+            return false;
     for (size_t k = first + 1; k < last; k++) {
         const narc_point p = minus(hull->corners[k], a);
         const double part = dot(p, side);

@@ -43,11 +43,11 @@ static void check_both(const struct outline *of, const narc_arc *arcs, size_t co
     expect_arcs(&fit, arcs, count, 2e-6 * size);
 }
 
-static void draw_round_box(struct outline *to, double x, double y, double r, narc_point at) {
+static void draw_round_box(struct outline *to, double x, double y, double r, narc_point at, int steps) {
     const narc_point center[] = {{x - r, y - r}, {r - x, y - r}, {r - x, r - y}, {x - r, r - y}};
     for (int k = 0; k < 4; k++)
-        for (int i = 0; i <= 40; i++) {
-            const double angle = 1.5707963267948966 * (k + i / 40.0);
+        for (int i = 0; i <= steps; i++) {
+            const double angle = 1.5707963267948966 * (k + i / (double)steps);
             const narc_point p = {at.x + center[k].x + r * cos(angle), at.y + center[k].y + r * sin(angle)};
             to->points = realloc(to->points, (to->count + 1) * sizeof *to->points);
             to->points[to->count++] = p;
@@ -84,12 +84,16 @@ TEST(test_boxes_and_capsules) {
     check_both(&box, arcs, count, 3);
     assert_int_equal(narc_build_box(1, 3, 0, arcs, &count, NULL), NARC_OK);
     check_both(&tall, arcs, count, 3);
-    draw_round_box(&capsule, 3, 1, 1, (narc_point){7, -5});
+    draw_round_box(&capsule, 3, 1, 1, (narc_point){7, -5}, 40);
     assert_int_equal(narc_build_capsule(4, 1, arcs, &count, NULL), NARC_OK);
     check_both(&capsule, arcs, count, 3);
+    struct outline fine = make_outline("capsule of many corners");
+    draw_round_box(&fine, 3, 1, 1, (narc_point){7, -5}, 520);
+    check_both(&fine, arcs, count, 3);
+    free_outline(&fine);
     for (double radius = 0.125; radius < 1; radius *= 2) {
         struct outline round = make_outline("round box");
-        draw_round_box(&round, 1, 2, radius, (narc_point){-7, 5});
+        draw_round_box(&round, 1, 2, radius, (narc_point){-7, 5}, 40);
         assert_int_equal(narc_build_box(2, 4, radius, arcs, &count, NULL), NARC_OK);
         check_both(&round, arcs, count, 2);
         free_outline(&round);
@@ -121,7 +125,8 @@ TEST(test_rough) {
     struct test_random random = test_random_named("rough");
     for (size_t trial = 0, trials = test_trials(100); trial < trials; trial++) {
         struct outline of = make_outline("rough"), clean = make_outline("clean");
-        draw_round_box(&clean, random_between(&random, 1, 3), 1, random_between(&random, 0.01, 1), (narc_point){0, 0});
+        draw_round_box(&clean, random_between(&random, 1, 3), 1, random_between(&random, 0.01, 1), (narc_point){0, 0},
+                       40);
         for (size_t k = 0; k < clean.count; k++) {
             clean.points[k].x += random_between(&random, -0.005, 0.005);
             clean.points[k].y += random_between(&random, -0.005, 0.005);
