@@ -23,11 +23,11 @@ static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
     "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
     "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
     "       narc fit INPUT... --chain --tolerance T [--open] [--smooth] [--keep-going] [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
     "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
     "\n"
@@ -39,7 +39,9 @@ static const char HELP[] =
     "                  SVG           what is drawn, as one shape: plain drawings exactly, others traced\n"
     "                  PNG           the silhouette; lengths in pixels\n"
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
-    "                  JSON          points, [[x, y], ...], or a list of such lists\n"
+    "                  JSON          points, [[x, y], ...], or a list of such lists; or the frames of\n"
+    "                                TexturePacker or Aseprite, whose image is beside it\n"
+    "                  folders       the SVG and PNG files in them\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"
     "                  capsules, boxes and regular polygons within T become just that\n"
@@ -68,6 +70,8 @@ static const char MORE_HELP[] =
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
     "  --trace         plain SVG drawings too are drawn and traced\n"
+    "  --grid WxH      PNG images are sheets of cells of W x H pixels, each cell with ink a shape NAME-k,\n"
+    "                  k from 0, row by row\n"
     "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
     "                  1e-9 to 0.1, default 2e-5\n"
     "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
@@ -103,6 +107,7 @@ enum {
     SILHOUETTE,
     THRESHOLD,
     TRACE,
+    GRID,
     FLATNESS,
     MIN_RADIUS,
     STARTS,
@@ -544,6 +549,7 @@ static void run(int argc, char **argv) {
                                [SILHOUETTE] = {"--silhouette", true, NULL},
                                [THRESHOLD] = {"--threshold", true, NULL},
                                [TRACE] = {"--trace", false, NULL},
+                               [GRID] = {"--grid", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
@@ -563,6 +569,7 @@ static void run(int argc, char **argv) {
                          .ids = options[IDS].value,
                          .silhouette = options[SILHOUETTE].value,
                          .trace = options[TRACE].value,
+                         .cells = parse_grid(options[GRID].value),
                          .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
                                                     "more than 0 and less than 1", 0)};
     const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";

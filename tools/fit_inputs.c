@@ -72,6 +72,15 @@ static bool is_suffix(const char *text, const char *suffix) {
     return !*text && !*suffix;
 }
 
+static file_kind kind_of_suffix(const char *file) {
+    size_t stem;
+    const char *base = base_name(file, &stem);
+    for (size_t i = 0; i < SUFFIX_COUNT; i++)
+        if (is_suffix(base + stem, suffixes[i].suffix))
+            return suffixes[i].kind;
+    return UNKNOWN;
+}
+
 static file_kind kind_of(const char *file, const char *bytes, size_t size) {
     for (size_t i = 0; i < BEGINNING_COUNT; i++)
         if (size >= beginnings[i].length && memcmp(bytes, beginnings[i].bytes, beginnings[i].length) == 0)
@@ -84,12 +93,7 @@ static file_kind kind_of(const char *file, const char *bytes, size_t size) {
         return JSON;
     if (*text && strchr("+-.0123456789\"", *text))
         return CSV;
-    size_t stem;
-    const char *base = base_name(file, &stem);
-    for (size_t i = 0; i < SUFFIX_COUNT; i++)
-        if (is_suffix(base + stem, suffixes[i].suffix))
-            return suffixes[i].kind;
-    return UNKNOWN;
+    return kind_of_suffix(file);
 }
 
 /* ---------------------------------------------------------------------------- outlines */
@@ -201,6 +205,9 @@ char *name_part(const outline *of, size_t index, size_t count) {
 void free_outlines(outline_list *outlines) {
     cut_outlines(outlines, 0);
     free(outlines->items);
+    while (outlines->found_count)
+        free(outlines->found[--outlines->found_count]);
+    free(outlines->found);
     *outlines = (outline_list){0};
 }
 
@@ -381,7 +388,7 @@ static char *make_shape_name(const char *text, size_t length) {
     return name;
 }
 
-/* The outline of a file, or of an element of it, which then gives the name. */
+/* The outline of a file, or of an element or a frame of it, which then gives the name. */
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                          const char *element, outline_list *outlines) {
     size_t stem;
@@ -392,17 +399,22 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false, exact = false;
-    const narc_image_request image = {
-        choose_silhouette(how->silhouette), how->threshold, &whole, element, how->trace, &exact};
+    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole,
+                                      kind == SVG ? element : NULL,       how->trace,     &exact};
     warning[0] = 0;
     if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
-        report_text(file, &error);
+        if (kind == PNG && element)
+            report_at(file, 0, "frame '%s': %s", narc_make_excerpt(element).text, error.message);
+        else
+            report_text(file, &error);
         cut_outlines(outlines, outlines->count - 1);
         return;
     }
     added->way = kind != SVG ? NOT_SVG : exact ? BY_GEOMETRY : BY_PICTURE;
     if (warning[0])
         warn_at(file, "a part of it, perhaps some text, may be missing: %s", warning);
+    if (whole && kind == PNG && element) /* a wall of a tileset */
+        return;
     if (whole && image.silhouette == NARC_SILHOUETTE_ALPHA)
         warn_at(file, "opaque throughout, its outline is a rectangle; --silhouette dark or light traces what it shows");
     else if (whole)
@@ -423,32 +435,85 @@ static void read_elements(const char *file, const char *bytes, size_t size, cons
     free(ids);
 }
 
+typedef struct sheet_reading {
+    const char *file;
+    const reading *how;
+    outline_list *outlines;
+} sheet_reading;
+
+static void take_outline(const char *name, const char *png, size_t size, void *context) {
+    const sheet_reading *at = context;
+    read_outline(at->file, PNG, png, size, at->how, name, at->outlines);
+}
+
+static void read_cells(const char *file, const char *bytes, size_t size, sheet_reading *at) {
+    size_t stem;
+    const char *base = base_name(file, &stem);
+    char *name = join_text(base, stem, "");
+    read_grid(file, bytes, size, at->how->cells, name, take_outline, at);
+    free(name);
+}
+
+static void read_file(const char *file, const reading *how, bool *met, outline_list *outlines) {
+    size_t size;
+    char *bytes = try_read_bytes(file, &size);
+    if (!bytes)
+        return;
+    const file_kind kind = kind_of(file, bytes, size);
+    sheet_reading at = {file, how, outlines};
+    if (kind < KIND_COUNT)
+        met[kind] = true;
+    if (kind == UNKNOWN)
+        report_at(file, 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
+    else if (kind == FONT)
+        read_glyphs(file, bytes, size, how->characters, outlines);
+    else if (kind == SVG && how->ids)
+        read_elements(file, bytes, size, how, outlines);
+    else if (kind == PNG && how->cells.width)
+        read_cells(file, bytes, size, &at);
+    else if (kind != JSON || !read_sheet(file, bytes, size, take_outline, &at))
+        read_outline(file, kind, bytes, size, how, NULL, outlines);
+    free(bytes);
+}
+
+/* The pictures of a folder; with characters fonts are some. */
+static void read_folder(const char *folder, char **paths, size_t count, const reading *how, bool *met,
+                        outline_list *outlines) {
+    size_t taken = 0;
+    for (size_t k = 0; k < count; k++) {
+        const file_kind kind = kind_of_suffix(paths[k]);
+        if (kind == SVG || kind == PNG || (kind == FONT && how->characters)) {
+            outlines->found =
+                grow(outlines->found, &outlines->found_capacity, outlines->found_count + 1, sizeof *outlines->found);
+            outlines->found[outlines->found_count++] = paths[k];
+            read_file(paths[k], how, met, outlines);
+            taken++;
+        } else {
+            free(paths[k]);
+        }
+    }
+    free(paths);
+    if (taken == 0)
+        report_at(folder, 0, "a folder without .svg or .png files");
+}
+
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
     bool met[KIND_COUNT] = {false};
     watch_warnings();
     for (size_t i = 0; i < count; i++) {
-        size_t size;
-        char *bytes = try_read_bytes(files[i], &size);
-        if (!bytes)
-            continue;
-        const file_kind kind = kind_of(files[i], bytes, size);
-        if (kind < KIND_COUNT)
-            met[kind] = true;
-        if (kind == UNKNOWN)
-            report_at(files[i], 0,
-                      "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
-        else if (kind == FONT)
-            read_glyphs(files[i], bytes, size, how->characters, out_outlines);
-        else if (kind == SVG && how->ids)
-            read_elements(files[i], bytes, size, how, out_outlines);
+        size_t inside;
+        char **paths = strcmp(files[i], "-") == 0 ? NULL : list_folder(files[i], &inside);
+        if (paths)
+            read_folder(files[i], paths, inside, how, met, out_outlines);
         else
-            read_outline(files[i], kind, bytes, size, how, NULL, out_outlines);
-        free(bytes);
+            read_file(files[i], how, met, out_outlines);
     }
     if (how->characters && !met[FONT])
         fail("--characters is for fonts, and none is given");
     if (how->ids && !met[SVG])
         fail("--ids is for SVG, and none is given");
+    if (how->cells.width && !met[PNG])
+        fail("--grid is for PNG, and none is given");
     if (how->threshold > 0 && !met[PNG] && !met[SVG])
         fail("--threshold is for PNG and SVG, and neither is given");
     if (how->silhouette && !met[PNG] && !met[SVG])

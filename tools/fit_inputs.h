@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "narc_fit.h"
+#include "sheets.h"
 
 typedef struct outline {
     char *name; /* a shape name, other than all before it */
@@ -20,6 +21,8 @@ typedef struct outline {
 typedef struct outline_list {
     outline *items;
     size_t count, capacity;
+    char **found; /* paths of files in folders, which outlines have */
+    size_t found_count, found_capacity;
 } outline_list;
 
 typedef struct reading {
@@ -27,10 +30,11 @@ typedef struct reading {
     const char *silhouette; /* of images and drawings: alpha, dark, light; NULL: the usual one */
     const char *ids;        /* of elements of SVG, with commas between; NULL: what all draw together */
     bool trace;             /* SVG files are drawn and traced even if they are plain */
+    grid cells;             /* of PNG images that are sheets */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
 } reading;
 
-/* Reads files: each font gives an outline for each character (once, without variation selectors), SVG one for each
+/* Reads files, and those folders that are named; of these the pictures: each font gives an outline for each character (once, without variation selectors), SVG one for each
  * id, each other file one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
  * to apply to. A command that keeps going leaves out what cannot be read. */
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines);

@@ -29,6 +29,10 @@ char *find_real_path(const char *path);
 /* Is something there that is no regular file, such as a device, a pipe or a folder? */
 bool is_special(const char *path);
 
+/* The paths of what a folder holds, hidden files left out, sorted by their bytes; the caller's to free, each and all. NULL
+ * if it is no folder that can be read. */
+char **list_folder(const char *path, size_t *out_count);
+
 /* Opens a temporary file beside a target. Where that is there, the file has its owner (where that is allowed) and its
  * permissions, or else those that the user's mask allows. A target that is read-only is not to be replaced: EACCES or
  * EROFS. The new file's name, the caller's to remove and to free, is told before the file is there, so that a signal

@@ -3,6 +3,7 @@
  * system_posix.c - files and signals of POSIX.
  */
 #define _XOPEN_SOURCE 700 /* realpath, mkstemp */
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -39,6 +40,28 @@ char *find_real_path(const char *path) { return realpath(path, NULL); }
 bool is_special(const char *path) {
     struct stat found;
     return stat(path, &found) == 0 && !S_ISREG(found.st_mode);
+}
+
+static int compare_paths(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+char **list_folder(const char *path, size_t *out_count) {
+    DIR *folder = opendir(path);
+    if (!folder)
+        return NULL;
+    size_t capacity = 0, count = 0;
+    char **paths = grow(NULL, &capacity, 1, sizeof *paths);
+    char *within = join_text(path, strlen(path), path[strlen(path) - 1] == '/' ? "" : path_separator);
+    for (const struct dirent *entry; (entry = readdir(folder));) {
+        if (entry->d_name[0] == '.')
+            continue;
+        paths = grow(paths, &capacity, count + 1, sizeof *paths);
+        paths[count++] = join_text(within, strlen(within), entry->d_name);
+    }
+    closedir(folder);
+    free(within);
+    qsort(paths, count, sizeof *paths, compare_paths);
+    *out_count = count;
+    return paths;
 }
 
 /* rename() would replace a file that may not be written to, and root may write to all. */

@@ -127,6 +127,36 @@ bool is_special(const char *path) {
     return special;
 }
 
+static int compare_paths(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+char **list_folder(const char *path, size_t *out_count) {
+    const size_t length = strlen(path);
+    char *within = join_text(path, length, folder_length(path) == length ? "" : path_separator),
+         *any = join_text(within, strlen(within), "*");
+    wchar_t *wide = widen(any);
+    WIN32_FIND_DATAW found;
+    const HANDLE search = FindFirstFileW(wide, &found);
+    size_t capacity = 0, count = 0;
+    char **paths = search == INVALID_HANDLE_VALUE ? NULL : grow(NULL, &capacity, 1, sizeof *paths);
+    for (BOOL more = paths != NULL; more; more = FindNextFileW(search, &found)) {
+        if (found.cFileName[0] == L'.')
+            continue;
+        char *name = narrow(found.cFileName);
+        paths = grow(paths, &capacity, count + 1, sizeof *paths);
+        paths[count++] = join_text(within, strlen(within), name);
+        free(name);
+    }
+    if (paths) {
+        FindClose(search);
+        qsort(paths, count, sizeof *paths, compare_paths);
+        *out_count = count;
+    }
+    free(within);
+    free(any);
+    free(wide);
+    return paths;
+}
+
 /* Other programs, and this one, may remove the file while it is open. */
 FILE *open_temporary(const char *target, char *volatile *out_name) {
     wchar_t *wide = widen(target);

@@ -37,11 +37,11 @@ printf '0,0\n1,1\n2,2\n' >flat.csv
 fails "fit: points on a line" "narc: flat.csv: .*line" fit flat.csv --arcs 4 --out new.json
 
 # Errors in some of many files.
-: >none.csv && cp fits/square.csv 0.csv && printf '0,0\n1,x\n' >word.csv
+mkdir nothing && : >none.csv && cp fits/square.csv 0.csv && printf '0,0\n1,x\n' >word.csv
 fails "fit: one empty file of many" "narc: none.csv: the text is empty" fit 0.csv none.csv fits/square.csv --arcs 4 \
     --out new.json
 for kind in "--arcs 4" "--chain --tolerance 0.1"; do
-    "$narc" fit none.csv 0.csv flat.csv word.csv absent.csv fits/square.csv fits $kind --keep-going --out some.json \
+    "$narc" fit none.csv 0.csv flat.csv word.csv absent.csv fits/square.csv nothing $kind --keep-going --out some.json \
         --picture some.png >out.txt 2>err.txt
     check "keep going, $kind: status 1" test $? -eq 1
     left="shape-0 square "
@@ -52,7 +52,7 @@ for kind in "--arcs 4" "--chain --tolerance 0.1"; do
 narc: none.csv: the text is empty
 word.csv:2: y is not a number: 'x'
 narc: absent.csv: No such file or directory
-narc: fits: Is a directory
+narc: nothing: a folder without .svg or .png files
 narc: flat.csv: all points of the outline lie on a line, it has no area
 narc: errors: 5; shapes written: 2
 EOT
