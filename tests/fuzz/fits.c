@@ -46,7 +46,12 @@ static void check_result(struct bytes *from, const struct outline *outline) {
         check_contained(outline, &result, "fuzz");
 }
 
-static void check_plain(const struct outline *outline, double tolerance) {
+/* Within a part of the size: finer ones have thousands of corners of curves, which take seconds to check. */
+static void check_plain(const struct outline *outline, double part) {
+    double size = 0;
+    for (size_t k = 0; k < outline->count; k++)
+        size = fmax(size, fmax(fabs(outline->points[k].x), fabs(outline->points[k].y)));
+    const double tolerance = fmax(part, 0.01) * size;
     const narc_fit_request request = {.family = NARC_FIT_PLAIN, .tolerance = tolerance};
     narc_fit_result result;
     if (narc_fit_path(outline->path, &request, &result, NULL) != NARC_OK)
