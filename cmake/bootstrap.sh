@@ -58,7 +58,7 @@ fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-li
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libccd-dev libgeos-dev"
-test_packages="$run_packages g++ binutils python3-dev python3-numpy python3-pytest python3-hypothesis python3-shapely dpkg-dev file
+test_packages="$run_packages g++ binutils python3-dev python3-numpy python3-pytest python3-hypothesis python3-shapely python3-ezdxf dpkg-dev file
     meson"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
@@ -451,10 +451,16 @@ dem() {
     ls -ld out/dem/*
 }
 
+# Of what is random two fifths of the trials, where all would take minutes more: these are for who changes a kernel.
+few_trials=0.4
+
 # One build, the one that users have, and what answers in minutes; the gate has the rest. Or another preset's.
 test_build() {
     case $1 in
-    ci) require_packages $gate_packages ;;
+    ci)
+        require_packages $gate_packages
+        export NARC_TEST_TRIALS="$few_trials"
+        ;;
     *) require_packages $test_packages ;;
     esac
     build "$1" all
@@ -480,8 +486,7 @@ gate() {
     build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
     test_app dem
-    # Of what is random two fifths of the trials: all of them take minutes, and are for who changes a kernel.
-    NARC_TEST_TRIALS=0.4 ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
+    NARC_TEST_TRIALS="$few_trials" ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
         fail "tests failed in build/ci"
     # What these libraries do for the kernels is the same on each instruction set: plain C is built.
     cmake --preset bare -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF ||

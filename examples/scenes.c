@@ -316,7 +316,28 @@ static void build_bowl(world *w, uint64_t seed) {
     add_body(w, box);
 }
 
-/* A well whose bottom is half of a circle, and a thousand bodies above it. */
+/* A gear of six teeth: three bars, and a hub that holds each by two pins. */
+static void add_gear(world *w, float x, float y, float angle) {
+    enum { BARS = 3 };
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_build_box(1.3, 0.26, 0.08, arcs, &count, &w->error);
+    const uint32_t bar = add_shape(w, arcs, count);
+    narc_build_circle(0.4, arcs, &count, &w->error);
+    const uint32_t hub = add_shape(w, arcs, count);
+    for (int k = 0; k <= BARS; k++) {
+        add_body(w, make_body(k < BARS ? bar : hub, x, y, angle + (float)(pi / BARS) * (float)k));
+        if (w->error.status != NARC_OK)
+            return;
+        w->bodies[w->body_count - 1].owner = (uint32_t)w->joint_count; /* a number of its own */
+    }
+    world_body *const last = &w->bodies[w->body_count - 1];
+    for (world_body *body = last - BARS; body < last; body++)
+        for (float side = -0.3f; side < 0.5f; side += 0.6f)
+            world_pin(w, last, body, add(body->position, to_world(body, (vec){side, 0})));
+}
+
+/* A well whose bottom is half of a circle, and above it a thousand bodies, gears among them. */
 static void build_well(world *w, uint64_t seed) {
     enum { COLUMNS = 25, BODIES = 1000 };
     const double radius = 20, wall = 14;
@@ -331,11 +352,14 @@ static void build_well(world *w, uint64_t seed) {
     add_ground(w, &t);
     for (int i = 0; i < KINDS * SIZES; i++)
         shapes[i] = add_kind(w, i / SIZES, 0.7 + 0.3 * (i % SIZES));
-    for (int k = 0; k < BODIES; k++) {
+    for (int k = 0; w->body_count < BODIES && w->error.status == NARC_OK; k++) {
         const uint32_t kind = (uint32_t)random_between(&seed, 0, KINDS * SIZES);
         const float x = 1.4f * ((float)(k % COLUMNS) - 0.5f * (float)(COLUMNS - 1)),
-                    y = 18 + 1.4f * (float)(k / COLUMNS);
-        add_body(w, make_body(shapes[kind], x, y, random_between(&seed, -3, 3)));
+                    y = 18 + 1.4f * (float)(k / COLUMNS), angle = random_between(&seed, -3, 3);
+        if (k % 33 == 16)
+            add_gear(w, x, y, angle);
+        else
+            add_body(w, make_body(shapes[kind], x, y, angle));
     }
 }
 

@@ -562,6 +562,52 @@ static void put_name(writer *to, const char *name) {
         put(to, *name == '\\' ? "\\\\" : (char[]){*name, 0});
 }
 
+typedef struct built {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+} built;
+
+static bool is_built(narc_status status, const built *from, const narc_named_shape *shape) {
+    return !status && from->count == shape->arc_count &&
+           memcmp(from->arcs, shape->arcs, from->count * sizeof *from->arcs) == 0;
+}
+
+/* A circle, capsule or box about its origin, or a polygon with corners, has few numbers: if they give the same arcs, to the
+ * last bit, they are written. */
+static bool put_plain(writer *to, const narc_named_shape *shape) {
+    const narc_arc *arcs = shape->arcs;
+    const double x = fabs(arcs[0].center_x), y = fabs(arcs[0].center_y), radius = arcs[0].radius;
+    narc_point corners[NARC_MAX_ARCS];
+    built from;
+    if (is_built(narc_build_circle(radius, from.arcs, &from.count, NULL), &from, shape)) {
+        put_number(to, "], \"circle\": ", radius);
+    } else if (is_built(narc_build_capsule(2 * x, radius, from.arcs, &from.count, NULL), &from, shape)) {
+        put_number(to, "], \"capsule\": {\"length\": ", 2 * x);
+        put_number(to, ", \"radius\": ", radius);
+        put(to, "}");
+    } else if (is_built(narc_build_box(2 * (x + radius), 2 * (y + radius), radius, from.arcs, &from.count, NULL), &from,
+                        shape)) {
+        put_number(to, "], \"box\": {\"width\": ", 2 * (x + radius));
+        put_number(to, ", \"height\": ", 2 * (y + radius));
+        if (radius > 0)
+            put_number(to, ", \"radius\": ", radius);
+        put(to, "}");
+    } else {
+        for (size_t k = 0; k < shape->arc_count; k++)
+            corners[k] = (narc_point){arcs[k].center_x, arcs[k].center_y};
+        if (!is_built(narc_build_polygon(corners, shape->arc_count, 0, from.arcs, &from.count, NULL), &from, shape))
+            return false;
+        for (size_t k = 0; k < shape->arc_count; k++) {
+            put_number(to, k ? ", [" : "], \"polygon\": [[", corners[k].x);
+            put_number(to, ", ", corners[k].y);
+            put(to, "]");
+        }
+        put(to, "]");
+    }
+    put(to, "}");
+    return true;
+}
+
 static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count) {
     put(to, "{\"shapes\": [");
     for (size_t i = 0; i < count; i++) {
@@ -570,6 +616,8 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
         put_name(to, shape->name);
         put_number(to, "\", \"origin\": [", shape->origin.x);
         put_number(to, ", ", shape->origin.y);
+        if (shape->form == NARC_FORM_SHAPE && put_plain(to, shape))
+            continue;
         put(to, shape->form == NARC_FORM_SHAPE        ? "], \"arcs\": ["
                 : shape->form == NARC_FORM_OPEN_CHAIN ? "], \"chain\": {\"closed\": false, \"arcs\": ["
                                                       : "], \"chain\": {\"closed\": true, \"arcs\": [");

@@ -13,6 +13,7 @@
 #include "outline/vector.h"
 #include "result/finish.h"
 #include "result/paper.h"
+#include "result/plain.h"
 #include "solve/ladder.h"
 
 enum { MOST_STARTS = 100000 };
@@ -41,8 +42,8 @@ static const double SYMMETRIC = 1e-9;
 static const double LEAST_THINNING = 1e-6, MOST_THINNING = 1e-3;
 enum { MOST_CORNERS = 2000 };
 
-/* With a tolerance, curves are flattened to this part of it at least. */
-static const double FLATNESS_OF_TOLERANCE = 0.02;
+/* With a tolerance, curves are flattened to this part of it at least; of plain shapes, whose numbers are wanted, to this. */
+static const double FLATNESS_OF_TOLERANCE = 0.02, FLATNESS_OF_PLAIN = 2e-4;
 
 /* Coordinates are rounded to single precision, by up to this part of their size. */
 static const double SINGLE_ROUNDING = 0x1p-24;
@@ -83,7 +84,7 @@ static narc_status check_request(const narc_path *path, const narc_fit_request *
                          : !request ? "the request"
                                     : "the result");
     }
-    if ((unsigned)request->family > NARC_FIT_PAPER)
+    if ((unsigned)request->family > NARC_FIT_PLAIN)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->family, "there is no family %d", (int)request->family);
     if ((unsigned)request->goal > NARC_FIT_DIFFERENCE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->goal, "there is no goal %d", (int)request->goal);
@@ -91,6 +92,9 @@ static narc_status check_request(const narc_path *path, const narc_fit_request *
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->goal, "the paper's route has no goal but to bound");
     const bool corners = request->family == NARC_FIT_POLYGON || request->family == NARC_FIT_PAPER;
     const size_t least = corners ? 3 : 1;
+    if (request->family == NARC_FIT_PLAIN && request->arc_count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)request->arc_count,
+                         "%zu arcs, but plain shapes have as many as they need", request->arc_count);
     if (request->arc_count > NARC_MAX_FIT_ARCS || (request->arc_count && request->arc_count < least)) {
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)request->arc_count, "%zu arcs, but a fit has %zu to %d",
                          request->arc_count, least, NARC_MAX_FIT_ARCS);
@@ -257,7 +261,7 @@ static narc_status prepare(const narc_path *path, struct job *job, narc_error *e
     const narc_fit_request *request = job->request;
     double flatness = request->flatness;
     if (flatness == 0 && request->arc_count == 0)
-        flatness = FLATNESS_OF_TOLERANCE * request->tolerance;
+        flatness = (request->family == NARC_FIT_PLAIN ? FLATNESS_OF_PLAIN : FLATNESS_OF_TOLERANCE) * request->tolerance;
     narc_status status = narc_flatten_path(path, flatness, &job->outline, error);
     if (status == NARC_ERROR_SIZE &&
         request->flatness == 0) /* finer than numbers are: such a tolerance is not reached */
@@ -276,7 +280,8 @@ static narc_status prepare(const narc_path *path, struct job *job, narc_error *e
                          "the outline is as thin as a line, single precision can't tell its sides apart");
     }
     status = check_origin(job, error);
-    status = status ? status : settle_hull(job, error);
+    if (!status && request->family != NARC_FIT_PLAIN)
+        status = settle_hull(job, error);
     job->hull.inflation = job->flatness / job->frame.radius;
     for (double tolerance = LEAST_THINNING;
          status == NARC_OK && job->hull.count > MOST_CORNERS && tolerance < MOST_THINNING;) {
@@ -563,7 +568,10 @@ narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request
     }
     job.progress = (narc_progress){.tell = request->progress, .context = request->context};
     narc_fit_result result;
-    status = fit_rounds(&job, &result, error);
+    status = request->family == NARC_FIT_PLAIN
+                 ? narc_see_plain(&job.hull, &job.frame, tolerance_goal(request) == NARC_FIT_BOUND_DISTANCE,
+                                  request->tolerance - job.flatness, request->min_radius, &result, error)
+                 : fit_rounds(&job, &result, error);
     narc_clear_ladder(&job.ladder);
     narc_release_hull(&job.hull);
     narc_release_hull(&job.mirrored);

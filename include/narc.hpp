@@ -770,6 +770,10 @@ class index : public detail::owner<narc_index, narc_create_index, narc_destroy_i
     result<narc_index_statistics> describe() const {
         return detail::ask<narc_index_statistics>(narc_describe_index, get());
     }
+    // How many nodes the level has, whose boxes are the first ones.
+    result<size_t> copy_nodes(size_t level, span<narc_box> out) const {
+        return detail::ask<size_t>(narc_copy_nodes, get(), level, out.data(), ptrdiff_t{0}, out.size());
+    }
     // Its columns stay until the next query.
     result<narc_pairs> query(span<const narc_box> boxes, const narc_index_query &query = {}) {
         return detail::ask<narc_pairs>(narc_query_index, get(), boxes.data(), boxes.size(), &query);

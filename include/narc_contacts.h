@@ -81,7 +81,7 @@ NARC_API void narc_destroy_contacts(narc_contacts *contacts);
  *                       body's diameter, and the first of them is within the margin: features and the normal in A
  *                       stay, points and separations follow the bodies. So a separation is off by less than
  *                       `recycling`, and a contact that should have come at another place of the two may come late by
- *                       as much
+ *                       as much. Rows of a half-plane are always asked for
  *   motion_x, motion_y  world axes: what each body moves in this step; pairs that come close on the way are there, too
  *   reach               at least 0: how far beyond that a body may reach, such as by rotation
  *   ahead               at least 0: how much further than the margin contacts of a body are told, a fast one's; of two

@@ -70,7 +70,7 @@ NARC_API size_t narc_find_named_shape(const narc_shape_list *shapes, const char 
 NARC_API void narc_destroy_shape_list(narc_shape_list *shapes);
 
 /* Writes `shapes[0 .. count-1]`, count > 0, as a shapes file: arcs and origin of each, with 17 significant digits, so that
- * reading gives the same bits. The text, of *out_size bytes and a NUL behind them, is the caller's: memory of `allocator`,
+ * reading gives the same bits; circles, capsules, boxes and polygons by their few numbers where these give them, too. The text, of *out_size bytes and a NUL behind them, is the caller's: memory of `allocator`,
  * NULL: of malloc(). Equal shapes give equal bytes.
  * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (no shape), NARC_ERROR_FORMAT (a name that
  * cannot be one or is another shape's), NARC_ERROR_NOT_FINITE (an origin), and those of narc_add_shape() and

@@ -11,6 +11,7 @@
  *
  *       family      n-arc: arcs with continuous tangents   edges: arcs, straight edges between them where they help
  *                   polygon: straight edges only           paper: Algorithm 1 on a polygon, enlarged until it bounds
+ *                   plain: a circle, capsule, box or regular polygon, if the outline is one
  *       goal        what is least: area, perimeter, largest distance to the hull, area between shape and hull
  *       arc count   given, or the fewest for a given largest distance
  *
@@ -183,7 +184,10 @@ typedef enum narc_fit_family {
     NARC_FIT_N_ARC = 0,   /* arcs with continuous tangents; an arc of radius 0 is a corner */
     NARC_FIT_EDGES = 1,   /* arcs, with straight edges between them where they help */
     NARC_FIT_POLYGON = 2, /* straight edges only: corners are arcs of radius 0 */
-    NARC_FIT_PAPER = 3    /* yardstick: the least-area bounding polygon, Algorithm 1, enlarged until it bounds */
+    NARC_FIT_PAPER = 3,   /* yardstick: the least-area bounding polygon, Algorithm 1, enlarged until it bounds */
+    NARC_FIT_PLAIN = 4 /* the first within `tolerance` of circle, capsule, box, box with round corners, regular polygon
+                             of 3 to 16 sides; what lies along the axes has the arcs of narc_build_circle() and its
+                             neighbours. No search; arc_count must be 0 */
 } narc_fit_family;
 
 typedef enum narc_fit_goal {
@@ -204,7 +208,8 @@ typedef struct narc_fit_request {
     double tolerance; /* with arc_count 0: the largest distance from the hull that is allowed */
     narc_fit_family family;
     narc_fit_goal goal; /* with arc_count 0: of the BOUND goals any makes the fit bound; the others do not */
-    double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
+    double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS, or with a tolerance 2 % of that, of
+                           plain shapes 0.02 % */
     double min_radius;  /* of every arc, a length in the path's unit, which keeps the outline smooth; 0: none, and a
                            corner is an arc of radius 0. Not for polygons and the paper's route */
     bool keep_origin;   /* arcs keep the path's coordinates, in double precision, and result.origin is 0, 0. A store
@@ -240,11 +245,12 @@ typedef struct narc_fit_result {
 /* Fits an arc shape. Deterministic: equal input gives equal bits on one machine (but for `seconds`). The shape passes
  * narc_add_shape(). With arc_count 0 the fit is that of least largest distance, bounding or not, and what is compared
  * with the tolerance is max_distance + flatness. Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not
- * exist; the paper's route with another goal than BOUND_AREA; polygons, or that route, with a least radius),
+ * exist; the paper's route with another goal than BOUND_AREA; polygons, or that route, with a least radius; plain shapes
+ * with a number of arcs),
  * NARC_ERROR_COUNT (arc_count; an outline without points), NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: an
  * area below 1e-5 of the radius squared), NARC_ERROR_SIZE (tolerance not positive; least radius negative or more than
  * 16 times the hull's from its centroid; outline too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not
- * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was; the paper's route finds no n-arc; or single
+ * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was, or by a plain shape; the paper's route finds no n-arc; or single
  * precision rounds by more than 1/16 of the outline's radius where its origin is to be kept), NARC_ERROR_MEMORY,
  * NARC_ERROR_CANCELLED. Refused before any search are tolerances below 2^-24 of the outline's radius (single precision),
  * below the flatness (of bounding fits twice that) and, of n-arcs, below what arcs with the largest radius bulge on the
@@ -294,6 +300,17 @@ typedef struct narc_parts {
 NARC_API narc_status narc_cut_path(const narc_path *path, const narc_parts_request *request, narc_parts *out_parts,
                                    narc_error *error);
 NARC_API void narc_release_parts(narc_parts *parts);
+
+/* Cuts an outline of straight lines and convex arcs into convex parts that are just it, but for single precision: no
+ * tolerance, no laps, arcs stay whole or become arcs of their circles. An L is two boxes. Inside is what an odd number of
+ * contours is around. With c corners that turn inwards and h holes there are at most c + 1 - h parts, and one less for each cut
+ * that serves two corners; not always the fewest. Of a part's fit areas, perimeter, edges and origin are set, distances are 0.
+ * *out_count is also set if `capacity` is less. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (no points),
+ * NARC_ERROR_NO_SOLUTION (a curve, a concave arc, which no convex part has, or an outline traced in an image: error->index is the
+ * contour, from 0, and error->value the number of the line, arc or curve in it), NARC_ERROR_NOT_SIMPLE (contours that cross or
+ * touch; as before), NARC_ERROR_CAPACITY, NARC_ERROR_MEMORY, and those of narc_add_shape(): a part is too thin or small. */
+NARC_API narc_status narc_cut_exactly(const narc_path *path, narc_fit_result *out_parts, size_t capacity,
+                                      size_t *out_count, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ biarcs */
 

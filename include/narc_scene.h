@@ -122,6 +122,16 @@ typedef struct narc_index_statistics {
 NARC_API narc_status narc_describe_index(const narc_index *index, narc_index_statistics *out_statistics,
                                          narc_error *error);
 
+/* The boxes of a level's nodes, to draw a tree: level 0 are the leaves, the last one is the box around all. Node k holds nodes 8 k
+ * to 8 k + 7 of the level below, as many as there are.
+ *   out_boxes   relative to the index's origin; empty where nothing is below a node
+ *   stride      bytes from a box to the next, a multiple of 4; 0: no gaps
+ *   capacity    boxes that there is room for
+ *   out_count   how many nodes the level has, 0 from narc_index_statistics.depth on; set with NARC_ERROR_CAPACITY, too
+ * Errors, found before anything else is written: NARC_ERROR_ARGUMENT (NULL, stride), NARC_ERROR_CAPACITY. */
+NARC_API narc_status narc_copy_nodes(const narc_index *index, size_t level, narc_box *out_boxes, ptrdiff_t stride,
+                                     size_t capacity, size_t *out_count, narc_error *error);
+
 /* Which bodies are parts of one thing: those with the same owner, as narc_place_parts() has them. A ray or a point has
  * one row of a thing at most, and what is inside of it is inside of all its parts together, not at a seam between two.
  *   owner     of each body of the index, any number; UINT32_MAX: the body is a thing by itself

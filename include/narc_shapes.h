@@ -286,7 +286,8 @@ NARC_API narc_status narc_move_arcs(const narc_arc *arcs, size_t count, double x
 /* ----------------------------------------------------------------------------------------- derived quantities */
 
 /* All of these take a valid list of arcs (see narc_validate_arcs()), compute in double precision from closed forms, and
- * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS. */
+ * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS, or a
+ * place, direction or angle that is not finite. */
 
 /* Area, its centroid and its second moment about the centroid (times a density: mass and moment of inertia). Green's
  * theorem, arc by arc. A segment has area and second moment 0, and its middle is its centroid: a body of that shape is

@@ -88,7 +88,7 @@ bool narc_compute_perimeter(const narc_arc *arcs, size_t count, double *out_peri
 bool narc_compute_aabb(const narc_arc *arcs, size_t count, double angle, narc_aabb *out_aabb) {
     narc_outline o;
     double c, s;
-    if (!read_list(arcs, count, out_aabb, &o))
+    if (!isfinite(angle) || !read_list(arcs, count, out_aabb, &o))
         return false;
     narc_find_normal(angle, &c, &s);
     double x = c * o.origin_x - s * o.origin_y, y = s * o.origin_x + c * o.origin_y;
@@ -139,7 +139,7 @@ bool narc_find_support(const narc_arc *arcs, size_t count, double direction_x, d
 
 bool narc_compute_distance(const narc_arc *arcs, size_t count, const narc_point *point, double *out_distance) {
     narc_outline o;
-    if (!point || !read_list(arcs, count, out_distance, &o))
+    if (!point || !isfinite(point->x) || !isfinite(point->y) || !read_list(arcs, count, out_distance, &o))
         return false;
     *out_distance = narc_find_point_separation(&o, point->x - o.origin_x, point->y - o.origin_y, NULL);
     return true;

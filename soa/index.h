@@ -158,6 +158,10 @@ static inline size_t narc_count_nodes(const narc_index *index) {
     return index->level_count > 0 ? (size_t)index->first_node[index->level_count - 1] + 1 : 0;
 }
 
+static inline narc_box narc_get_node_box(const narc_index_node *node, size_t slot) {
+    return (narc_box){node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
+}
+
 /* The box around all. Empty boxes change nothing. */
 static inline narc_box narc_find_index_box(const narc_index *index) {
     narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};

@@ -345,6 +345,7 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     return status == NARC_OK ? narc_share_encoded_shape(shapes, &encoded, out_shape, error) : status;
 }
 
+#if NARC_PIECES
 narc_status narc_add_half_plane(narc_shapes *shapes, uint32_t *out_shape, narc_error *error) {
     narc_encoded_shape encoded;
     if (!shapes)
@@ -352,6 +353,7 @@ narc_status narc_add_half_plane(narc_shapes *shapes, uint32_t *out_shape, narc_e
     const narc_status status = narc_encode_plane(&encoded, error);
     return status == NARC_OK ? narc_share_encoded_shape(shapes, &encoded, out_shape, error) : status;
 }
+#endif
 
 narc_status narc_add_shape_at(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
                               narc_error *error) {

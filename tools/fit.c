@@ -20,7 +20,7 @@
 #include "text.h"
 
 static const char HELP[] =
-    "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
+    "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
     "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace]\n"
@@ -41,10 +41,12 @@ static const char HELP[] =
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
-    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull\n"
+    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"
+    "                  capsules, boxes and regular polygons within T become just that\n"
     "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
     "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
-    "                  outline, or with --arcs, which is for each, the nearest\n"
+    "                  outline, or with --arcs, which is for each, the nearest; with neither:\n"
+    "                  exactly the outline, of lines and convex arcs, without overlap\n"
     "  --bound         the shape contains the outline; the default\n"
     "  --approximate   it may also lie inside\n"
     "  --objective NAME\n"
@@ -55,7 +57,7 @@ static const char HELP[] =
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
     "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
-    "  --no-edges      not in these either\n"
+    "  --no-edges      not in these either, nor plain shapes with a tolerance\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
 static const char MORE_HELP[] =
@@ -141,10 +143,18 @@ static void check_combinations(const option *options) {
         fail("--open is for --chain: shapes are closed");
     if (options[SMOOTH].value && !options[CHAIN].value)
         fail("--smooth is for --chain: shapes are smooth without it");
-    if (options[NO_EDGES].value && !options[PARTS].value)
-        fail("--no-edges is for --parts: other shapes have edges with --edges alone");
-    if (!options[ARCS].value && !options[TOLERANCE].value)
+    if (options[NO_EDGES].value && !options[PARTS].value && !options[TOLERANCE].value)
+        fail("--no-edges is for --parts and --tolerance: other shapes have edges with --edges alone");
+    if (options[ARCS].value || options[TOLERANCE].value)
+        return;
+    if (!options[PARTS].value)
         fail("--arcs or --tolerance is missing");
+    static const int of_fits[] = {BOUND,   APPROXIMATE, OBJECTIVE, EDGES,      NO_EDGES,
+                                  POLYGON, PAPER,       FLATNESS,  MIN_RADIUS, STARTS};
+    for (size_t k = 0; k < sizeof of_fits / sizeof of_fits[0]; k++)
+        if (options[of_fits[k]].value)
+            fail("%s is for fits: --parts alone, without --arcs or --tolerance, cuts the outline exactly",
+                 options[of_fits[k]].name);
 }
 
 static narc_fit_goal choose_goal(const option *options) {
@@ -240,7 +250,14 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
     out->fits = allocate(out->count, sizeof *out->fits);
     for (how->at.part = 0; how->at.part < out->count; how->at.part++) {
         narc_fit_result *fit = &out->fits[how->at.part];
+        const narc_fit_family family = request.family;
+        const bool may_be_plain =
+            request.arc_count == 0 && !how->no_edges && (family == NARC_FIT_N_ARC || family == NARC_FIT_EDGES);
+        request.family = may_be_plain ? NARC_FIT_PLAIN : family;
         narc_status status = narc_fit_path(paths[how->at.part], &request, fit, error);
+        request.family = family;
+        if (status == NARC_ERROR_NO_SOLUTION && may_be_plain)
+            status = narc_fit_path(paths[how->at.part], &request, fit, error);
         if (status == NARC_ERROR_NO_SOLUTION && how->parts && !how->no_edges && request.family == NARC_FIT_N_ARC) {
             request.family = NARC_FIT_EDGES;
             status = narc_fit_path(paths[how->at.part], &request, fit, error);
@@ -332,13 +349,33 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
     return measure_union(out, error);
 }
 
+/* Parts that are just the outline. */
+static bool cut_exactly(fitting *how, const outline *of, collider *out, narc_error *error) {
+    out->fits = allocate(how->parts, sizeof *out->fits);
+    if (narc_cut_exactly(of->path, out->fits, how->parts, &out->count, error) != NARC_OK)
+        return false;
+    for (size_t k = 0; k < out->count; k++) {
+        narc_fit_result *part = &out->fits[k];
+        out->outline_area += part->area;
+        for (size_t i = 0; i < part->arc_count && how->request.keep_origin; i++) {
+            part->arcs[i].center_x += part->origin.x;
+            part->arcs[i].center_y += part->origin.y;
+        }
+        if (how->request.keep_origin)
+            part->origin = (narc_point){0, 0};
+    }
+    return measure_union(out, error);
+}
+
 static bool fit_outline(fitting *how, const outline *of, collider *out, narc_error *error) {
     narc_fit_request request = how->request;
     const double begin = seconds_now();
     request.flatness = how->flatness > 0 ? how->flatness * measure_extent(of) : 0;
     *out = (collider){.count = 1};
-    const bool done = how->parts ? fit_parts(how, of, request, out, error)
-                                 : fit_each(how, &(narc_path *){of->path}, request, out, error);
+    const bool exact = request.arc_count == 0 && !(request.tolerance > 0);
+    const bool done = exact        ? cut_exactly(how, of, out, error)
+                      : how->parts ? fit_parts(how, of, request, out, error)
+                                   : fit_each(how, &(narc_path *){of->path}, request, out, error);
     out->seconds = seconds_now() - begin;
     if (!done)
         free(out->fits);

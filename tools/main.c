@@ -14,7 +14,8 @@
 #include "system.h"
 #include "text.h"
 
-static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &cast_command, &info_command};
+static const command *const commands[] = {&fit_command,     &export_command, &scene_command,
+                                          &collide_command, &cast_command,   &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_help(void) {

@@ -57,19 +57,11 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     return status;
 }
 
-/* A row of a slot to place `item` of an array. */
-static void put_row(const narc_contact_step *s, uint32_t slot, const void *from, void *rows, narc_kept_row *kept,
-                    uint32_t item) {
-    const narc_contacts *const c = s->contacts;
-    const narc_rows view = narc_view_rows(c, rows);
-    void *const row = (char *)view.base + (ptrdiff_t)item * view.stride;
-    memcpy(row, from, c->row_size);
-    memcpy(row, &slot, sizeof slot);
-    memset(&kept[item], 0, sizeof *kept); /* it is saved, of use or not */
-    if (s->step->recycling > 0) {
-        const narc_pairs pairs = narc_view_slots(c);
-        narc_keep_rows(s, &pairs, &slot, &item, 1, rows, kept);
-    }
+/* A row of a slot to its place, before it is kept. */
+static void put_row(const narc_contacts *c, uint32_t slot, const void *from, void *to, narc_kept_row *kept) {
+    memcpy(to, from, c->row_size);
+    memcpy(to, &slot, sizeof slot);
+    memset(kept, 0, sizeof *kept); /* it is saved, of use or not */
 }
 
 /* The further rows of a pair that was not asked stay. */
@@ -82,23 +74,27 @@ static void keep_more(narc_contacts *c, uint32_t slot) {
     c->next_more.count += more->count;
 }
 
-/* The rows of pair k of the list, from number `at` of those asked for on; returns the number behind them. */
-static size_t take_rows(const narc_contact_step *s, size_t k, uint32_t slot, size_t at) {
+/* The rows of pair k of the list, from number `at` of those asked for on; returns the number behind them. The first one is
+ * not kept yet. */
+static size_t take_rows(const narc_contact_step *s, const narc_pairs *pairs, size_t k, uint32_t slot, size_t at) {
     narc_contacts *const c = s->contacts;
+    narc_row_array *const more = &c->next_more;
+    const bool keeps = s->step->recycling > 0;
     size_t end = at;
     while (end < c->ground.count && pair_of(narc_row_at(c, c->ground.rows, end)) == k)
         end++;
     if (end == at && c->state[slot] & NARC_TOUCHING)
         narc_zero_row(c, slot);
     c->flags[slot] = (uint8_t)((c->flags[slot] & ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY)) | NARC_SLOT_SEEN |
-                               (end > at && s->step->recycling > 0 ? NARC_SLOT_KEPT : 0));
+                               (end > at && keeps ? NARC_SLOT_KEPT : 0));
     if (end > at)
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at), c->rows, c->kept, slot);
-    const size_t more = end > at ? end - at - 1 : 0;
-    c->more_of[slot] = (narc_more_rows){(uint32_t)c->next_more.count, (uint32_t)more};
-    for (size_t i = 0; i < more; i++) {
-        const uint32_t to = (uint32_t)c->next_more.count++;
-        put_row(s, slot, narc_row_at(c, c->ground.rows, at + 1 + i), c->next_more.rows, c->next_more.kept, to);
+        put_row(c, slot, narc_row_at(c, c->ground.rows, at), narc_slot_row(c, slot), &c->kept[slot]);
+    c->more_of[slot] = (narc_more_rows){(uint32_t)more->count, (uint32_t)(end > at ? end - at - 1 : 0)};
+    for (size_t i = at + 1; i < end; i++) {
+        const uint32_t to = (uint32_t)more->count++;
+        put_row(c, slot, narc_row_at(c, c->ground.rows, i), narc_row_at(c, more->rows, to), &more->kept[to]);
+        if (keeps)
+            narc_keep_rows(s, pairs, &slot, &to, 1, more->rows, more->kept);
     }
     narc_mark_slot(c, slot, NARC_ASKED);
     narc_set_touching(c, slot, end > at);
@@ -120,8 +116,8 @@ void narc_take_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const narc_pairs pairs = narc_view_slots(c);
     const bool has_more = c->more.count > 0;
-    size_t at = 0, next = 0, bare_count = 0;
-    uint32_t *const bare = c->left;
+    size_t at = 0, next = 0, bare_count = 0, keep_count = 0;
+    uint32_t *const bare = c->left, *const keep = c->candidates; /* these have been seen to */
     if (c->ground_count == 0 && (!has_more || !c->changed))
         return;
     c->next_more.count = 0;
@@ -137,7 +133,10 @@ void narc_take_ground(const narc_contact_step *s) {
         next = (size_t)k + 1;
         bare[bare_count] = slot;
         bare_count += what == NARC_NO_GROUND && c->flags[slot] & NARC_SLOT_SEEN;
-        at = take_rows(s, k, slot, at);
+        const size_t first = at;
+        at = take_rows(s, &pairs, k, slot, first);
+        keep[keep_count] = slot;
+        keep_count += at > first;
     }
     for (; has_more && next < s->list->pairs.count; next++)
         if (c->more_of[c->order[next]].count > 0)
@@ -145,5 +144,7 @@ void narc_take_ground(const narc_contact_step *s) {
     const narc_row_array made = c->next_more;
     c->next_more = c->more;
     c->more = made;
+    if (s->step->recycling > 0)
+        narc_keep_rows(s, &pairs, keep, NULL, keep_count, c->rows, c->kept);
     narc_keep_bare_ground(s, &pairs, bare, bare_count);
 }

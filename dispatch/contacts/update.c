@@ -173,8 +173,9 @@ static narc_status prepare(narc_contact_step *s) {
                            "not enough memory for %zu contacts", s->list->pairs.count);
     if (status != NARC_OK)
         return status;
-    narc_plan_ground(s);
-    status = narc_ask_ground(s);
+    if (NARC_PIECES)
+        narc_plan_ground(s);
+    status = NARC_PIECES ? narc_ask_ground(s) : NARC_OK;
     return status == NARC_ERROR_MEMORY ? narc_fail(s->error, status, 0, (double)c->ground_count,
                                                    "not enough memory for %zu contacts with ground", c->ground_count)
                                        : status;
@@ -197,7 +198,8 @@ static narc_status carry_out(const narc_contact_step *s) {
         status = ask_sensors(s, &pairs);
     if (status != NARC_OK)
         return status;
-    narc_take_ground(s);
+    if (NARC_PIECES)
+        narc_take_ground(s);
     r->count = s->list->pairs.count;
     r->more_count = c->more.count;
     r->began_count = r->ended_count = 0;

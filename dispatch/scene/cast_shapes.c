@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "broad_phase/steps.h"
 #include "casts.h"
 #include "column.h"
 #include "error.h"
@@ -107,29 +108,51 @@ static uint32_t find_owner(const struct job *job, size_t pair) {
     return narc_index_at(job->owners->owner, narc_index_at(job->casts.batch.batch->pairs->b, pair));
 }
 
+/* By owner, the deepest first. */
+static bool comes_before(const void *context, uint32_t one, uint32_t other) {
+    const struct job *const job = context;
+    const uint32_t owner = find_owner(job, one), other_owner = find_owner(job, other);
+    return owner != other_owner ? owner < other_owner
+                                : job->index->starts[one].separation < job->index->starts[other].separation;
+}
+
+/* Of pairs in that order the first one of an owner, or `count`. */
+static size_t find_deepest(const struct job *job, const uint32_t *order, size_t count, uint32_t owner) {
+    size_t low = 0, high = count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (find_owner(job, order[middle]) < owner)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < count && find_owner(job, order[low]) == owner ? low : count;
+}
+
 /* Targets and depths of a mover's pairs, first .. end - 1. One that is at its target from a part of a thing counts as that
  * deep in all others. */
 static void find_depths(const struct job *job, size_t mover, size_t first, size_t end) {
     const narc_cast_batch *const casts = &job->casts.batch;
-    const float target = narc_float_or(job->targets, mover, casts->target), infinite = INFINITY;
+    const float target = narc_float_or(job->targets, mover, casts->target);
     narc_start *const starts = job->index->starts;
+    uint32_t *const order = job->index->found + first; /* which the pairs were made from: there is room for each */
+    size_t count = 0;
     for (size_t k = first; k < end; k++) {
         starts[k].target = target;
-        starts[k].depth = infinite;
+        starts[k].depth = INFINITY;
+        if (starts[k].separation <= target && find_owner(job, k) != UINT32_MAX)
+            order[count++] = (uint32_t)k;
     }
-    for (size_t k = first; k < end; k++) {
-        const uint32_t owner = find_owner(job, k);
-        if (!(starts[k].separation <= target) || owner == UINT32_MAX)
+    narc_sort_indices(order, count, comes_before, job);
+    for (size_t k = first; k < end && count > 0; k++) {
+        const size_t deepest = find_deepest(job, order, count, find_owner(job, k));
+        if (deepest == count)
             continue;
-        for (size_t i = first; i < end; i++)
-            if (find_owner(job, i) == owner && starts[k].separation < starts[i].depth)
-                starts[i].depth = starts[k].separation;
+        if (starts[k].separation <= target)
+            starts[k].depth = starts[order[deepest]].separation;
+        else
+            starts[k].target = fminf(target, starts[order[deepest]].separation - casts->parting);
     }
-    for (size_t k = first; k < end; k++)
-        if (!(starts[k].separation <= target) && starts[k].depth < infinite) {
-            starts[k].target = fminf(target, starts[k].depth - casts->parting);
-            starts[k].depth = infinite;
-        }
 }
 
 static void measure_starts(void *argument, size_t part, size_t first, size_t end) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * index.c - narc_build_index() and narc_describe_index(): bodies into leaves, then boxes from the leaves up.
+ * index.c - narc_build_index(), narc_describe_index(), narc_copy_nodes(): bodies into leaves, then boxes from the leaves up.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -8,6 +8,7 @@
 #include "leaves.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Nodes that are worth a task. */
 enum { NODES = 1024 };
@@ -138,15 +139,8 @@ static double find_perimeter(const narc_index_node *node, size_t slot) {
 
 /* Half of the perimeters of all nodes together. */
 static double sum_perimeters(const narc_index *index) {
-    narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const narc_box all = narc_find_index_box(index);
     double perimeter = 0;
-    for (size_t slot = 0, root = narc_count_nodes(index) - 1; slot < NARC_NODE_SLOTS; slot++) {
-        const narc_index_node *const node = &index->nodes[root];
-        all.min_x = node->min_x[slot] < all.min_x ? node->min_x[slot] : all.min_x;
-        all.min_y = node->min_y[slot] < all.min_y ? node->min_y[slot] : all.min_y;
-        all.max_x = node->max_x[slot] > all.max_x ? node->max_x[slot] : all.max_x;
-        all.max_y = node->max_y[slot] > all.max_y ? node->max_y[slot] : all.max_y;
-    }
     for (size_t k = index->node_count[0], end = narc_count_nodes(index); k < end; k++)
         for (size_t slot = 0; slot < NARC_NODE_SLOTS; slot++)
             perimeter += find_perimeter(&index->nodes[k], slot);
@@ -223,5 +217,26 @@ narc_status narc_describe_index(const narc_index *index, narc_index_statistics *
         s.slack = perimeter == index->perimeter ? 1 : perimeter / index->perimeter;
     }
     *out_statistics = s;
+    return NARC_OK;
+}
+
+narc_status narc_copy_nodes(const narc_index *index, size_t level, narc_box *out_boxes, ptrdiff_t stride,
+                            size_t capacity, size_t *out_count, narc_error *error) {
+    if (!index || !out_count || (!out_boxes && capacity > 0))
+        return narc_fail_missing(error, !index ? "index" : !out_count ? "out_count" : "out_boxes");
+    if (stride % 4 != 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride, "stride is %td, no multiple of 4", stride);
+    const size_t count = *out_count = level < index->level_count ? index->node_count[level] : 0;
+    if (count > capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)count, "%zu boxes, but there is room for %zu", count,
+                         capacity);
+    char *out = (char *)out_boxes;
+    for (size_t k = 0; k < count; k++, out += stride ? stride : (ptrdiff_t)sizeof *out_boxes) {
+        const narc_box box = level + 1 < index->level_count
+                                 ? narc_get_node_box(&index->nodes[index->first_node[level + 1] + k / NARC_NODE_SLOTS],
+                                                     k % NARC_NODE_SLOTS)
+                                 : narc_find_index_box(index);
+        memcpy(out, &box, sizeof box);
+    }
     return NARC_OK;
 }

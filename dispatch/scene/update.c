@@ -246,7 +246,7 @@ static bool insert(updating *u, uint32_t body) {
         }
         if (worlds)
             narc_put_worlds(worlds, slot, narc_join_worlds(narc_get_worlds(worlds, slot), find_world(u, body)));
-        narc_box grown = {boxes->min_x[slot], boxes->min_y[slot], boxes->max_x[slot], boxes->max_y[slot]};
+        narc_box grown = narc_get_node_box(boxes, slot);
         grow(&grown, box);
         put_box(boxes, slot, &grown);
         node[level - 1] = NARC_NODE_SLOTS * node[level] + slot;

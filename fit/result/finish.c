@@ -82,7 +82,7 @@ static size_t list_arcs(const narc_chain *chain, narc_arc *out_arcs) {
 /* ---------------------------------------------------------------------------- single precision */
 
 /* GCC 12 drops the rounding of a pair of neighbours when it makes vector code of it; not through a volatile. */
-static double to_single(double x) {
+double narc_to_single(double x) {
     volatile float rounded = (float)x;
     return rounded;
 }
@@ -106,9 +106,9 @@ static void offset_arcs(const narc_arc *arcs, size_t count, double distance, nar
 static void round_arcs(const narc_arc *arcs, size_t count, narc_arc *out_arcs) {
     for (size_t i = 0; i < count; i++) {
         out_arcs[i] = arcs[i];
-        out_arcs[i].center_x = to_single(arcs[i].center_x);
-        out_arcs[i].center_y = to_single(arcs[i].center_y);
-        out_arcs[i].radius = to_single(arcs[i].radius);
+        out_arcs[i].center_x = narc_to_single(arcs[i].center_x);
+        out_arcs[i].center_y = narc_to_single(arcs[i].center_y);
+        out_arcs[i].radius = narc_to_single(arcs[i].radius);
     }
 }
 
@@ -193,6 +193,15 @@ static double find_clearance(const narc_chain *stored, const narc_contours *outl
     return least - outline->flatness - DOUBLE_ROOM * reach;
 }
 
+narc_status narc_certify_arcs(const narc_arc *arcs, size_t count, const narc_frame *frame, narc_point origin,
+                              double *out_clearance, narc_error *error) {
+    narc_chain stored;
+    const narc_status status = store_arcs(arcs, count, &stored, error);
+    if (status == NARC_OK)
+        *out_clearance = find_clearance(&stored, frame->outline, origin);
+    return status;
+}
+
 /* Rounds the arcs, moved out by as little as makes the shape that the store keeps of them hold the outline. `arcs` are
  * then the rounded ones, and `exact` is moved out as far. Far from the origin rounded arcs would not join: there the
  * store takes the exact ones, and rounds them itself. */
@@ -201,13 +210,13 @@ static narc_status round_and_certify(narc_arc *exact, narc_arc *arcs, size_t cou
     narc_arc moved[NARC_MAX_ARCS];
     double distance = 0, more = 1e-9 * frame->radius;
     for (unsigned round = 0; round < CERTIFY_ROUNDS; round++) {
-        narc_chain stored;
+        double clearance;
         offset_arcs(exact, count, distance, moved);
         round_arcs(moved, count, arcs);
-        const narc_status status = store_arcs(frame->keep_origin ? moved : arcs, count, &stored, error);
+        const narc_status status =
+            narc_certify_arcs(frame->keep_origin ? moved : arcs, count, frame, origin, &clearance, error);
         if (status != NARC_OK)
             return status;
-        const double clearance = find_clearance(&stored, frame->outline, origin);
         if (!bound || clearance > 0) {
             *out_clearance = clearance;
             memcpy(exact, moved, count * sizeof *exact);
@@ -267,16 +276,25 @@ static double measure_difference(const narc_arc *arcs, size_t count, const narc_
     return isfinite(area) ? area : narc_chain_area(&chain) + hull->area; /* the shape's centroid is outside the hull */
 }
 
-static bool measure(const narc_hull *hull, narc_fit_result *result) {
+bool narc_compare_arcs(const narc_arc *arcs, size_t count, const narc_hull *hull, narc_difference_range *out_range) {
     narc_chain chain;
-    chain_arcs(result->arcs, result->arc_count, &chain);
+    chain_arcs(arcs, count, &chain);
     narc_hull bare = *hull;
     bare.inflation = 0;
-    narc_interval *intervals = malloc(narc_count_intervals(chain.count, hull->count) * sizeof *intervals);
+    narc_interval *intervals = malloc(narc_count_intervals(count, hull->count) * sizeof *intervals);
     if (!intervals)
         return false;
-    const narc_difference_range range = narc_find_range(intervals, narc_make_profile(&chain, &bare, intervals));
+    *out_range = narc_find_range(intervals, narc_make_profile(&chain, &bare, intervals));
     free(intervals);
+    return true;
+}
+
+static bool measure(const narc_hull *hull, narc_fit_result *result) {
+    narc_chain chain;
+    narc_difference_range range;
+    if (!narc_compare_arcs(result->arcs, result->arc_count, hull, &range))
+        return false;
+    chain_arcs(result->arcs, result->arc_count, &chain);
     narc_mass mass;
     narc_compute_mass(result->arcs, result->arc_count, &mass);
     narc_compute_perimeter(result->arcs, result->arc_count, &result->perimeter);
@@ -289,6 +307,14 @@ static bool measure(const narc_hull *hull, narc_fit_result *result) {
     for (size_t i = 0; i < chain.count; i++)
         result->edge_count += chain.edge[i] > SHORT_EDGE * hull->perimeter;
     return true;
+}
+
+narc_status narc_measure_arcs(const narc_hull *hull, const narc_arc *arcs, narc_fit_result *result, narc_error *error) {
+    memcpy(result->arcs, arcs, result->arc_count * sizeof *arcs);
+    if (!measure(hull, result))
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", hull->count);
+    result->difference_area = measure_difference(arcs, result->arc_count, hull);
+    return NARC_OK;
 }
 
 /* ---------------------------------------------------------------------------- all of it */

@@ -17,16 +17,18 @@ static size_t least_count(narc_fit_family family) { return family == NARC_FIT_ED
 
 /* Of the starts of 6 to 8 arcs a third or so ends at the best that is known, on hard outlines one in 50; exchanges
  * find it less often in the same time. n-arcs of least area have most: what else is fitted has known chains too.
- * Fewer starts of many arcs, whose searches take long. The first start, on the sides of a bounding polygon, is
- * always there: chains that only grow from fewer arcs stay behind it. */
+ * Fewer arcs have fewer ways to be placed; and fewer starts of many arcs, whose searches take long. The first start, on
+ * the sides of a bounding polygon, is always there: chains that only grow from fewer arcs stay behind it. */
 enum { FEW_ARCS = 8, STARTS_OF_OTHERS = 36 };
+static const size_t STARTS[FEW_ARCS + 1] = {8, 8, 8, 8, 12, 20, 32, 44, USUAL_STARTS};
 
 static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *rung) {
     const size_t n = rung->count, starts = ladder->starts;
     if (starts)
         return (narc_effort){n <= MANY_ARCS ? starts : (starts + 3) / 4, .exchanges = 1, .round = ladder->round};
     const bool plain = rung->family == NARC_FIT_N_ARC && rung->goal == NARC_FIT_BOUND_AREA;
-    return n <= FEW_ARCS    ? (narc_effort){.starts = plain ? USUAL_STARTS : STARTS_OF_OTHERS, .exchanges = 1}
+    const size_t most = plain ? USUAL_STARTS : STARTS_OF_OTHERS;
+    return n <= FEW_ARCS    ? (narc_effort){.starts = STARTS[n] < most ? STARTS[n] : most, .exchanges = 1}
            : n <= MANY_ARCS ? (narc_effort){.starts = 2, .exchanges = 1}
                             : (narc_effort){.starts = 1};
 }

@@ -85,13 +85,24 @@ INLINE void fill_one(struct queue *queue, const vf item[FIELDS]) {
     queue->count = 1;
 }
 
+/* In WebAssembly's modules there are no other kernels of one lane, and a batch of one pair takes twice the time. */
+#ifdef __wasm__
+enum { HAS_FORMULA = 1 };
+#else
+enum { HAS_FORMULA = 0 };
+#endif
+
 /* What waits for the deciding formula, where the walk past two junctions tells it: settles it, or returns false. */
 INLINE bool decide_one(const struct call *call, struct queue *queues) {
     const struct queue *const queue = &queues[DECIDE];
     const vm live = vm_front(1);
     vm certain;
-    const struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, &certain);
-    if (!vm_any(certain) || vm_any(find_loose(call, queue, 0, live, &gap)))
+    struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, &certain);
+    if (HAS_FORMULA && !vm_any(certain))
+        gap = find_gap(call->batch->shapes, queue, 0, live, true);
+    else if (!vm_any(certain))
+        return false;
+    if (vm_any(find_loose(call, queue, 0, live, &gap)))
         return false;
     if (vm_any(is_below(gap.separation, get_margins(call, queue, 0))))
         settle(call, queues, queue, 0, live, gap.separation, v2_divide(gap.normal, gap.length), gap.record_a,

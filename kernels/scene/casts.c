@@ -62,10 +62,8 @@ static bool is_late(const narc_cast_batch *given, const narc_casts *casts, size_
 static void write_row(const narc_cast_batch *given, const narc_casts *casts, size_t slot, int outcome) {
     const struct impact impact = {casts->pair[slot], casts->body[slot], casts->time[slot], outcome};
     narc_contact contact = casts->contact[slot];
-#if NARC_PIECES
-    if (given->batch->shapes->plane_count > 0)
+    if (NARC_PIECES && given->batch->shapes->plane_count > 0)
         move_to_plane(given, casts, slot, &contact);
-#endif
     write_impact(&impact, &contact, given->nearest, find_row(given, impact.pair));
 }
 

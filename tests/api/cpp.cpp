@@ -630,6 +630,8 @@ void test_index() {
     const std::vector<uint32_t> changed = {9};
     CHECK(status_of(index.update(narc::span<const narc_box>(boxes.data(), 9), changed)) == NARC_ERROR_INDEX);
     CHECK(index.update(boxes, changed, options) && index.describe().value().boxes == 10);
+    CHECK(index.copy_nodes(0, there).value() == index.describe().value().leaves && there[0].min_x <= boxes[3].min_x);
+    CHECK(status_of(index.copy_nodes(0, {there.data(), 0})) == NARC_ERROR_CAPACITY);
     CHECK(index.query({&boxes[3], 1}).value().count == 3);
     CHECK(index.build(boxes, apart) && index.query({&boxes[3], 1}).value().count == 3);
     CHECK(index.query({&boxes[3], 1}, narc::index_query().world(narc::column(asked))).value().count == 1);

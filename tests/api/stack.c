@@ -147,6 +147,7 @@ static narc_status ask_index(narc_error *error) {
                                     .out_order = query.workers ? order : NULL};
     narc_index *index = NULL;
     narc_pairs met;
+    size_t found_nodes;
     const bool fine =
         narc_create_index(NULL, &index) == NARC_OK &&
         narc_compute_boxes(store, &bodies, NULL, boxes, error) == NARC_OK &&
@@ -154,6 +155,7 @@ static narc_status ask_index(narc_error *error) {
         narc_build_index(index, boxes, BODIES, &index_options, error) == NARC_OK &&
         narc_update_index(index, boxes, BODIES, NULL, 0, &index_options, error) == NARC_OK &&
         narc_query_index(index, boxes, BODIES, &three.search, &met, error) == NARC_OK &&
+        narc_copy_nodes(index, 0, boxes, 0, BODIES, &found_nodes, error) == NARC_OK &&
         narc_find_nearest(index, store, &bodies, &at, &three, distances, 3 * BODIES, error) == NARC_OK &&
         narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&
         narc_find_distances(store, &bodies, &at, &NARC_ARRAY(selection), query.workers, distances, error) ==

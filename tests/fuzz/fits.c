@@ -46,6 +46,16 @@ static void check_result(struct bytes *from, const struct outline *outline) {
         check_contained(outline, &result, "fuzz");
 }
 
+static void check_plain(const struct outline *outline, double tolerance) {
+    const narc_fit_request request = {.family = NARC_FIT_PLAIN, .tolerance = tolerance};
+    narc_fit_result result;
+    if (narc_fit_path(outline->path, &request, &result, NULL) != NARC_OK)
+        return;
+    assert_int_equal(narc_validate_arcs(result.arcs, result.arc_count, NULL), NARC_OK);
+    assert_true(result.max_distance <= tolerance);
+    check_contained(outline, &result, "a plain shape");
+}
+
 static void check_chains(const struct outline *outline, double tolerance, bool fewest) {
     narc_arc_chains chains;
     if ((fewest ? narc_fit_fewest_chains : narc_fit_chains)(outline->path, tolerance, false, &chains, NULL) != NARC_OK)
@@ -67,6 +77,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const double tolerance = pow(10, -(double)take_below(&from, 6));
     check_chains(&outline, tolerance, false);
     check_chains(&outline, tolerance, true);
+    check_plain(&outline, tolerance);
     free_outline(&outline);
     return 0;
 }

@@ -311,4 +311,64 @@ TEST(a_thing_lets_go_as_one) {
     narc_destroy_shapes(shapes);
 }
 
+/* A sheet that is a little in each of a crowd of bodies slides under others of the same few things: they let it go as deep as it
+ * is in the deepest of their thing. It stops where casts of pairs with those targets say. */
+TEST(a_crowd_of_few_things_lets_go) {
+    enum { BODIES = 600, HERE = 300, THINGS = 7 };
+    struct test_random random = test_random_named("a crowd of few things");
+    narc_shapes *const shapes = empty_store();
+    const uint32_t box = store_shape(shapes, box_of(1, 1, 0)), sheet = store_shape(shapes, box_of(40, 2, 0));
+    narc_body crowd[BODIES], mover = {0, 0, 1, 0, 1, sheet};
+    uint32_t owner[BODIES], zero[BODIES] = {0}, number[BODIES];
+    narc_box boxes[BODIES];
+    narc_bodies bodies, movers;
+    narc_index *index;
+    narc_error error;
+    narc_impact row, rows[BODIES];
+    float target[BODIES], separation[BODIES], deepest[THINGS] = {0};
+    for (uint32_t k = 0; k < BODIES; k++) {
+        const double x = k < HERE ? random_between(&random, -20, 19) : random_between(&random, 21, 50),
+                     depth = random_between(&random, 1e-5, k < HERE ? 1e-3 : 1.2e-3);
+        crowd[k] = (narc_body){x, 1.5 - depth, 1, 0, 1, box};
+        owner[k] = k % 11 == 0 && k < HERE ? UINT32_MAX : (uint32_t)random_below(&random, THINGS);
+        number[k] = k;
+    }
+    narc_view_bodies(crowd, BODIES, &bodies);
+    narc_view_bodies(&mover, 1, &movers);
+    const narc_pairs pairs = {.count = BODIES, .a = NARC_ARRAY(zero), .b = NARC_ARRAY(number), .other_bodies = &bodies};
+    expect_ok(narc_find_separations(shapes, &movers, &pairs, &(narc_query){.margin = INFINITY}, separation, &error),
+              &error);
+    for (size_t k = 0; k < BODIES; k++)
+        if (owner[k] != UINT32_MAX && separation[k] <= 0)
+            deepest[owner[k]] = fminf(deepest[owner[k]], separation[k]);
+    const float right = 30, parting = 1e-5f;
+    for (size_t k = 0; k < BODIES; k++)
+        target[k] = separation[k] <= 0 ? 0 : fminf(0, deepest[owner[k]] - parting);
+    const narc_motions slides = {.x = {&right, 0}};
+    const narc_owners owners = {.owner = NARC_ARRAY(owner)};
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    expect_ok(narc_compute_boxes(shapes, &bodies, NULL, boxes, &error), &error);
+    expect_ok(narc_build_index(index, boxes, BODIES, NULL, &error), &error);
+    expect_ok(narc_cast_shapes(index, shapes, &bodies, &movers, &slides, &(narc_index_query){.owners = &owners},
+                               &(narc_cast_options){.parting = parting}, &row, 1, &error),
+              &error);
+    expect_ok(narc_cast_pairs(shapes, &movers, &slides, &pairs, NULL,
+                              &(narc_cast_options){.targets = NARC_ARRAY(target), .parting = parting}, rows, BODIES,
+                              &error),
+              &error);
+    size_t first = BODIES, let_go = 0;
+    for (size_t k = HERE; k < BODIES; k++) {
+        assert_true(separation[k] > 0);
+        let_go += rows[k].count != NARC_CAST_HIT;
+        if (rows[k].count == NARC_CAST_HIT && (first == BODIES || rows[k].fraction < rows[first].fraction))
+            first = k;
+    }
+    assert_true(first < BODIES && let_go > HERE / 2);
+    assert_int_equal(row.count, NARC_CAST_HIT);
+    assert_int_equal(row.body, number[first]);
+    assert_true(row.fraction == rows[first].fraction);
+    narc_destroy_index(index);
+    narc_destroy_shapes(shapes);
+}
+
 TEST_MAIN("cast_shapes")

@@ -15,10 +15,6 @@
 #include "narc.h"
 #include "support.h"
 
-static narc_box slot_box(const narc_index_node *node, size_t slot) {
-    return (narc_box){node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
-}
-
 /* The union of boxes, and of masks, of what is below a slot. */
 struct holding {
     narc_box box;
@@ -56,7 +52,7 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
             hold(&held, &boxes[body], category ? category[body] : 0);
             held.worlds.lowest = held.worlds.highest = narc_order_world(world ? world[body] : 0);
         }
-        const narc_box box = slot_box(&index->nodes[at], slot);
+        const narc_box box = narc_get_node_box(&index->nodes[at], slot);
         assert_true(box.min_x == held.box.min_x && box.min_y == held.box.min_y);
         assert_true(box.max_x == held.box.max_x && box.max_y == held.box.max_y);
         if (index->masks)
@@ -383,6 +379,52 @@ TEST(has_tight_nodes) {
     assert_true(isinf(describe(index).slack));
     narc_destroy_index(index);
     free(boxes);
+}
+
+/* The boxes of nodes are those of what is below them, level by level, after building and after updates. */
+TEST(copies_boxes_of_nodes) {
+    enum { ROOM = 600, STRIDE = 24 };
+    struct test_random random = test_random_named("boxes of nodes");
+    narc_box boxes[ROOM], below[ROOM];
+    narc_index *const index = create_index(NULL);
+    size_t count, below_count = 0;
+    assert_int_equal(narc_copy_nodes(index, 0, NULL, 0, 0, &count, NULL), NARC_OK);
+    assert_int_equal(count, 0);
+    for (unsigned round = 0; round < 8; round++) {
+        const size_t bodies = round == 7 ? 3 : 1 + random_below(&random, ROOM);
+        for (size_t k = 0; k < bodies; k++)
+            boxes[k] = random_box(&random, 100, 0.1, 1);
+        assert_int_equal(narc_update_index(index, boxes, bodies, NULL, 0, NULL, NULL), NARC_OK);
+        const narc_index_statistics s = describe(index);
+        size_t nodes = 0;
+        for (size_t level = 0; level < s.depth; level++) {
+            const size_t held = index->node_count[level], size = (held - 1) * STRIDE + sizeof *boxes;
+            unsigned char *const out = guard_allocate(size);
+            assert_int_equal(narc_copy_nodes(index, level, (narc_box *)(void *)out, STRIDE, held, &count, NULL),
+                             NARC_OK);
+            nodes += count;
+            assert_int_equal(count, held);
+            for (size_t k = 0; k < count; k++) {
+                struct holding all = {{INFINITY, INFINITY, -INFINITY, -INFINITY}, 0, 0, {0, 0}};
+                narc_box box;
+                memcpy(&box, out + k * STRIDE, sizeof box);
+                for (size_t i = 8 * k; i < 8 * k + 8; i++)
+                    if (level == 0 ? index->body[i] != UINT32_MAX : i < below_count)
+                        hold(&all, level == 0 ? &boxes[index->body[i]] : &below[i], 0);
+                assert_memory_equal(&box, &all.box, sizeof box);
+                assert_true(k + 1 == count ||
+                            (out[k * STRIDE + sizeof box] == GUARD_JUNK && out[(k + 1) * STRIDE - 1] == GUARD_JUNK));
+            }
+            size_t again = 0;
+            assert_int_equal(narc_copy_nodes(index, level, below, 0, count - 1, &again, NULL), NARC_ERROR_CAPACITY);
+            assert_int_equal(again, count);
+            assert_int_equal(narc_copy_nodes(index, level, below, 0, ROOM, &below_count, NULL), NARC_OK);
+            guard_release(out);
+        }
+        assert_true(nodes == s.nodes && narc_copy_nodes(index, s.depth, NULL, 0, 0, &count, NULL) == NARC_OK &&
+                    count == 0);
+    }
+    narc_destroy_index(index);
 }
 
 /* Bodies that go anywhere, one after the other, until each has gone a hundred times: then nodes are hardly larger than

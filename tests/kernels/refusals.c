@@ -275,6 +275,15 @@ TEST(refuses_indices_and_regions) {
     REFUSED(ARGUMENT, "options.reserved[0]", narc_update_index(index, boxes, 2, NULL, 0, &taken, &error));
     REFUSED(ARGUMENT, "index is NULL", narc_describe_index(NULL, &statistics, &error));
     REFUSED(ARGUMENT, "out_statistics is NULL", narc_describe_index(index, NULL, &error));
+    narc_box nodes[1];
+    size_t count = 9;
+    REFUSED(ARGUMENT, "index is NULL", narc_copy_nodes(NULL, 0, nodes, 0, 1, &count, &error));
+    REFUSED(ARGUMENT, "out_boxes is NULL", narc_copy_nodes(index, 0, NULL, 0, 1, &count, &error));
+    REFUSED(ARGUMENT, "out_count is NULL", narc_copy_nodes(index, 0, nodes, 0, 1, NULL, &error));
+    REFUSED(ARGUMENT, "stride is 17", narc_copy_nodes(index, 0, nodes, 17, 1, &count, &error));
+    assert_int_equal(count, 9);
+    REFUSED(CAPACITY, "1 boxes", narc_copy_nodes(index, 0, NULL, 0, 0, &count, &error));
+    assert_int_equal(count, 1);
     REFUSED(ARGUMENT, "index is NULL", narc_query_index(NULL, boxes, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "boxes is NULL", narc_query_index(index, NULL, 1, NULL, &pairs, &error));
     REFUSED(ARGUMENT, "out_pairs is NULL", narc_query_index(index, boxes, 1, NULL, NULL, &error));

@@ -207,5 +207,12 @@ TEST(refuses_bad_arguments) {
     assert_false(narc_compute_distance(arcs, 1, &(narc_point){0, 0}, NULL));
     assert_false(narc_compute_distance(arcs, 1, NULL, &value));
     assert_false(narc_contains_point(arcs, 1, NULL));
+    for (int k = 0; k < 6; k++) {
+        const double wrong = k % 3 == 0 ? NAN : k % 3 == 1 ? INFINITY : -INFINITY;
+        const narc_point nowhere = k < 3 ? (narc_point){wrong, 0} : (narc_point){0, wrong};
+        assert_false(narc_compute_distance(arcs, 1, &nowhere, &value));
+        assert_false(narc_contains_point(arcs, 1, &nowhere));
+        assert_false(narc_compute_aabb(arcs, 1, wrong, &box));
+    }
     assert_false(narc_find_support(arcs, 1, 0, 0, NULL, NULL));
 }

@@ -99,6 +99,9 @@ check "tolerance for the nearest circle: kept" less "$(value square 8)" 0.21
 works "a circle is not enough" fit fits/square.csv --tolerance 0.1 --out some.json
 check "a circle is not enough: arcs" less 3 "$(value square 2)"
 check "a circle is not enough: kept" less "$(value square 8)" 0.1
+check "a circle is not enough: a box, with its numbers" grep -q '"box": {"width": 2.00000[0-9]*, "height": 2.00000[0-9]*}' some.json
+works "no edges, not even a box's" fit fits/square.csv --tolerance 0.1 --no-edges --starts 1 --out some.json
+check "no edges, not even a box's: arcs" grep -q '"arcs"' some.json
 works "tolerance with edges" fit fits/square.csv --tolerance 1e-3 --edges --out some.json
 check "tolerance with edges: kept" less "$(value square 8)" 1e-3
 # A collider lies over its outline, at its origin or with the input's own coordinates: discs of radius 0.01 at the
@@ -235,6 +238,15 @@ fails "broken ground that no body is" "broken.json:5: shape 'hill', arc 1: start
 works "an open stroke" fit fits/square.csv --chain --open --tolerance 0.1 --out chain.json
 check "an open stroke: two corners, two ends" test "$(grep -c '"radius": 0,' chain.json)" = 4
 check "an open stroke: open" grep -q '"chain": {"closed": false' chain.json
+
+# Exact parts: boxes with their numbers.
+printf '0,0\n2,0\n2,1\n1,1\n1,2\n0,2\n' >fits/ell.csv
+works "exact parts" fit fits/ell.csv fits/frame.csv --parts 4 --out exact.json
+check "exact parts: an L is two boxes" grep -q '"ell/2", "origin": \[0.5, 1.5\], "box": {"width": 1, "height": 1}' exact.json
+check "exact parts: the frame has four" test "$(grep -c '"frame/[1-4]".*"box"' exact.json)" = 4
+check "exact parts: nothing is off" test "$(value ell 8)" = 0
+fails "exact parts: too few" "narc: fits/frame.csv: it takes 4 convex parts, more than 3" fit fits/frame.csv --parts 3 --out new.json
+fails "exact parts of a bow-tie" "narc: fits/cross.csv: contour 0, piece 0 crosses" fit fits/cross.csv --parts 3 --out new.json
 
 # Parts: the frame is four boxes; three cannot do it.
 works "parts" fit fits/frame.csv fits/square.csv --parts 9 --tolerance 0.1 --edges --starts 1 --out parts.json \

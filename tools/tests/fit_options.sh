@@ -17,6 +17,7 @@ nofit() {
 }
 fails "fit: no input" "narc: INPUT is missing" fit --arcs 8 --out new.json
 nofit "neither arcs nor tolerance" "narc: --arcs or --tolerance is missing"
+nofit "exact parts and a goal" "narc: --bound is for fits: --parts alone" --parts 4 --bound
 nofit "arcs and tolerance" "narc: --arcs and --tolerance exclude" --arcs 4 --tolerance 0.1
 for arcs in 0 33 8.5 x -1 ""; do
     nofit "arcs '$arcs'" "narc: --arcs .*" --arcs "$arcs"
@@ -60,7 +61,7 @@ for option in "--arcs 4" --bound --approximate "--objective area" --edges --poly
     nofit "a chain and ${option% *}" "narc: --chain and ${option% *} exclude" --chain $option
 done
 nofit "no edges and edges" "narc: --no-edges and --edges exclude" --arcs 4 --edges --no-edges --parts 3
-nofit "no edges without parts" "narc: --no-edges is for --parts" --arcs 4 --no-edges
+nofit "no edges without parts" "narc: --no-edges is for --parts and --tolerance" --arcs 4 --no-edges
 nofit "a word that is no UTF-8" "narc: --objective must be .* not '?x'" --arcs 4 --objective "$(printf '\377x')"
 nofit "a chain without a tolerance" "narc: --arcs or --tolerance is missing" --chain
 nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a

@@ -17,7 +17,7 @@ from typing import Any as _Any
 
 from ._batch import (bodies, box_pairs, boxes, casts, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
                      refine, separations, validate)
-from ._fits import Fit, NamedShape, Outline, cut, fit, fit_chains, hull, read_shapes, write_shapes
+from ._fits import Fit, NamedShape, Outline, cut, cut_exactly, fit, fit_chains, hull, read_shapes, write_shapes
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
 from ._scene import Contacts, Index, Step, distances, inside, rays
@@ -37,7 +37,8 @@ def __getattr__(name: str) -> _Any:
 __all__ = ["AABB", "ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "CONTACT", "Contacts", "DISTANCE", "Error",
            "Fit", "IMPACT", "Index", "MANIFOLD", "MASS", "NamedShape", "NoAnswer", "OutOfRange", "Outline", "RAY_HIT",
            "REFINED_CONTACT", "Shapes", "Step", "TOUCH_EVENT", "__version__", "adjust", "bodies", "bounding_box",
-           "bounding_circle", "box_pairs", "boxes", "casts", "center", "contact", "contacts", "contains", "cut", "depths",
+           "bounding_circle", "box_pairs", "boxes", "casts", "center", "contact", "contacts", "contains", "cut", "cut_exactly",
+           "depths",
            "distances", "fit", "fit_chains", "flatten", "get_isa", "hull", "inscribed_circle", "inside", "manifold",
            "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter", "place_parts", "poses",
            "radius_range", "rays", "read_shapes", "refine", "separations", "set_isa", "support", "union_mass", "validate",

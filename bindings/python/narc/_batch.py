@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, split
+from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, as_points, split
 
 # Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
 SLICE = 1 << 18
@@ -25,9 +25,7 @@ def bodies(xy: ArrayLike, angle: ArrayLike = 0.0, shape: ArrayLike = 0, scale: A
     Calls take other arrays, too, without copying them: records with fields of these names, or x and y, in any order and
     with others between them; or a mapping of columns, {"xy": (n, 2), "cosine": (n,), "sine": 0.0, ...}, floats of 32 bits but
     for positions, which may have 64. A single number is that of all bodies; without cosine and sine none is turned."""
-    places = np.asarray(xy, dtype=np.float64)
-    if places.ndim != 2 or places.shape[1] != 2:
-        raise ValueError(f"xy: the shape is to be (n, 2), not {places.shape}")
+    places = as_points("xy", xy)
     count = len(places)
     out = np.zeros(count, BODY)
     turn = _each("angle", angle, count)
@@ -54,7 +52,7 @@ def from_bits(words: NDArray[np.uint64], count: int) -> NDArray[np.bool_]:
 
 
 def count_of(of: Any) -> int:
-    return len(of) if of.__class__ is not dict else max((len(column) for column in of.values() if np.ndim(column)), default=1)
+    return len(of) if not isinstance(of, dict) else max((len(column) for column in of.values() if np.ndim(column)), default=1)
 
 
 def slices(count: int) -> Iterator[slice]:
@@ -114,6 +112,17 @@ def pairs(shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, others: Bodies
     return np.frombuffer(_narc.query_index(index, around, {"workers": threads}), np.uint32).reshape(-1, 2)
 
 
+def _given(pairs: Any, filters: dict[str, Any] | None) -> Any:
+    """Pairs that are not to be found."""
+    if filters:
+        raise TypeError(f"{', '.join(filters)}: this is for pairs that are found by boxes, and these are given")
+    if isinstance(pairs, dict) and "other_bodies" in pairs:
+        raise TypeError("pairs: other_bodies are given by others=")
+    if isinstance(pairs, (list, tuple)):
+        return as_array(pairs, "i8", "pairs") if len(pairs) else np.zeros((0, 2), np.uint32)
+    return pairs
+
+
 def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, margin: float, threads: int,
              options: dict[str, Any]) -> tuple[Any, Any, dict[str, Any]]:
     """The pairs, found by boxes if there are none; what a call is told of them; and the options that are not of finding."""
@@ -126,10 +135,8 @@ def _prepare(shapes: Shapes, bodies: Bodies, given: Any, others: Bodies | None, 
         if not margin < np.inf:
             raise ValueError("margin: without pairs it must be finite")
         given = pairs(shapes, bodies, margin=max(margin, 0.0), others=others, threads=threads, **(filters or {}))
-    elif filters:
-        raise TypeError(f"{', '.join(filters)}: this is for pairs that are found by boxes, and these are given")
-    elif isinstance(given, (list, tuple)):
-        given = as_array(given, "i8", "pairs") if len(given) else np.zeros((0, 2), np.uint32)
+    else:
+        given = _given(given, filters)
     if others is None:
         return given, given, rest
     return given, {**(given if isinstance(given, dict) else {"ab": given}), "other_bodies": others}, rest
@@ -282,17 +289,21 @@ def casts(shapes: Shapes, bodies: Bodies, motion: ArrayLike, pairs: PairsLike | 
     None: those whose boxes meet on their ways, and the answer is (rows, pairs). `options` are those of narc_cast_options: target,
     tolerance, targets, front_only, parting; and for pairs that are found those of pairs()."""
     ways: dict[str, Any] = {"xy": narrow(motion), "angle": None if angle is None else narrow(angle)}
-    found, told, rest = pairs, pairs, options
-    if pairs is None and count_of(bodies):
-        filters, rest = split(options, "narc_pair_filter")
+    filters, rest = split(options, "narc_pair_filter")
+    found: Any
+    if pairs is not None:
+        found = _given(pairs, filters)
+    elif not count_of(bodies):
+        found = np.zeros((0, 2), np.uint32)
+    else:
         reach = {"origin": rest.pop("origin")} if "origin" in rest else {}
         margin = max(float(rest.get("target", 0.0)), 0.0)
         around = boxes(shapes, bodies, margin=margin, motion=ways["xy"], threads=threads, **reach)
         if angle is not None:
             _hold_turns(shapes, bodies, around)
-        found = told = box_pairs(around, threads=threads, **(filters or {}))
+        found = box_pairs(around, threads=threads, **(filters or {}))
     out = np.zeros(count_of(found), IMPACT)
-    _narc.cast_pairs(shapes, bodies, ways, told, {"workers": threads, **rest}, out)
+    _narc.cast_pairs(shapes, bodies, ways, found, {"workers": threads, **rest}, out)
     return out if pairs is not None else (out, cast(Pairs, found))
 
 

@@ -12,8 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._shapes import Arcs, _arcs
-from ._tables import ARC
+from ._shapes import Arcs, as_arcs
+from ._tables import ARC, as_points
 
 _fit: Any = None
 _missing: ImportError | None = None
@@ -22,9 +22,9 @@ try:
 except ImportError as _error:  # of a wheel that was built where the libraries of fits are not, or is where they are not
     _missing = _error
 
-Family = Literal["n-arc", "edges", "polygon", "paper"]
+Family = Literal["n-arc", "edges", "polygon", "paper", "plain"]
 Goal = Literal["area", "perimeter", "distance", "nearest", "difference"]
-_FAMILIES = ("n-arc", "edges", "polygon", "paper")
+_FAMILIES = ("n-arc", "edges", "polygon", "paper", "plain")
 _GOALS = ("area", "perimeter", "distance", "nearest", "difference")
 _FORMS: tuple[Literal["shape"], Literal["open"], Literal["closed"]] = ("shape", "open", "closed")
 _READERS = ("svg", "png", "csv", "json")
@@ -73,7 +73,7 @@ class Outline:
     line and value."""
 
     def __init__(self, contours: ArrayLike | Sequence[ArrayLike]) -> None:
-        parts = [_points("contours", part) for part in _list_contours(contours)]
+        parts = [as_points("contours", part) for part in _list_contours(contours)]
         ends = np.cumsum([len(part) for part in parts], dtype=np.uint64)
         self._path = _library().draw(np.concatenate(parts) if parts else np.zeros((0, 2)), ends)
 
@@ -121,13 +121,6 @@ def _whole(name: str, value: int, most: int = 2**31 - 1) -> int:
     return operator.index(value)
 
 
-def _points(name: str, xy: ArrayLike) -> NDArray[np.float64]:
-    points = np.ascontiguousarray(xy, np.float64)
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise ValueError(f"{name}: an array (n, 2) is wanted, not {points.shape}")
-    return points
-
-
 def _list_contours(contours: Any) -> list[Any]:
     first = contours[0] if len(contours) else None
     return list(contours) if first is not None and np.ndim(first) == 2 else [contours]
@@ -142,7 +135,8 @@ def fit(outline: Outline | ArrayLike | Sequence[ArrayLike], arcs: int = 8, *, to
     """Fits one convex arc shape to an outline's hull: the best that is found with at most `arcs` arcs, or, with arcs=0, the one
     of fewest arcs whose largest distance from the hull is at most `tolerance`.
 
-    `family`: "n-arc" (arcs with continuous tangents), "edges" (straight edges between arcs, too), "polygon", "paper".
+    `family`: "n-arc" (arcs with continuous tangents), "edges" (straight edges between arcs, too), "polygon", "paper"; with arcs=0,
+    "plain" (a circle, capsule, box, rounded box or regular polygon, if one is within `tolerance`).
     `goal`: shapes that bound the outline with the least "area", "perimeter" or largest "distance", or those with the least
     largest distance ("nearest") or area between ("difference"). It takes about a second; Ctrl-C ends it. Raises narc.Error."""
     found, numbers = _library().fit(_outline(outline), _whole("arcs", arcs), tolerance, _choose("family", family, _FAMILIES),
@@ -159,6 +153,12 @@ def cut(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float = 0
     return [Outline._of(path) for path in paths]
 
 
+def cut_exactly(outline: Outline | ArrayLike | Sequence[ArrayLike]) -> list[Fit]:
+    """Cuts an outline of straight lines and convex arcs into few convex shapes that are just it: an L is two boxes. Each has its
+    place in `origin`. Raises narc.Error, which names the contour, where that can't be."""
+    return [Fit(np.frombuffer(arcs, ARC).copy(), **numbers) for arcs, numbers in _library().cut_exactly(_outline(outline))]
+
+
 def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float, *, open: bool = False,
                smooth: bool = True) -> list[Arcs]:
     """Follows each contour with arcs and lines that join with a common tangent, within `tolerance`: rows of narc.ARC for
@@ -169,7 +169,7 @@ def fit_chains(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: fl
 
 def hull(xy: ArrayLike) -> NDArray[np.float64]:
     """The corners of the convex hull of points (n, 2), counter-clockwise, no three in line."""
-    corners = _library().hull(_points("xy", xy))
+    corners = _library().hull(as_points("xy", xy))
     return np.frombuffer(corners, np.float64).reshape(-1, 2).copy()
 
 
@@ -196,10 +196,9 @@ def write_shapes(file: str | pathlib.Path, shapes: Mapping[str, NamedShape | Fit
     """Writes a shapes file: fits, shapes that were read, or plain lists of arcs, by name. An old file is replaced in one step."""
     rows = []
     for name, shape in shapes.items():
-        if not isinstance(shape, (NamedShape, Fit)):
-            shape = NamedShape(np.array([tuple(row) for row in _arcs(shape)], ARC))
-        form = _FORMS.index(shape.form) if isinstance(shape, NamedShape) else 0
-        rows.append((name, shape.arcs.tobytes(), shape.origin, form))
+        known = shape if isinstance(shape, (NamedShape, Fit)) else NamedShape(as_arcs(shape))
+        form = _FORMS.index(known.form) if isinstance(known, NamedShape) else 0
+        rows.append((name, as_arcs(known.arcs).tobytes(), known.origin, form))
     text = _library().write_shapes(rows)
     path = pathlib.Path(file)
     beside = path.with_name(path.name + ".new")

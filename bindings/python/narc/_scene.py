@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from . import _narc
 from ._batch import SLICE, boxes, count_of, from_bits, narrow, slices
 from ._shapes import Shapes
-from ._tables import (CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, Bodies, Pairs, Rows,
-                      split)
+from ._tables import (BOX, CONSTANTS, CONTACT, DISTANCE, IMPACT, INDEX_STATISTICS, MANIFOLD, RAY_HIT, TOUCH_EVENT, Bodies, Pairs, Rows,
+                      split, whole_numbers)
 
 
 def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -25,6 +25,8 @@ def _search(options: dict[str, Any], threads: int) -> tuple[dict[str, Any], dict
 def _floats(given: ArrayLike) -> Any:
     """As they are if they are floats of some kind; whole numbers and lists become float64."""
     array = np.asarray(given)
+    if array.shape == (0,):
+        return np.zeros((0, 2))
     return array.astype(np.float64) if array.dtype.kind in "iu" or array.size == 0 else array
 
 
@@ -36,6 +38,7 @@ def _places(xy: ArrayLike) -> Any:
 
 def _rays(xy: ArrayLike, motion: ArrayLike, fraction: Any) -> dict[str, Any]:
     start, motion = _floats(xy), narrow(motion)
+    motion = motion.reshape(0, 2) if motion.shape == (0,) else motion
     place = {"x": float(start[0]), "y": float(start[1])} if start.shape == (2,) else {"xy": start}
     return {**place, "motion": motion[None] if motion.shape == (2,) else motion,
             "fraction": None if fraction is None else narrow(fraction)}
@@ -91,10 +94,12 @@ class Index(_narc.Handle):
     def _boxes(self, bodies: Bodies, options: dict[str, Any]) -> Rows:
         return boxes(self._shapes, bodies, origin=options.get("origin"), threads=options["workers"])
 
-    def update(self, bodies: Bodies | None = None, changed: Any = None, **options: Any) -> None:
+    def update(self, bodies: Bodies | None = None, changed: Any = None, *, threads: int | None = None, **options: Any) -> None:
         """Takes bodies as they are now, or others, more or fewer; `changed`: the numbers of those that are not as they were.
         `options` are those that are others from now on, such as columns for more bodies."""
         bodies, options = self._bodies if bodies is None else bodies, {**self._options, **options}
+        if threads is not None:
+            options["workers"] = threads
         _narc.update_index(self, self._boxes(bodies, options), changed, options)
         self._bodies, self._options = bodies, options
 
@@ -105,6 +110,11 @@ class Index(_narc.Handle):
         row: np.void = out[0]
         return row
 
+    def nodes(self, level: int) -> Rows:
+        """The boxes of a level of the tree, rows of narc.BOX: 0 are the leaves; none from statistics()["depth"] on."""
+        out = np.zeros(int(self.statistics()["nodes"]), BOX)
+        return out[:_narc.copy_nodes(self, level, out)]
+
     def __len__(self) -> int:
         return count_of(self._bodies)
 
@@ -112,7 +122,7 @@ class Index(_narc.Handle):
         return f"<narc.Index of {len(self)} bodies>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _index, (self._shapes, self._bodies, self._options)
+        return _index, (type(self), self._shapes, self._bodies, self._options)
 
     def regions(self, boxes: ArrayLike, *, threads: int = 1, **options: Any) -> Pairs:
         """Pairs (box, body) of boxes that overlap, (m, 2). `boxes`: rows of narc.BOX, or of (min x, min y, max x, max y) as
@@ -158,8 +168,8 @@ class Index(_narc.Handle):
         return out
 
 
-def _index(shapes: Shapes, bodies: Bodies, options: dict[str, Any]) -> Index:
-    return Index(shapes, bodies, **{("threads" if name == "workers" else name): value for name, value in options.items()})
+def _index(kind: type[Index], shapes: Shapes, bodies: Bodies, options: dict[str, Any]) -> Index:
+    return kind(shapes, bodies, **{("threads" if name == "workers" else name): value for name, value in options.items()})
 
 
 def distances(shapes: Shapes, bodies: Bodies, xy: ArrayLike, body: ArrayLike | None = None, *, threads: int = 1) -> Rows:
@@ -241,13 +251,14 @@ class Contacts(_narc.Handle):
         return f"<narc.Contacts: {self._rows}, {self._touching} of the last step{kept}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _contacts, (self._rows, self._user, self._shapes, None if self._shapes is None else self.save())
+        return _contacts, (type(self), self._rows, self._user, self._shapes, None if self._shapes is None else self.save())
 
     def update(self, shapes: Shapes, bodies: Bodies, *, margin: float = 0.0, skin: float = 0.0, recycling: float = 0.0,
                threads: int = 1, **options: Any) -> Step:
         """A step: finds what is near, asks again what has moved, and tells what began and ended. `options` are those of
         narc_step: second_margin, flat_angle, front_only, motion, reach, ahead, id, run, moved, pairs, same_pairs, origin; and
-        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner, world."""
+        the columns of narc_pair_filter, which say what bodies may meet: kind, category, mask, owner, world. Of broken bodies
+        there is no warning: `skipped` counts them."""
         filters, options = split(options, "narc_pair_filter")
         step = _narc.update_contacts(self, shapes, bodies, {"margin": margin, "skin": skin, "recycling": recycling,
                                                             "filter": filters, "workers": threads, **options})
@@ -261,14 +272,14 @@ class Contacts(_narc.Handle):
 
     def user(self, slots: ArrayLike) -> NDArray[Any]:
         """What you keep for these slots of the last step, a copy (n,) of your dtype."""
-        given = np.ascontiguousarray(slots, np.uint32)
+        given = whole_numbers(slots, "u4", "slots")
         out = np.zeros(len(given), self._user)
         _narc.read_user(self, given, out.view(np.uint8))
         return out
 
     def keep(self, slots: ArrayLike, rows: ArrayLike) -> None:
         """Keeps rows of your dtype for these slots of the last step."""
-        given = np.ascontiguousarray(slots, np.uint32)
+        given = whole_numbers(slots, "u4", "slots")
         kept = np.ascontiguousarray(np.broadcast_to(np.asarray(rows, self._user), given.shape))
         _narc.write_user(self, given, kept.view(np.uint8))
 
@@ -281,7 +292,7 @@ class Contacts(_narc.Handle):
         if ids is None:
             _narc.forget_contacts(self)
         else:
-            _narc.forget_bodies(self, np.ascontiguousarray(ids, np.uint64))
+            _narc.forget_bodies(self, whole_numbers(ids, "u8", "ids"))
 
     def save(self) -> bytes:
         """All pairs as bytes: whatever steps follow after load(), each bit is that of the steps that followed here."""
@@ -294,8 +305,8 @@ class Contacts(_narc.Handle):
         return self._step(shapes, _narc.load_contacts(self, shapes, np.frombuffer(data, np.uint8)))
 
 
-def _contacts(rows: str, user: np.dtype[Any], shapes: Shapes | None, data: bytes | None) -> Contacts:
-    contacts = Contacts(rows, user)
+def _contacts(kind: type[Contacts], rows: str, user: np.dtype[Any], shapes: Shapes | None, data: bytes | None) -> Contacts:
+    contacts = kind(rows, user)
     if shapes is not None and data is not None:
         contacts.load(shapes, data)
     return contacts

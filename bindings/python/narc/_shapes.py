@@ -9,20 +9,28 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
-from ._tables import AABB, ARC, CHAIN_ENTRY, CIRCLE, CONSTANTS, FOUR_ARC, MASS
+from ._tables import AABB, ARC, CHAIN_ENTRY, CIRCLE, CONSTANTS, FOUR_ARC, MASS, as_points
 
 Arcs = NDArray[np.void]
 _MOST = int(CONSTANTS["NARC_MAX_ARCS"])
 
 
 def _points(xy: ArrayLike) -> NDArray[np.float64]:
-    return np.ascontiguousarray(xy, dtype=np.float64)
+    return as_points("xy", xy)
 
 
-def _arcs(arcs: ArrayLike) -> Any:
-    """Rows of ARC, or of five numbers each."""
+def as_arcs(arcs: ArrayLike) -> Any:
+    """Rows of ARC: from these, from records with its fields in any order, or from five numbers each."""
     given = np.asarray(arcs)
-    return np.ascontiguousarray(given, dtype=ARC if given.dtype.names else np.float64)
+    if names := given.dtype.names:
+        if set(names) != set(ARC.names or ()):
+            raise TypeError(f"arcs: the fields {', '.join(ARC.names or ())} are wanted, not {', '.join(names)}")
+        return np.ascontiguousarray(given[list(ARC.names or ())], ARC)
+    if given.dtype.kind not in "fiu":
+        raise TypeError(f"arcs: numbers are wanted, not {given.dtype}")
+    if given.ndim != 2 or given.shape[1] != 5:
+        raise ValueError(f"arcs: rows of five numbers are wanted, not the shape {given.shape}")
+    return np.ascontiguousarray(given, np.float64).view(ARC)[:, 0]
 
 
 def _built(build: Any, *arguments: Any) -> Arcs:
@@ -32,7 +40,7 @@ def _built(build: Any, *arguments: Any) -> Arcs:
 
 def _one(compute: Any, arcs: ArrayLike, kind: Any) -> np.void:
     out = np.zeros(1, kind)
-    compute(_arcs(arcs), out)
+    compute(as_arcs(arcs), out)
     return cast(np.void, out[0])
 
 
@@ -50,10 +58,10 @@ class Shapes(_narc.Handle):
         """Adds arcs: an array of narc.ARC, or rows of (center x, center y, radius, start, end). `shape`: a number of your
         choice, which is free."""
         if shape is not None:
-            _narc.add_shape_at(self, shape, _arcs(arcs))
+            _narc.add_shape_at(self, shape, as_arcs(arcs))
             return shape
         out = np.zeros(1, np.uint32)
-        _narc.add_shape(self, _arcs(arcs), out)
+        _narc.add_shape(self, as_arcs(arcs), out)
         return int(out[0])
 
     def half_plane(self) -> int:
@@ -115,7 +123,7 @@ class Shapes(_narc.Handle):
         """Adds ground, a chain of arcs with the solid on its left, and returns its parts, rows of narc.CHAIN_ENTRY: each
         becomes a body with its `shape` at its `xy`. `options` are those of narc_chain_options: closed, first_run, weld,
         least_radius, thickness, both_sides."""
-        given = _arcs(arcs)
+        given = as_arcs(arcs)
         room = 4 * len(given) + 16
         while True:
             out = np.zeros(room, CHAIN_ENTRY)
@@ -126,7 +134,7 @@ class Shapes(_narc.Handle):
 
     def replace(self, shape: int, arcs: ArrayLike) -> None:
         """Puts another shape in the place of one that is used once."""
-        _narc.replace_shape(self, shape, _arcs(arcs))
+        _narc.replace_shape(self, shape, as_arcs(arcs))
 
     def remove(self, shape: int) -> None:
         """Gives back one use of a shape; with the last one it goes."""
@@ -194,7 +202,7 @@ def mass(arcs: ArrayLike) -> np.void:
 
 def validate_arcs(arcs: ArrayLike) -> None:
     """Raises narc.Error where a list of arcs is no shape, and says why."""
-    _narc.validate_arcs(_arcs(arcs))
+    _narc.validate_arcs(as_arcs(arcs))
 
 
 def perimeter(arcs: ArrayLike) -> float:
@@ -215,22 +223,22 @@ def inscribed_circle(arcs: ArrayLike) -> np.void:
 def bounding_box(arcs: ArrayLike, angle: float = 0.0) -> np.void:
     """The box around a list of arcs that is turned by `angle`: `min` and `max`."""
     out = np.zeros(1, AABB)
-    _narc.compute_aabb(_arcs(arcs), angle, out)
+    _narc.compute_aabb(as_arcs(arcs), angle, out)
     return cast(np.void, out[0])
 
 
 def support(arcs: ArrayLike, direction: ArrayLike) -> tuple[NDArray[np.float64], int]:
     """The point that lies furthest in a direction, and its arc."""
-    x, y = direction  # type: ignore[misc]
+    x, y = np.asarray(direction, np.float64)
     out = np.zeros((1, 2))
-    arc = _narc.find_support(_arcs(arcs), x, y, out)
+    arc = _narc.find_support(as_arcs(arcs), x, y, out)
     return out[0], int(arc)
 
 
 def flatten(arcs: ArrayLike, tolerance: float, closed: bool = True, *, body: np.void | None = None) -> NDArray[np.float64]:
     """Points (n, 2) on the outline of a list of arcs, of ground if it is not closed, whose chords are within `tolerance`; where
     `body` is, a row of narc.BODY."""
-    given = _arcs(arcs)
+    given = as_arcs(arcs)
     room = 64
     while True:
         out = np.zeros((room, 2))
@@ -244,7 +252,7 @@ def depths(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.float64]:
     """How far points (n, 2) are from the outline, below 0 inside: (n,) of float64."""
     points = _points(xy)
     out = np.zeros(len(points))
-    _narc.compute_distance(_arcs(arcs), points, out)
+    _narc.compute_distance(as_arcs(arcs), points, out)
     return out
 
 
@@ -252,7 +260,7 @@ def contains(arcs: ArrayLike, xy: ArrayLike) -> NDArray[np.bool_]:
     """Which points (n, 2) are inside, or on the outline: (n,) of bool."""
     points = _points(xy)
     out = np.zeros(len(points), np.bool_)
-    _narc.contains_point(_arcs(arcs), points, out)
+    _narc.contains_point(as_arcs(arcs), points, out)
     return out
 
 
@@ -279,17 +287,17 @@ def radius_range(xy: ArrayLike) -> tuple[float, float, float]:
 
 def mirror(arcs: ArrayLike) -> Arcs:
     """The mirror image at the y axis."""
-    return _built(_narc.mirror_arcs, _arcs(arcs))
+    return _built(_narc.mirror_arcs, as_arcs(arcs))
 
 
 def center(arcs: ArrayLike) -> Arcs:
     """The same arcs with their centroid at the origin."""
-    return _built(_narc.center_arcs, _arcs(arcs))
+    return _built(_narc.center_arcs, as_arcs(arcs))
 
 
 def union_mass(parts: list[ArrayLike]) -> np.void:
     """The mass of all that any of the parts, lists of arcs in one frame, covers."""
-    arcs = [np.asarray(_arcs(part)).view(ARC).reshape(-1) for part in parts]
+    arcs = [as_arcs(part) for part in parts]
     out = np.zeros(1, MASS)
     _narc.compute_union_mass(np.concatenate(arcs), np.array([len(a) for a in arcs], np.uint64), out)
     return cast(np.void, out[0])
@@ -298,4 +306,4 @@ def union_mass(parts: list[ArrayLike]) -> np.void:
 def move(arcs: ArrayLike, xy: ArrayLike = (0, 0), angle: float = 0.0, scale: float = 1.0) -> Arcs:
     """The same arcs elsewhere: scaled, turned, then moved."""
     x, y = xy  # type: ignore[misc]
-    return _built(_narc.move_arcs, _arcs(arcs), x, y, angle, scale)
+    return _built(_narc.move_arcs, as_arcs(arcs), x, y, angle, scale)

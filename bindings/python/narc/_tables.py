@@ -61,9 +61,29 @@ def as_array(given: object, kind: str, name: str) -> NDArray[Any]:
         made = made.astype(kind)
     if made.dtype.kind not in ("fiub" if kind[0] == "f" else "iub"):
         raise TypeError(f"{name}: a list of {'' if kind[0] == 'f' else 'whole '}numbers is wanted, not of {made.dtype}")
-    if kind == "u1" and made.size and not (0 <= made.min() and made.max() < 256):
-        raise ValueError(f"{name}: numbers of 0 to 255 are wanted, not {made.min()} to {made.max()}")
     return made if kind == "i8" and made.dtype.kind != "b" else made.astype(kind)
+
+
+def whole_numbers(given: object, kind: str, name: str) -> NDArray[Any]:
+    """As an array (n,) of this kind, if it has all of them."""
+    made = as_array(given, "i8", name)
+    if made.ndim != 1:
+        raise ValueError(f"{name}: the shape is to be (n,), not {made.shape}")
+    if made.size and not (0 <= made.min() and made.max() <= np.iinfo(kind).max):
+        raise _narc.OutOfRange(f"{name}: there are no numbers {made.min()} to {made.max()}")
+    return np.ascontiguousarray(made, kind)
+
+
+def as_points(name: str, xy: object) -> NDArray[np.float64]:
+    """Points (n, 2) from numbers of any kind."""
+    points = np.asarray(xy)
+    if points.size == 0:
+        points = np.zeros((0, 2))
+    if points.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: numbers are wanted, not {points.dtype}")
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"{name}: the shape is to be (n, 2), not {points.shape}")
+    return np.ascontiguousarray(points, np.float64)
 
 
 def warn_of_skipped(count: int) -> None:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from numpy.typing import NDArray
 
-from ._shapes import Shapes, outlines
+from ._shapes import Shapes, flatten, outlines
 from ._tables import Rows
 
 
@@ -18,6 +18,18 @@ def draw_bodies(axis: Axes, shapes: Shapes, bodies: Rows, tolerance: float = 1e-
     """Draws rows of narc.BODY as polygons within `tolerance` of them. `style` is that of PolyCollection."""
     drawn = PolyCollection(outlines(shapes, bodies, tolerance), **{"facecolor": "#c8d6e5", "edgecolor": "#576574",
                                                                    "linewidth": 0.5, **style})
+    axis.add_collection(drawn)
+    axis.set_aspect("equal")
+    axis.autoscale_view()
+    return drawn
+
+
+def draw_arcs(axis: Axes, arcs: Any, closed: bool = True, tolerance: float = 1e-2, **style: Any) -> LineCollection:
+    """Draws a list of arcs, rows of narc.ARC, as lines within `tolerance` of them; of a chain that is not closed without the
+    way back."""
+    points = flatten(arcs, tolerance, closed)
+    drawn = LineCollection([np.concatenate([points, points[:1]]) if closed else points],
+                           **{"color": "#576574", "linewidth": 1.0, **style})
     axis.add_collection(drawn)
     axis.set_aspect("equal")
     axis.autoscale_view()

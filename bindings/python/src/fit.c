@@ -125,6 +125,17 @@ static bool go_on(size_t done, size_t total, void *context) {
     return !*stopped;
 }
 
+/* (arcs, numbers by name) */
+static PyObject *describe_fit(const narc_fit_result *result) {
+    return Py_BuildValue("N{s(dd)sdsdsdsdsdsdsdsdsdsdsn}",
+                         make_bytes(result->arcs, result->arc_count * sizeof(narc_arc)), "origin", result->origin.x,
+                         result->origin.y, "area", result->area, "perimeter", result->perimeter, "hull_area",
+                         result->hull_area, "hull_perimeter", result->hull_perimeter, "max_distance",
+                         result->max_distance, "mean_distance", result->mean_distance, "difference_area",
+                         result->difference_area, "clearance", result->clearance, "flatness", result->flatness,
+                         "seconds", result->seconds, "edge_count", (Py_ssize_t)result->edge_count);
+}
+
 /* fit(outline, arc_count, tolerance, family, goal, flatness, min_radius, keep_origin, starts): (arcs, numbers by name) */
 static PyObject *fit(PyObject *self, PyObject *given) {
     PyObject *outline;
@@ -152,13 +163,7 @@ static PyObject *fit(PyObject *self, PyObject *given) {
     if (!stopped && status)
         made = raise_error(&error, status);
     else if (!stopped)
-        made = Py_BuildValue("N{s(dd)sdsdsdsdsdsdsdsdsdsdsn}",
-                             make_bytes(result->arcs, result->arc_count * sizeof(narc_arc)), "origin", result->origin.x,
-                             result->origin.y, "area", result->area, "perimeter", result->perimeter, "hull_area",
-                             result->hull_area, "hull_perimeter", result->hull_perimeter, "max_distance",
-                             result->max_distance, "mean_distance", result->mean_distance, "difference_area",
-                             result->difference_area, "clearance", result->clearance, "flatness", result->flatness,
-                             "seconds", result->seconds, "edge_count", (Py_ssize_t)result->edge_count);
+        made = describe_fit(result);
     free(result);
     return made;
 }
@@ -193,6 +198,35 @@ static PyObject *cut(PyObject *self, PyObject *given) {
     PyObject *const made = list ? Py_BuildValue("Ndd", list, parts.distance, parts.area) : NULL;
     narc_release_parts(&parts);
     return made;
+}
+
+/* cut_exactly(outline): what fit() returns, of each part */
+static PyObject *cut_exactly(PyObject *self, PyObject *outline) {
+    narc_fit_result *parts = NULL;
+    size_t count = 0, room = 0;
+    narc_error error = {0};
+    narc_status status = NARC_ERROR_CAPACITY;
+    (void)self;
+    const narc_path *const path = PyCapsule_GetPointer(outline, PATH);
+    if (!path)
+        return NULL;
+    for (room = 16; status == NARC_ERROR_CAPACITY; room = count) {
+        free(parts);
+        if (!(parts = malloc(room * sizeof *parts)))
+            return PyErr_NoMemory();
+        PyThreadState *const state = PyEval_SaveThread();
+        status = narc_cut_exactly(path, parts, room, &count, &error);
+        PyEval_RestoreThread(state);
+    }
+    PyObject *list = status ? raise_error(&error, status) : PyList_New(0);
+    for (size_t k = 0; k < count && list; k++) {
+        PyObject *const part = describe_fit(&parts[k]);
+        if (!part || PyList_Append(list, part))
+            Py_CLEAR(list);
+        Py_XDECREF(part);
+    }
+    free(parts);
+    return list;
 }
 
 /* A chain's arcs, of which there are at most 3 a piece and one more. */
@@ -328,6 +362,7 @@ static PyMethodDef functions[] = {{"read", read_outline, METH_VARARGS, NULL},
                                   {"contours", list_contours, METH_VARARGS, NULL},
                                   {"fit", fit, METH_VARARGS, NULL},
                                   {"cut", cut, METH_VARARGS, NULL},
+                                  {"cut_exactly", cut_exactly, METH_O, NULL},
                                   {"chains", fit_chains, METH_VARARGS, NULL},
                                   {"hull", compute_hull, METH_VARARGS, NULL},
                                   {"read_shapes", read_shapes, METH_VARARGS, NULL},

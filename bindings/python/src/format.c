@@ -100,7 +100,7 @@ static bool next_item(const char **format, char *order, size_t *end, item *out) 
     const bool is_complex = *p == 'Z';
     p += is_complex;
     const struct code *const code = find_code(*p);
-    if (!code)
+    if (!code || (is_complex && !code->size))
         return false;
     out->code = is_complex ? 'Z' : *p;
     out->order = *order;

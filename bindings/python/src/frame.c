@@ -4,6 +4,7 @@
  */
 #include "frame.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "format.h"
@@ -105,7 +106,7 @@ bool frame_know(PyObject *dtype, const char *name) {
 
 /* What an array says that its items are, if that is known. */
 static const kind *find_known(PyObject *array) {
-    PyObject *const dtype = PyObject_GetAttr(array, dtype_name);
+    PyObject *const dtype = known_count ? PyObject_GetAttr(array, dtype_name) : NULL;
     const kind *found = NULL;
     if (!dtype)
         PyErr_Clear();
@@ -162,7 +163,7 @@ static const void *convert(frame *f, const numbers *from, size_t size) {
     const bool with_sign = is_signed(&from->item);
     for (Py_ssize_t k = 0; k < count; k++) {
         const uint64_t value = read_whole(from->base + k * from->stride, from->item.size, with_sign);
-        if ((with_sign && value >> 63) || (size == 4 && value > UINT32_MAX)) {
+        if ((with_sign && value >> 63) || (size < 8 && value >> 8 * size)) {
             const char *const format = with_sign ? "%s: item %zd is %lld" : "%s: item %zd is %llu";
             f->error = (narc_error){.status = NARC_ERROR_INDEX,
                                     .index = (size_t)k,
@@ -171,8 +172,13 @@ static const void *convert(frame *f, const numbers *from, size_t size) {
                           (unsigned long long)value);
             return NULL;
         }
-        const uint32_t small = (uint32_t)value;
-        memcpy(made + (size_t)k * size, size == 4 ? (const void *)&small : (const void *)&value, size);
+        const uint32_t four = (uint32_t)value;
+        const uint8_t one = (uint8_t)value;
+        memcpy(made + (size_t)k * size,
+               size == 8   ? (const void *)&value
+               : size == 4 ? (const void *)&four
+                           : &one,
+               size);
     }
     return made;
 }
@@ -191,6 +197,7 @@ static bool set_column(frame *f, const char *type, void *column, const numbers *
         size = i->size;
     } else if (code == 'b') {
         wanted = "uint8 or bool";
+        whole = is_integer(i);
         fits = i->code == 'B' || i->code == '?';
         size = 1;
     } else { /* whole numbers are converted */
@@ -244,6 +251,16 @@ static unsigned long long read_unsigned(PyObject *given) {
     return value;
 }
 
+bool frame_refuse(frame *f, const char *wanted, PyObject *given) {
+    const bool is_number = PyErr_ExceptionMatches(PyExc_OverflowError);
+    PyErr_Clear();
+    if (is_number)
+        PyErr_Format(PyExc_ValueError, "%s: %R is out of range", frame_name(f), given);
+    else
+        PyErr_Format(PyExc_TypeError, "%s: %s is wanted, not %R", frame_name(f), wanted, given);
+    return false;
+}
+
 /* One number for all: as the column's own type. */
 static bool set_constant(frame *f, const char *type, void *column, PyObject *given) {
     numbers one = {.count = -1, .item = {.order = '@', .size = 8, .code = 'd'}};
@@ -271,21 +288,15 @@ static bool set_constant(frame *f, const char *type, void *column, PyObject *giv
             memcpy(room, &byte, 1);
         }
     }
-    if (PyErr_Occurred()) {
-        PyErr_Clear();
-        PyErr_Format(PyExc_TypeError, "%s: a number or an array is wanted, not %R", frame_name(f), given);
-        return false;
-    }
+    if (PyErr_Occurred())
+        return frame_refuse(f, "a number or an array", given);
     one.base = room;
     return set_column(f, type, column, &one, 0);
 }
 
 /* An array that a list becomes: of numbers that a column of this type can have. */
 static PyObject *make_array(frame *f, const char *type, PyObject *list) {
-    const char code = column_code(type), *const dtype = code == 'f'   ? "f4"
-                                                        : code == 'p' ? "f8"
-                                                        : code == 'b' ? "u1"
-                                                                      : "i8";
+    const char code = column_code(type), *const dtype = code == 'f' ? "f4" : code == 'p' ? "f8" : "i8";
     PyObject *const tables = PyImport_ImportModule("narc._tables");
     PyObject *const made = tables ? PyObject_CallMethod(tables, "as_array", "Oss", list, dtype, frame_name(f)) : NULL;
     Py_XDECREF(tables);
@@ -322,7 +333,16 @@ static bool take_column(frame *f, const char *type, void *column, const Py_buffe
     numbers from = {.base = (const char *)view->buf, .count = -1, .item = *of};
     if (view->ndim == 0 && width == 1)
         return set_column(f, type, column, &from, group);
-    if (view->ndim != width || (width == 2 && view->shape[1] != 2)) {
+    if (view->ndim == 1 && view->shape[0] == 0) { /* a list of nothing */
+        from.count = 0;
+        return set_column(f, type, column, &from, group);
+    }
+    if (view->ndim == 2 && width == 2 && view->shape[1] != 2) {
+        PyErr_Format(PyExc_ValueError, "%s: the shape is to be (n, 2), not (%zd, %zd)", frame_name(f), view->shape[0],
+                     view->shape[1]);
+        return false;
+    }
+    if (view->ndim != width) {
         PyErr_Format(PyExc_ValueError, "%s: the shape is to be %s, not one of %d dimensions", frame_name(f),
                      width == 1 ? "(n,)" : "(n, 2)", view->ndim);
         return false;
@@ -379,7 +399,10 @@ static unsigned char group_of(const narc_layout *layout, const narc_member *memb
 
 static bool set_number(frame *f, void *place, const char *type, size_t size, PyObject *given) {
     if (is_member(type, "float")) {
-        *(float *)place = (float)PyFloat_AsDouble(given);
+        const double value = PyFloat_AsDouble(given);
+        *(float *)place = (float)value;
+        if (isfinite(value) && (isinf((float)value) || ((float)value == 0 && value != 0)) && !PyErr_Occurred())
+            PyErr_SetNone(PyExc_OverflowError);
     } else if (is_member(type, "double")) {
         *(double *)place = PyFloat_AsDouble(given);
     } else {
@@ -391,11 +414,7 @@ static bool set_number(frame *f, void *place, const char *type, size_t size, PyO
         else if (!PyErr_Occurred())
             PyErr_SetString(PyExc_OverflowError, "");
     }
-    if (!PyErr_Occurred())
-        return true;
-    PyErr_Clear();
-    PyErr_Format(PyExc_TypeError, "%s: a number is wanted, not %R", frame_name(f), given);
-    return false;
+    return !PyErr_Occurred() || frame_refuse(f, "a number", given);
 }
 
 static bool set_member(frame *f, const narc_layout *layout, const narc_member *m, char *structure, PyObject *given,
@@ -614,8 +633,6 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
     bool is_filled = false;
     if (PyDict_Check(given)) {
         is_filled = fill_mapping(f, layout, structure, given, group);
-        if (is_member(layout->name, "narc_bodies"))
-            leave_unturned(structure);
     } else if (has_two && (known_as ? !rows : is_list(given))) {
         is_filled = fill_two(f, two, structure, given, group);
     } else if (PyTuple_Check(given)) {
@@ -636,6 +653,8 @@ bool frame_fill(frame *f, const narc_layout *layout, void *structure, PyObject *
     }
     if (!is_filled)
         return false;
+    if (is_member(layout->name, "narc_bodies"))
+        leave_unturned(structure);
     if (layout->members[0].name[0] == 'c' && is_member(layout->members[0].name, "count"))
         *(size_t *)structure = f->lengths[group] < 0 ? 1 : (size_t)f->lengths[group];
     return true;
@@ -663,11 +682,14 @@ bool frame_workers(frame *f, PyObject *given, const narc_workers **out_workers) 
 /* Are the buffer's items rows of this layout? */
 static bool are_rows(const Py_buffer *view, const narc_layout *layout) {
     item found;
-    if (view->ndim == 2) /* numbers of one type */
-        return (size_t)(view->shape[1] * view->itemsize) == layout->size && find_item(view->format, NULL, &found) &&
-               !is_foreign(&found) && strcmp(layout->members[0].type, found.code == 'd' ? "double" : "float") == 0 &&
-               strchr("df", found.code);
-    bool are = view->ndim == 1 && (size_t)view->itemsize == layout->size;
+    if (view->ndim == 2) { /* numbers of one type */
+        bool all = (size_t)(view->shape[1] * view->itemsize) == layout->size && find_item(view->format, NULL, &found) &&
+                   !is_foreign(&found) && strchr("df", found.code);
+        for (size_t k = 0; all && k < layout->member_count; k++)
+            all = is_member(layout->members[k].type, found.code == 'd' ? "double" : "float");
+        return all;
+    }
+    bool are = view->ndim <= 1 && (size_t)view->itemsize == layout->size;
     for (size_t k = 0; are && k < layout->member_count; k++)
         are = find_item(view->format, layout->members[k].name, &found) && !is_foreign(&found) &&
               found.offset == layout->members[k].offset && found.size == layout->members[k].size;
@@ -698,7 +720,7 @@ bool frame_rows(frame *f, const narc_layout *layout, size_t size, size_t alignme
         return false;
     const Py_ssize_t row = (Py_ssize_t)size;
     const Py_ssize_t rows = view->ndim ? view->shape[0] : 1;
-    if (layout && !writable && !is_known ? !are_rows(view, layout) : rows > 0 && view->len != rows * row) {
+    if (rows > 0 && (layout && !writable && !is_known ? !are_rows(view, layout) : view->len != rows * row)) {
         PyErr_Format(PyExc_TypeError, "%s: rows of %s are wanted, %zd bytes each", frame_name(f),
                      layout ? layout->name : "numbers", row);
         return false;

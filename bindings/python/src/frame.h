@@ -51,6 +51,10 @@ void frame_end(frame *f);
 /* What is read, for messages: "query.margins". */
 const char *frame_name(frame *f);
 
+/* In place of Python's error, which does not name what is read: `given` is a number that its place can't have, or is not what is
+ * wanted. Returns false. */
+bool frame_refuse(frame *f, const char *wanted, PyObject *given);
+
 /* Room in the frame, all 0; NULL, with an error set: there is none. */
 void *frame_allocate(frame *f, size_t size);
 

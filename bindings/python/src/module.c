@@ -7,6 +7,7 @@
  */
 #include "frame.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -129,7 +130,15 @@ typedef struct call {
     narc_status (*run)(frame *f, void **p, const size_t *n, const double *d, narc_error *e);
 } call;
 
-#define MUST(expression) ((expression) ? NARC_OK : NARC_ERROR_ARGUMENT)
+/* Of calls that say no more than that they have no answer. */
+static narc_status must(bool is, narc_error *error) {
+    if (!is)
+        snprintf(error->message, sizeof error->message,
+                 "there is no answer: a number is not finite, or it is not 1 to %d arcs (narc.validate_arcs())",
+                 NARC_MAX_ARCS);
+    return is ? NARC_OK : NARC_ERROR_ARGUMENT;
+}
+#define MUST(expression) must(expression, e)
 
 static narc_status load_shapes(void *object, const void *bytes, size_t size, narc_error *error) {
     handle *const self = object;
@@ -145,19 +154,20 @@ static narc_status load_shapes(void *object, const void *bytes, size_t size, nar
 /* The number of a shape or body: too large a one is none. */
 static uint32_t number(size_t n) { return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; }
 
-static narc_status find_depths(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
-                               double *out) {
-    bool are = true;
+static bool find_depths(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count, double *out) {
     for (size_t k = 0; k < point_count; k++)
-        are = are && narc_compute_distance(arcs, count, &points[k], &out[k]);
-    return MUST(are);
+        if (!narc_compute_distance(arcs, count, &points[k], &out[k]))
+            return false;
+    return true;
 }
 
-static narc_status find_inside(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count,
-                               bool *out) {
-    for (size_t k = 0; k < point_count; k++)
+static bool find_inside(const narc_arc *arcs, size_t count, const narc_point *points, size_t point_count, bool *out) {
+    bool are = count > 0 && count <= NARC_MAX_ARCS;
+    for (size_t k = 0; k < point_count; k++) {
         out[k] = narc_contains_point(arcs, count, &points[k]);
-    return MUST(count > 0 && count <= NARC_MAX_ARCS);
+        are = are && isfinite(points[k].x) && isfinite(points[k].y);
+    }
+    return are;
 }
 
 static narc_status update_contacts(void **p, handle *contacts, const narc_step_result **out_step, narc_error *error) {
@@ -376,12 +386,14 @@ static bool take_argument(frame *f, const argument *a, PyObject *given, int k) {
         break;
     case DOUBLE:
         f->d[k] = PyFloat_AsDouble(given);
-        return !PyErr_Occurred();
+        return !PyErr_Occurred() || frame_refuse(f, "a number", given);
     case SIZE: {
         PyObject *const whole = PyNumber_Index(given);
         f->n[k] = whole ? PyLong_AsSize_t(whole) : 0;
         Py_XDECREF(whole);
-        if (whole && PyErr_Occurred())
+        if (!whole)
+            return frame_refuse(f, "a whole number", given);
+        if (PyErr_Occurred())
             PyErr_Format(index_error_class, "%s is %R, which no number of one is", a->name, given);
         return !PyErr_Occurred();
     }
@@ -640,8 +652,8 @@ static PyObject *hear_of_fork(PyObject *self, PyObject *given) {
     (void)self;
     if (when == 0)
         before_fork();
-    else if (when > 0 && after_fork(when == 2))
-        fork_count += when == 2;
+    else if (when > 0)
+        fork_count += after_fork(when == 2);
     if (PyErr_Occurred())
         return NULL;
     Py_RETURN_NONE;
@@ -683,9 +695,13 @@ static bool add_calls(PyObject *module) {
     return true;
 }
 
-static PyObject *make_error(const char *name, const char *doc, PyObject *base, PyObject *other) {
+/* With a status, the error's as long as none is set, it has the library's members. */
+static PyObject *make_error(const char *name, const char *doc, PyObject *base, PyObject *other, narc_status status) {
     PyObject *const bases = other ? PyTuple_Pack(2, base, other) : PyTuple_Pack(1, base);
-    PyObject *const made = bases ? PyErr_NewExceptionWithDoc(name, doc, bases, NULL) : NULL;
+    PyObject *const members =
+        status ? Py_BuildValue("{sssisd}", "status", narc_status_name(status), "index", 0, "value", 0.0) : PyDict_New();
+    PyObject *const made = bases && members ? PyErr_NewExceptionWithDoc(name, doc, bases, members) : NULL;
+    Py_XDECREF(members);
     Py_XDECREF(bases);
     return made;
 }
@@ -699,12 +715,12 @@ static int prepare(PyObject *module) {
         handle_type = (PyTypeObject *)PyType_FromSpec(&handle_spec);
         error_class = make_error(
             "narc.Error", "What the library refuses: `status` is its name, `index` which item, `value` the number.",
-            PyExc_ValueError, NULL);
+            PyExc_ValueError, NULL, NARC_ERROR_ARGUMENT);
         index_error_class = error_class ? make_error("narc.OutOfRange", "A body, shape or pair that there is not.",
-                                                     error_class, PyExc_IndexError)
+                                                     error_class, PyExc_IndexError, NARC_ERROR_INDEX)
                                         : NULL;
         warning_class = make_error("narc.NoAnswer", "Some of what was asked has no answer: narc.validate() says why.",
-                                   PyExc_RuntimeWarning, NULL);
+                                   PyExc_RuntimeWarning, NULL, NARC_OK);
     }
     PyObject *const version = PyUnicode_FromString(narc_version());
     const bool added = add(module, "Handle", (PyObject *)handle_type) && add(module, "Error", error_class) &&

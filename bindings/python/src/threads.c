@@ -21,7 +21,7 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t wanted = PTHREAD_COND_INITIALIZER, ended = PTHREAD_COND_INITIALIZER;
 static work *open; /* what helpers may come to */
 static unsigned pool_size;
-static bool is_forking;
+static int forks_under_way;
 
 static void take_tasks(work *w) {
     for (unsigned index; (index = atomic_fetch_add(&w->next, 1)) < w->count;)
@@ -88,24 +88,22 @@ void run_in_threads(void *context, unsigned task_count, void (*task)(void *argum
     pthread_mutex_unlock(&lock);
 }
 
-bool before_fork(void) {
-    const bool is_first = !is_forking;
-    if (is_first)
+void before_fork(void) {
+    if (forks_under_way++ == 0)
         pthread_mutex_lock(&lock);
-    is_forking = true;
-    return is_first;
 }
 
 bool after_fork(bool is_child) {
-    if (!is_forking)
+    if (forks_under_way == 0)
         return false;
-    is_forking = false;
+    forks_under_way = is_child ? 0 : forks_under_way - 1;
     if (is_child) {
         open = NULL;
         pool_size = 0;
         wanted = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
         ended = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
     }
-    pthread_mutex_unlock(&lock);
-    return true;
+    if (forks_under_way == 0)
+        pthread_mutex_unlock(&lock);
+    return is_child;
 }

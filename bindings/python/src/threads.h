@@ -15,9 +15,9 @@ enum { MOST_THREADS = 256 };
 /* narc_workers.run */
 void run_in_threads(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument);
 
-/* Around a fork, whose child begins threads of its own; with Python's lock. Called several times they do so once, and tell
- * when it is. */
-bool before_fork(void);
+/* Around a fork, whose child begins threads of its own; with Python's lock, which is given up between the two: several threads
+ * may fork at a time. The second is true once in a child. */
+void before_fork(void);
 bool after_fork(bool is_child);
 
 #endif

@@ -2,6 +2,7 @@
 """Scenes for tests, from a seed that NARC_TEST_SEED may move."""
 
 import os
+import signal
 
 import numpy as np
 import pytest
@@ -43,3 +44,11 @@ class Scene:
 @pytest.fixture
 def scene(random):
     return Scene(random)
+
+
+@pytest.fixture
+def ctrl_c():
+    """Is heard, as in a terminal: what a shell starts in the background inherits that it is not."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

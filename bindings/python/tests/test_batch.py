@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Batches beside plain NumPy and shapely; arrays in all layouts; what is refused."""
 
+import collections
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -242,7 +245,7 @@ def test_lists_are_columns(scene):
                         ("sine", [[1, 2], [3]])):
         with pytest.raises((TypeError, ValueError), match=f"bodies.{name}"):
             narc.validate(shapes, {**lists, name: wrong})
-    with pytest.raises(ValueError, match="kind: numbers of 0 to 255"):
+    with pytest.raises(narc.OutOfRange, match="kind: item 0 is 300"):
         narc.pairs(shapes, bodies, kind=[300] * 300)
 
 
@@ -276,7 +279,27 @@ REFUSED = [
      "out has 3 rows, 9 are needed"),
     (lambda s: narc.contacts(None, s.bodies, [[0, 1]]), TypeError, "shapes: a narc.Shapes is wanted"),
     (lambda s: narc.pairs(s.shapes, s.bodies, others=s.bodies, kind=np.zeros(300, "u1")), TypeError, "kind: filters"),
-    (lambda s: narc.pairs(s.shapes, s.bodies, kind=256), TypeError, "filter.kind"),
+    (lambda s: narc.pairs(s.shapes, s.bodies, kind=256), ValueError, "filter.kind: 256 is out of range"),
+    (lambda s: narc.pairs(s.shapes, s.bodies, world=-1), ValueError, "filter.world: -1 is out of range"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], count=-1), ValueError, "query.count: -1 is out of range"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], first=2**64), ValueError, "query.first: 18446744073709551616 is out"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], margin=10**400), ValueError, "query.margin: 1000"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], margin=1e300), ValueError, "query.margin: 1e.300 is out of range"),
+    (lambda s: narc.Index(s.shapes, s.bodies).nearest([[0, 0]], distance=1e-50), ValueError, "options.distance: 1e-50 is out of"),
+    (lambda s: narc.overlaps(s.shapes, s.bodies, {"ab": [[0, 1]], "other_bodies": s.bodies}), TypeError, "pairs: other_bodies"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((1, 3), "u4")), ValueError, r"pairs: the shape is to be .n, 2., not .1, 3."),
+    (lambda s: narc.contact(s.shapes, [[0.0, 0, 1, 0]], [[0.1, 0, 1, 0]]), TypeError, "a: rows of narc_body are wanted"),
+    (lambda s: narc.pairs(s.shapes, s.bodies, kind=np.full(300, 256)), narc.OutOfRange, "filter.kind: item 0 is 256"),
+    (lambda s: s.shapes.circle("wide"), TypeError, "radius: a number is wanted, not 'wide'"),
+    (lambda s: s.shapes.regular(3.5, 1), TypeError, "corners: a whole number is wanted, not 3.5"),
+    (lambda s: s.shapes.remove("box"), TypeError, "shape: a whole number is wanted, not 'box'"),
+    (lambda s: narc.mass(np.zeros((100, 5))), narc.Error, "1 to 64 arcs"),
+    (lambda s: narc.mass(np.zeros(2, [("radius", "f8")])), TypeError, "arcs: the fields center, radius, start, end are wanted"),
+    (lambda s: narc.contains(s.shapes.arcs(0), [[np.nan, 0]]), narc.Error, "not finite"),
+    (lambda s: narc.depths(s.shapes.arcs(0), [[0, np.inf]]), narc.Error, "not finite"),
+    (lambda s: narc.bounding_box(s.shapes.arcs(0), np.nan), narc.Error, "not finite"),
+    (lambda s: narc.bodies([[1j, 2]]), TypeError, "xy: numbers are wanted, not complex128"),
+    (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], count=1.5), TypeError, "query.count: a number is wanted, not 1.5"),
     (lambda s: narc.contacts(s.shapes, s.bodies, [[0, 1]], world=np.zeros(300, "u4")), TypeError, "world: this is for pairs that are"),
     (lambda s: narc.separations(s.shapes, s.bodies), ValueError, "margin: without pairs it must be finite"),
     (lambda s: narc.Index(s.shapes, s.bodies).rays((0, 0), [["a", "b"]]), TypeError, "motion"),
@@ -374,3 +397,36 @@ def test_threads_give_the_same_bytes(random):
     for threads in (2, 5):
         many = narc.manifolds(shapes, bodies, threads=threads)
         assert one[0].tobytes() == many[0].tobytes() and (one[1] == many[1]).all()
+
+
+def test_rows_come_in_any_order_and_from_other_programs(scene):
+    box = scene.shapes.arcs(0)
+    turned = np.zeros(len(box), [("end", "f8"), ("start", "f4"), ("center", "f8", 2), ("radius", "f8")])
+    for name in narc.ARC.names:
+        turned[name] = box[name]
+    assert narc.mass(turned)["area"] == pytest.approx(narc.mass(box)["area"], rel=1e-6)
+    a, b = pickle.loads(pickle.dumps(scene.bodies))[:2]
+    assert narc.contact(scene.shapes, a, b, margin=np.inf) == narc.contact(scene.shapes, *scene.bodies[:2], margin=np.inf)
+    places = [[0.0, 0], [1, 0]]
+    for bodies in (places, np.array(places), np.array([(p,) for p in places], [("xy", "f8", 2)])):  # none is turned
+        assert (narc.boxes(scene.shapes, bodies) == narc.boxes(scene.shapes, narc.bodies(places))).all()
+    one = collections.OrderedDict(xy=np.zeros((1, 2)), cosine=1.0, sine=0.0, scale=1.0, shape=0)
+    assert len(narc.boxes(scene.shapes, one)) == 1 and len(narc.pairs(scene.shapes, one)) == 0
+
+
+def test_nothing_is_asked_of_nothing(scene):
+    none = narc.bodies(np.zeros((0, 2)))
+    for ask in (narc.contacts, narc.manifolds, narc.overlaps):
+        assert [len(found) for found in ask(scene.shapes, none)] == [0, 0] and len(ask(scene.shapes, scene.bodies, [])) == 0
+    assert [len(found) for found in narc.casts(scene.shapes, none, np.zeros((0, 2)))] == [0, 0]
+    assert len(narc.casts(scene.shapes, scene.bodies, np.zeros((300, 2)), [])) == 0
+    index = narc.Index(scene.shapes, scene.bodies)
+    assert len(narc.box_pairs([])) == len(index.regions([])) == len(index.nearest([])) == len(index.rays([], [])) == 0
+    index.update(threads=2)
+
+
+def test_errors_have_their_numbers(scene):
+    for call in (lambda: scene.shapes.arcs(-1), lambda: narc.bodies([[0, 0]], shape=-1)):
+        with pytest.raises(narc.OutOfRange) as caught:
+            call()
+        assert (caught.value.status, caught.value.index, caught.value.value) == ("NARC_ERROR_INDEX", 0, 0.0)

@@ -36,6 +36,24 @@ def test_a_fit_bounds_what_it_is_of():
     assert narc.Shapes().add(fit.arcs) == 0
 
 
+def test_cuts_without_tolerance():
+    parts = narc.cut_exactly(L_SHAPE)
+    assert len(parts) == 2 and sum(part.area for part in parts) == pytest.approx(area(np.array(L_SHAPE, float)), rel=1e-6)
+    teeth = [[x, y] for k in range(39, -1, -1) for x, y in ((2 * k + 1, 0), (2 * k + 1, 1), (2 * k, 1), (2 * k, 0))]
+    comb = [[-1, 0], [-1, -1], [80, -1], [80, 0], *teeth]
+    parts = narc.cut_exactly(comb)
+    assert len(parts) > 16 and sum(part.area for part in parts) == pytest.approx(area(np.array(comb, float)), rel=1e-6)
+    with pytest.raises(narc.Error, match="cross|touch"):
+        narc.cut_exactly([[0, 0], [1, 1], [1, 0], [0, 1]])
+
+
+def test_plain_shapes_are_seen():
+    plain = narc.fit(circle() + 1, 0, tolerance=0.01, family="plain")
+    assert len(plain.arcs) == 1 and plain.arcs["radius"][0] == pytest.approx(2, abs=0.01)
+    with pytest.raises(narc.Error):
+        narc.fit(L_SHAPE, 0, tolerance=0.01, family="plain")
+
+
 def test_few_arcs_serve_where_they_can():
     assert len(narc.fit(circle(), 0, tolerance=1e-3, goal="nearest").arcs) == 1
     box = narc.fit([[0, 0], [3, 0], [3, 1], [0, 1]], 4, family="edges")
@@ -109,7 +127,13 @@ def test_files_keep_shapes(tmp_path):
     assert [(read[name].arcs == shape.arcs).all() for name, shape in narc.read_shapes(file).items()] == [True] * 3
     with pytest.raises(narc.Error, match="comma|name"):
         narc.write_shapes(file, {"a,b": fit})
+    with pytest.raises(TypeError, match="arcs: the fields"):
+        narc.write_shapes(file, {"a": narc.NamedShape(np.zeros(3, narc.BODY))})
     assert list(narc.read_shapes(file)) == list(read)
+    circle = [[0, 0, 1, 0, 2 * np.pi]]
+    narc.write_shapes(file, {"plain": circle, "rows": narc.NamedShape(np.array(circle))})
+    for shape in narc.read_shapes(file).values():
+        assert (shape.arcs["center"] == 0).all() and (shape.arcs["radius"], shape.arcs["end"]) == (1, 2 * np.pi)
     file.write_text('{"shapes":\n [{"name": 3}]}')
     with pytest.raises(narc.Error) as raised:
         narc.read_shapes(file)
@@ -122,11 +146,11 @@ def test_files_keep_shapes(tmp_path):
     (lambda: narc.fit(L_SHAPE, -1), ValueError, "arcs is -1"),
     (lambda: narc.fit(L_SHAPE, starts=2**32 + 2), ValueError, "starts is 4294967298"),
     (lambda: narc.cut(L_SHAPE, most=-1), ValueError, "most is -1"),
-    (lambda: narc.hull(np.zeros((4, 3))), ValueError, "xy: an array"),
-    (lambda: narc.hull(np.zeros(7)), ValueError, "xy: an array"),
+    (lambda: narc.hull(np.zeros((4, 3))), ValueError, "xy: the shape is to be"),
+    (lambda: narc.hull(np.zeros(7)), ValueError, "xy: the shape is to be"),
     (lambda: narc.fit(L_SHAPE, family="rounds"), ValueError, "family 'rounds': it is one of n-arc"),
     (lambda: narc.fit(L_SHAPE, goal="best"), ValueError, "goal 'best'"),
-    (lambda: narc.fit([]), ValueError, "n, 2"),
+    (lambda: narc.fit([]), narc.Error, "no points"),
     (lambda: narc.fit(np.zeros((3, 3))), ValueError, "n, 2"),
     (lambda: narc.fit([[0, 0], [np.nan, 1], [2, 2]]), narc.Error, "nan|finite"),
     (lambda: narc.cut(L_SHAPE, -1), narc.Error, "-1"),
@@ -138,7 +162,7 @@ def test_what_is_wrong_is_said(wrong, kind, words):
         wrong()
 
 
-def test_control_c_ends_a_fit():
+def test_control_c_ends_a_fit(ctrl_c):
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):

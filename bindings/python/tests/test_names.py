@@ -14,6 +14,7 @@ import narc
 
 HERE = pathlib.Path(__file__).parent.parent
 INCLUDE = HERE.parent.parent / "include"
+BEGIN = "# From the table of calls, by tests/test_names.py:\n"
 
 # Python has these itself, or needs them not.
 OWN = """create_shapes destroy_shapes create_index destroy_index create_contacts destroy_contacts create_broad_phase
@@ -43,6 +44,27 @@ def test_all_functions_are_called():
     assert sorted(declared - called - left_out) == [] and sorted(left_out - declared) == []
     table = set(re.findall(r"^CALL\((\w+),", sources, flags=re.M))
     assert sorted(table - used) == []
+
+
+def make_stubs():
+    """What _narc.pyi says of the extension's calls, from their table: python tests/test_names.py writes it."""
+    kept = (HERE / "narc" / "_narc.pyi").read_text().split(BEGIN)[0]
+    results = {"COUNT": "int", "PAIRS": "bytearray", "SLOTS": "bytearray", "STEP": "tuple[Any, ...]"}
+    numbers = {"double": "SupportsFloat", "size": "SupportsIndex", "threads": "SupportsIndex"}
+    lines = []
+    for name, arguments, result in re.findall(r'^CALL\((\w+), "([^"]*)", (\w+)', (HERE / "src" / "calls.inl").read_text(), re.M):
+        given = []
+        for word, kind in (argument.split(":") for argument in arguments.split()):
+            handle = kind[0].isupper()
+            given.append(f"{word}: " + ("Handle" if handle else "ArrayLike | None" if kind[0] == "<" else "NDArray[Any]" if kind[0] == ">"
+                                        else numbers.get(kind, "Any")))
+        lines.append(f"def {name}({', '.join(given)}, /) -> {results[result]}: ...\n")
+    return kept + BEGIN + "".join(lines)
+
+
+@pytest.mark.skipif(not INCLUDE.exists(), reason="the table of calls is not here")
+def test_stubs_are_those_of_the_table():
+    assert (HERE / "narc" / "_narc.pyi").read_text() == make_stubs()
 
 
 def test_functions_of_c_are_not_shown_to_others():
@@ -79,3 +101,7 @@ def test_help_pages_have_all_that_is_public(tmp_path):
     assert "### narc.Shapes.box(self, width: float, height: float, radius: float = 0.0) -> int" in text
     assert "| `normal` | float32 x 2 | 12 |" in text and "NARC_MAX_ARCS" in (tmp_path / "constants.md").read_text()
     assert subprocess.run([sys.executable, "-m", "narc", "page"], capture_output=True).returncode == 2
+
+
+if __name__ == "__main__":
+    (HERE / "narc" / "_narc.pyi").write_text(make_stubs())

@@ -153,14 +153,6 @@ def test_slices_are_one_answer(heap, random, monkeypatch, threads):
         narc.distances(shapes, bodies, points, some[:5])
 
 
-@pytest.fixture
-def ctrl_c():
-    """Is heard, as in a terminal: what a shell starts in the background inherits that it is not."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 def test_ctrl_c_ends_a_long_call(heap, random, ctrl_c):
     shapes, bodies = heap
     pairs = random.integers(0, 3000, (4_000_000, 2), dtype=np.uint32)
@@ -238,3 +230,43 @@ def test_subinterpreters_are_refused():
                                     f"spec = find('narc._narc', {narc._narc.__file__!r})\nspec.loader.exec_module(module_from_spec(spec))")
     finally:
         interpreters.destroy(other)
+
+
+def test_two_threads_fork_at_a_time():
+    code = """if True:
+        import os, signal, threading, time
+        slow = threading.local()
+        os.register_at_fork(before=lambda: time.sleep(getattr(slow, "time", 0)))  # behind the package's own
+        import narc
+        shapes = narc.Shapes()
+        shapes.box(2, 1)
+        bodies = narc.bodies([[0.3 * k, 0] for k in range(500)])
+        done = []
+
+        def fork(seconds, ask):
+            slow.time = seconds
+            child = os.fork()
+            if child == 0:
+                signal.alarm(60)
+                if ask:
+                    narc.contacts(shapes, bodies, threads=9)
+                os._exit(0)
+            done.append(os.waitpid(child, 0)[1])
+
+        def work():
+            while len(done) < 12:
+                narc.contacts(shapes, bodies, threads=4)
+
+        busy = threading.Thread(target=work)
+        busy.start()
+        for _ in range(6):
+            both = [threading.Thread(target=fork, args=a) for a in ((0.05, False), (0.15, True))]
+            both[0].start()
+            time.sleep(0.01)
+            both[1].start()
+            for one in both:
+                one.join()
+        busy.join()
+        assert done == [0] * 12, done
+    """
+    subprocess.run([sys.executable, "-c", code], check=True)

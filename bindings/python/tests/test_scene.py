@@ -75,7 +75,7 @@ def test_what_is_no_shape_is_refused():
         with pytest.raises(narc.Error, match=words) as caught:
             call()
         assert caught.value.status.startswith("NARC_ERROR_")
-    with pytest.raises(TypeError, match="arcs: rows of narc_arc"):
+    with pytest.raises(ValueError, match="arcs: rows of five numbers"):
         shapes.add(np.zeros((3, 4)))
     with pytest.raises(TypeError):
         shapes.circle("wide")
@@ -142,6 +142,17 @@ def test_ground_holds_balls(random):
     balls = narc.bodies([[2, 0.4], [5, 0.7], [7, 0.45]], shape=ball)
     rows, pairs = narc.contacts(shapes, balls, others=ground)
     assert sorted(set(pairs[rows["pair"], 0])) == [0, 2] and np.allclose(rows["normal"], [0, -1], atol=1e-6)
+
+
+def test_filters_stay_where_rows_need_more_room():
+    shapes = narc.Shapes()
+    bowl = shapes.chain([[0, 0, -5, np.pi / 2 + 0.9, np.pi / 2 - 0.9]])  # where a bar stands on both ends
+    bar = shapes.box(6, 0.2)
+    some = narc.bodies([*bowl["xy"], [0, -4], [0, -4]], shape=[*bowl["shape"], bar, bar])
+    every, pairs = narc.contacts(shapes, some)
+    assert len(pairs) == 3 and len(every) == 5
+    rows, pairs = narc.contacts(shapes, some, world=np.array([1, 1, 2], np.uint32))
+    assert pairs.tolist() == [[0, 1]] and rows["pair"].tolist() == [0, 0]
 
 
 def test_steps_that_are_kept_stay_what_they_were(scene):
@@ -232,6 +243,11 @@ def test_nearest_and_regions_are_as_numpy_says(random):
     assert len(index.regions(boxes)) == 0 and repr(index) == "<narc.Index of 400 bodies>"
     index.update(bodies[:50].copy())
     assert len(index) == 50 and index.statistics()["bodies"] == 50
+    tree = index.statistics()
+    levels = [index.nodes(level) for level in range(tree["depth"])]
+    assert sum(map(len, levels)) == tree["nodes"] and len(levels[0]) == tree["leaves"] and len(index.nodes(tree["depth"])) == 0
+    of = narc.boxes(shapes, bodies[:50])
+    assert len(levels[-1]) == 1 and (levels[-1]["min"][0] == of["min"].min(0)).all() and (levels[-1]["max"][0] == of["max"].max(0)).all()
 
 
 def test_bodies_that_come_bring_their_worlds(random):
@@ -324,3 +340,37 @@ def test_what_is_kept_stays_with_its_pair(random):
     contacts.forget()
     with pytest.raises(narc.Error, match="no step"):
         contacts.keep([0], ((0, 0), 0))
+
+
+def test_slots_and_ids_are_whole_numbers(scene):
+    contacts = narc.Contacts("contacts", user="f4")
+    step = contacts.update(scene.shapes, scene.bodies)
+    contacts.keep(step.slots, 7.0)
+    for slots in ([2**32], [-2**32], np.array([2**32])):
+        with pytest.raises(narc.OutOfRange, match="slots: there are no numbers"):
+            contacts.user(slots)
+    for call in (lambda: contacts.user([0.7]), lambda: contacts.forget([0.5]), lambda: contacts.keep([0.5], 1)):
+        with pytest.raises(TypeError, match="whole numbers"):
+            call()
+    with pytest.raises(ValueError, match=r"slots: the shape is to be \(n,\)"):
+        contacts.keep(step.pairs, 1)
+
+
+class OwnIndex(narc.Index):
+    pass
+
+
+def test_children_of_an_index_stay_what_they_are(scene):
+    again = pickle.loads(pickle.dumps(OwnIndex(scene.shapes, scene.bodies)))
+    assert type(again) is OwnIndex and len(again) == 300
+
+
+def test_plots_have_arcs():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    shapes = narc.Shapes()
+    figure, axis = pyplot.subplots()
+    drawn = narc.plot.draw_arcs(axis, shapes.arcs(shapes.circle(2)))
+    line = drawn.get_paths()[0].vertices
+    assert np.allclose(line[0], line[-1]) and np.allclose(np.hypot(*line.T), 2, atol=0.02)
+    assert len(narc.plot.draw_arcs(axis, [[0, 0, 1, 0, 1]], closed=False).get_paths()[0].vertices) > 3
+    pyplot.close(figure)

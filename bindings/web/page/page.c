@@ -26,11 +26,17 @@ typedef struct page_point {
     float x, y, normal_x, normal_y;
 } page_point;
 
+typedef struct page_node {
+    narc_box box;
+    uint32_t level;
+} page_node;
+
 static world w;
 static const scene *chosen;
 static long step_number;
 static page_body drawn[ROOM];
 static page_point points[2 * ROOM];
+static page_node nodes[ROOM];
 static narc_arc arcs[NARC_MAX_ARCS];
 static narc_point outline[POINTS];
 static uint64_t held; /* the id of the body in hand, 0: none */
@@ -208,20 +214,28 @@ EXPORT(unsigned, touch, (void)) {
 }
 EXPORT(page_point *, points, (void)) { return points; }
 
+/* All bodies, and the tree over their boxes as they are now. */
+static bool plant(narc_bodies *out_bodies) {
+    static narc_box boxes[ROOM];
+    *out_bodies = (narc_bodies){.count = w.body_count + w.ground_count,
+                                .x = NARC_POSITION_COLUMN(w.bodies, position.x),
+                                .y = NARC_POSITION_COLUMN(w.bodies, position.y),
+                                .cosine = NARC_COLUMN(w.bodies, cosine),
+                                .sine = NARC_COLUMN(w.bodies, sine),
+                                .shape = NARC_COLUMN(w.bodies, shape)};
+    return out_bodies->count <= ROOM && (tree || !narc_create_index(NULL, &tree)) &&
+           !narc_compute_boxes(w.store, out_bodies, NULL, boxes, NULL) &&
+           !narc_build_index(tree, boxes, out_bodies->count, NULL, NULL);
+}
+
 /* Where the rays of a scanner end, all around from a point: RAYS points, normals 0 where nothing is hit. Each ray is as long as
  * the reach. */
 EXPORT(unsigned, scan, (float x, float y, float reach)) {
     enum { RAYS = 1080 };
     static float motion_x[RAYS], motion_y[RAYS];
-    static narc_box boxes[ROOM];
     static narc_ray_hit hits[RAYS];
     const double turn = 2 * 3.14159265358979 / RAYS;
-    narc_bodies bodies = {.count = w.body_count + w.ground_count,
-                          .x = NARC_POSITION_COLUMN(w.bodies, position.x),
-                          .y = NARC_POSITION_COLUMN(w.bodies, position.y),
-                          .cosine = NARC_COLUMN(w.bodies, cosine),
-                          .sine = NARC_COLUMN(w.bodies, sine),
-                          .shape = NARC_COLUMN(w.bodies, shape)};
+    narc_bodies bodies;
     for (int k = 0; k < RAYS; k++) {
         motion_x[k] = reach * (float)cos(turn * k);
         motion_y[k] = reach * (float)sin(turn * k);
@@ -231,10 +245,7 @@ EXPORT(unsigned, scan, (float x, float y, float reach)) {
                             .y = {&y, 0, NARC_FLOAT32},
                             .motion_x = NARC_ARRAY(motion_x),
                             .motion_y = NARC_ARRAY(motion_y)};
-    if (bodies.count > ROOM || (!tree && narc_create_index(NULL, &tree)) ||
-        narc_compute_boxes(w.store, &bodies, NULL, boxes, NULL) ||
-        narc_build_index(tree, boxes, bodies.count, NULL, NULL) ||
-        narc_cast_rays(tree, w.store, &bodies, &rays, NULL, hits, RAYS, NULL))
+    if (!plant(&bodies) || narc_cast_rays(tree, w.store, &bodies, &rays, NULL, hits, RAYS, NULL))
         return 0;
     for (int k = 0; k < RAYS; k++) {
         const float fraction = hits[k].count ? hits[k].fraction : 1;
@@ -243,6 +254,21 @@ EXPORT(unsigned, scan, (float x, float y, float reach)) {
     }
     return RAYS;
 }
+
+/* The tree's nodes, level by level from the leaves up; returns how many. */
+EXPORT(unsigned, grow, (void)) {
+    narc_bodies bodies;
+    unsigned count = 0;
+    size_t added = plant(&bodies);
+    for (size_t level = 0; added > 0; level++) {
+        if (narc_copy_nodes(tree, level, &nodes[count].box, sizeof *nodes, ROOM - count, &added, NULL))
+            return 0;
+        for (size_t k = 0; k < added; k++)
+            nodes[count++].level = (uint32_t)level;
+    }
+    return count;
+}
+EXPORT(page_node *, nodes, (void)) { return nodes; }
 
 /* The arcs of a shape; of ground those of its front alone. */
 EXPORT(unsigned, arcs, (unsigned shape)) {

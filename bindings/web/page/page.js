@@ -11,7 +11,7 @@ const TITLES = { well: "A thousand bodies", wheels: "Who is smooth?", draw: "Dra
 // Scenes that others stand for, and what is switched on with them.
 const SAME = { rays: "well" }, WITH = { wheels: "arcs", rays: "rays", draw: "draw", ground: "draw" };
 const ORDER = Object.keys(TITLES);
-const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5, GROUND = 0.2;
+const STEP = 1 / 60, BODY = 6, POINT = 4, ARC = 5, NODE = 5, GROUND = 0.2;
 
 let core, narc, load, own = {}, scenes, current, seed = 1, paths, lit, extents, view, memory = {};
 let owed = 0, last = 0, held = false, stroke = null, shown = null, fits = null;
@@ -151,6 +151,8 @@ function draw() {
     if (on("boxes"))
         drawBoxes(count, base);
     context.setTransform(s, 0, 0, -s, view.x, view.y);
+    if (on("tree"))
+        drawTree();
     if (on("rays"))
         drawRays();
     if (on("contacts"))
@@ -283,6 +285,26 @@ function drawBoxes(count, base) {
         context.rect(f32[at] + x0, f32[at + 1] + y0, x1 - x0, y1 - y0);
     }
     context.stroke();
+}
+
+/** The boxes of the tree that rays and regions go through, the larger ones thicker. */
+function drawTree() {
+    const count = core.grow(), { f32, u32 } = views(), base = core.nodes() / 4;
+    for (let k = 0, level = -1; k < count; k++) {
+        const at = base + NODE * k, [x0, y0, x1, y1] = f32.subarray(at, at + 4);
+        if (u32[at + 4] !== level) {
+            if (level >= 0)
+                context.stroke();
+            level = u32[at + 4];
+            context.beginPath();
+            context.strokeStyle = level === 0 ? colors.quiet : colors.accent;
+            context.lineWidth = (0.5 + 0.8 * level) * view.ratio / view.scale;
+        }
+        if (x0 <= x1)
+            context.rect(x0, y0, x1 - x0, y1 - y0);
+    }
+    if (count > 0)
+        context.stroke();
 }
 
 /** A scanner at the pointer, or in the middle: what it sees, and where its rays end. */
@@ -618,7 +640,7 @@ function listen() {
     };
     canvas.addEventListener("pointerup", end);
     canvas.addEventListener("pointercancel", end);
-    const toggles = ["pause", "slow", "draw", "contacts", "arcs", "boxes", "sleep", "rays"];
+    const toggles = ["pause", "slow", "draw", "contacts", "arcs", "boxes", "tree", "sleep", "rays"];
     for (const id of toggles)
         $(id).addEventListener("click", () => setPressed(id, !on(id)));
     $("single").addEventListener("click", () => {
@@ -638,7 +660,7 @@ function listen() {
     });
     $("again").addEventListener("click", () => start(current, seed % 1e6 + 1));
     $("more").addEventListener("click", more);
-    const keys = { " ": "pause", ".": "single", s: "slow", r: "again", d: "draw", m: "more", c: "contacts", a: "arcs", b: "boxes", z: "sleep", l: "rays", u: "share" };
+    const keys = { " ": "pause", ".": "single", s: "slow", r: "again", d: "draw", m: "more", c: "contacts", a: "arcs", b: "boxes", t: "tree", z: "sleep", l: "rays", u: "share" };
     for (const [key, id] of Object.entries(keys))
         $(id).dataset.key = key === " " ? "␣" : key;
     addEventListener("keydown", (event) => {

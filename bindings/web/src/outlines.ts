@@ -279,6 +279,13 @@ export class Shapes extends Owned {
         }
     }
 
+    /** Ground without end: the shape of all points below its body's x axis. Not in the small build. */
+    halfPlane(): number {
+        const { memory } = this;
+        memory.call("narc_add_half_plane", this.pointer, memory.out);
+        return memory.u32[memory.out >> 2]!;
+    }
+
     /** Numbers that were given out. */
     get count(): number {
         return this.memory.function("narc_count_shapes")(this.pointer);

@@ -66,6 +66,21 @@ export class Index extends Owned {
         return out as unknown as IndexStatistics;
     }
 
+    /** The boxes of a level of the tree: 0 are the leaves; none from statistics.depth on. */
+    nodes(level: number, out: Rows<Box> = new Rows(this.memory, layouts.Box, 1)): Rows<Box> {
+        const { memory } = this;
+        memory.room(out, "out", rowsOf(layouts.Box), 0);
+        for (;;) {
+            const fits = memory.fits(memory.function("narc_copy_nodes")(this.pointer, whole(level, "level"), out.pointer, 0, out.capacity, memory.out, memory.error));
+            const found = memory.u32[memory.out >> 2]!;
+            if (fits) {
+                out.count = found;
+                return out;
+            }
+            out.reserve(found);
+        }
+    }
+
     /** What each ray hits first, or its first `most`: dense rows, `count` 0 where there is nothing. A ray goes from (x, y) to
      * (x, y) + (motionX, motionY). */
     rays(rays: RaysOptions, options?: Omit<RayOptions, "search"> & Search, out?: Rows<RayHit>): Rows<RayHit> {

@@ -53,6 +53,11 @@ test("both builds give the same bytes", () => {
         const rays = { x: many(0, 14), y: many(0, 14), motionX: many(-9, 9), motionY: many(-9, 9) };
         all.push(index.rays(rays, { most: 3 }), index.nearest({ x: rays.x, y: rays.y }, { most: 2 }), narc.distances(shapes, bodies, { x: rays.x, y: rays.y }, 7),
             narc.inside(shapes, bodies, { x: rays.x, y: rays.y }, 7), narc.rayPairs(shapes, bodies, rays, 3));
+        const { depth, nodes } = index.statistics, levels = Array.from({ length: depth }, (_, level) => index.nodes(level));
+        assert.equal(levels.reduce((sum, level) => sum + level.count, 0), nodes);
+        assert.equal(levels[depth - 1].count, 1);
+        assert.equal(index.nodes(depth).count, 0);
+        all.push(...levels);
         const motions = { x: Float32Array.from(bodies, () => next(-5, 5)), y: 1, angle: 0.5 };
         all.push(narc.castPairs(shapes, bodies, motions, pairs), index.casts(bodies, motions, { parting: 0.01 }));
         const stay = narc.contactsThatStay();
@@ -119,6 +124,11 @@ test("wrong calls are errors with names", () => {
     }
     assert.throws(() => small.placeParts(small.bodies(1), small.bodies(1), 0), /not in the small build/);
     assert.throws(() => small.shapes().addChain(new Float64Array(5)), /not in the small build/);
+    assert.throws(() => small.shapes().halfPlane(), /not in the small build/);
+    const shapes = fast.shapes(), disc = shapes.circle(1), ground = shapes.halfPlane(), bodies = fast.bodies(2);
+    Object.assign(bodies.at(0), { x: 1e6, y: 0.5, shape: disc });
+    bodies.at(1).shape = ground;
+    assert.equal(fast.contact(shapes, bodies, 0, 1).separation, -0.5);
 });
 
 // Each load() has a memory of its own: a place in one is another thing, or nothing, in the other.

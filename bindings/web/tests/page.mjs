@@ -148,12 +148,19 @@ try {
         assert.equal(await tab.$eval("#tabs [aria-selected=true]", (button) => button.dataset.scene), names[1]);
         await tab.keyboard.press("0"); // the pyramid
         await steps(tab, 60);
-        for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["z", "sleep"], ["l", "rays"], ["s", "slow"]]) {
+        for (const [key, id] of [["c", "contacts"], ["a", "arcs"], ["b", "boxes"], ["t", "tree"], ["z", "sleep"], ["l", "rays"], ["s", "slow"]]) {
             await tab.keyboard.press(key);
             assert.equal(await pressed(tab, id), "true", id);
         }
         await wait(100);
         await tab.screenshot({ path: join(out, "overlays.png") });
+        const tree = await tab.evaluate(() => { // leaves in larger boxes, up to one around all
+            const count = page.core.grow(), f32 = new Float32Array(page.core.memory.buffer), u32 = new Uint32Array(page.core.memory.buffer), base = page.core.nodes() / 4;
+            const nodes = Array.from({ length: count }, (_, k) => [...f32.subarray(base + 5 * k, base + 5 * k + 4), u32[base + 5 * k + 4]]), root = nodes.at(-1);
+            return { levels: root[4], bodies: page.core.body_count(), leaves: nodes.filter((node) => node[4] === 0).length,
+                held: nodes.every(([x0, y0, x1, y1]) => x0 > x1 || (root[0] <= x0 && root[1] <= y0 && x1 <= root[2] && y1 <= root[3])) };
+        });
+        assert(tree.held && tree.levels > 0 && tree.leaves * 8 >= tree.bodies, JSON.stringify(tree));
         const unlabelled = await tab.$$eval("button, select, [tabindex]", (all) => all.filter((one) => !one.textContent.trim() && !one.getAttribute("aria-label")).length);
         assert.equal(unlabelled, 0);
         // Arcs of the scene before are forgotten: a drawn outline may have had the number of a shape.

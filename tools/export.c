@@ -1,0 +1,477 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * export.c - narc export: shapes files to files of editors and engines.
+ *
+ * A shape becomes an outline of corners with bulges, and is then a circle, a capsule or a box if the target has these.
+ * Where it has no arcs, the polygon bounds: its edges are tangents of convex arcs and chords of concave ones.
+ */
+#include "export.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "draw_fit.h"
+#include "fail.h"
+#include "options.h"
+#include "output.h"
+#include "text.h"
+#include "turn.h"
+
+static const char HELP[] =
+    "usage: narc export SHAPES --to FORMAT [--tolerance T] [--scale S] [--y-down] [--origin NAME]\n"
+    "                   [--out FILE] [--dry-run]\n"
+    "\n"
+    "Writes shapes as the files of editors and engines. Shapes NAME/1, NAME/2 ... are one body NAME.\n"
+    "\n"
+    "  SHAPES          a shapes file\n"
+    "  --to FORMAT     tmx, tmj      a map of Tiled, with a layer of collision objects for each body\n"
+    "                  godot, godot3 a scene (.tscn) of Godot 4 or 3, with a StaticBody2D for each\n"
+    "                  phaser        PhysicsEditor's JSON, as Phaser 3 gives it to matter-js\n"
+    "                  box2d         R.U.B.E.'s JSON; polygons have at most 8 corners\n"
+    "                  libgdx        Physics Body Editor's JSON; the same\n"
+    "                  svg           a drawing, with true arcs and a group for each body\n"
+    "                  dxf           DXF R12: polylines with bulges, and a layer for each body\n";
+static const char MORE_HELP[] =
+    "  --tolerance T   where the format has no arcs: how far the polygons, which bound the shapes, may be\n"
+    "                  from them, in units of the output\n"
+    "  --scale S       all lengths are multiplied by this, default 1\n"
+    "  --y-down        y points down in box2d, libgdx and dxf too, as it does in the others\n"
+    "  --origin NAME   where each body's origin is: input (the default, in the coordinates of what was\n"
+    "                  fitted), center or bottom (the middle of its bounding box, or of its lower side)\n"
+    "  --out FILE      the file to write; left out or -: standard output\n"
+    "  --dry-run       nothing is written but the table of bodies, pieces and corners\n";
+
+enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, OPTIONS };
+typedef enum origin { INPUT, CENTER, BOTTOM, ORIGINS } origin;
+static const char *const origin_names[ORIGINS] = {"input", "center", "bottom"};
+
+typedef struct exporting {
+    const char *path;
+    const export_format *to;
+    double tolerance, scale;
+    bool y_down;
+    origin origin;
+} exporting;
+
+/* In parts of a piece's size: what is nearer is the same to engines, whose numbers are single precision. */
+static const double MERGED = 1e-7;
+
+/* An arc has no more corners. */
+enum { MOST_STEPS = 1000 };
+
+/* ---------------------------------------------------------------------------- outlines */
+
+bent bend(const corner *from, const corner *to) {
+    const double b = from->bulge, dx = to->x - from->x, dy = to->y - from->y, side = (1 - b * b) / (2 * b);
+    const narc_point center = {from->x + (dx - side * dy) / 2, from->y + (dy + side * dx) / 2};
+    return (bent){center, hypot(dx, dy) * (1 + b * b) / (4 * fabs(b)), atan2(from->y - center.y, from->x - center.x),
+                  4 * atan(b)};
+}
+
+static const corner *next_corner(const piece *of, size_t k) { return &of->corners[(k + 1) % of->count]; }
+
+static narc_aabb bound_piece(const piece *of) {
+    narc_aabb box = EMPTY_BOX;
+    for (size_t k = 0; k < of->count; k++) {
+        const corner *at = &of->corners[k];
+        box = join_boxes(box, (narc_aabb){at->x, at->y, at->x, at->y});
+        if (at->bulge == 0)
+            continue;
+        const bent arc = bend(at, next_corner(of, k));
+        for (int quarter = 0; quarter < 4; quarter++) { /* the circle's outermost points, if they are on the arc */
+            double away = fmod(quarter * FULL_TURN / 4 - arc.start, FULL_TURN);
+            if (away * arc.turn < 0)
+                away += copysign(FULL_TURN, arc.turn);
+            if (fabs(away) < fabs(arc.turn)) {
+                const double x = arc.center.x + (quarter % 2 ? 0
+                                                 : quarter   ? -arc.radius
+                                                             : arc.radius),
+                             y = arc.center.y + (quarter % 2 ? quarter == 1 ? arc.radius : -arc.radius : 0);
+                box = join_boxes(box, (narc_aabb){x, y, x, y});
+            }
+        }
+    }
+    return box;
+}
+
+static double measure_piece(const piece *of) {
+    const narc_aabb box = bound_piece(of);
+    return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+}
+
+static void add_corner(piece *to, size_t *capacity, double x, double y, double bulge) {
+    to->corners = grow(to->corners, capacity, to->count + 1, sizeof *to->corners);
+    to->corners[to->count++] = (corner){x, y, bulge};
+}
+
+/* An arc begins, or ends, as near to the last corner as single precision has the arcs of fits: at one corner, in the middle. */
+static bool join_corners(corner *end, double x, double y, double bulge, double near) {
+    if (!(hypot(x - end->x, y - end->y) <= near))
+        return false;
+    *end = (corner){(end->x + x) / 2, (end->y + y) / 2, bulge};
+    return true;
+}
+
+/* Drops corners that lie where the next one is, and with `straight` those between two edges in one line. */
+static void drop_corners(piece *of, bool straight) {
+    const double near = MERGED * measure_piece(of);
+    const bool closed = of->kind != LINE;
+    for (size_t k = 0; k < of->count && of->count > 2;) {
+        const corner *at = &of->corners[k], *next = next_corner(of, k),
+                     *before = &of->corners[(k + of->count - 1) % of->count];
+        const double dx = next->x - before->x, dy = next->y - before->y,
+                     away = fabs(dx * (at->y - before->y) - dy * (at->x - before->x));
+        const bool is_end = !closed && (k == 0 || k + 1 == of->count);
+        const bool same = hypot(next->x - at->x, next->y - at->y) <= near;
+        if (!is_end && (same || (straight && away <= near * hypot(dx, dy)))) {
+            memmove(&of->corners[k], &of->corners[k + 1], (of->count - k - 1) * sizeof *at);
+            of->count--;
+        } else {
+            k++;
+        }
+    }
+}
+
+/* How far an arc turns, counter-clockwise if it is convex. Its angles are whole turns away from any others. */
+static double find_turn(const narc_arc *arc) {
+    const double way = arc->radius > 0 ? 1 : -1, turn = way * (arc->end - arc->start), nothing = 1e-6;
+    if (arc->radius == 0 || fabs(turn) < nothing)
+        return 0;
+    const double rest = turn - FULL_TURN * floor(turn / FULL_TURN);
+    return way * (rest < nothing || rest > FULL_TURN - nothing ? FULL_TURN : rest);
+}
+
+/* The shape's arcs as corners with bulges, in the target's coordinates but for the origin. */
+static piece outline_shape(const narc_named_shape *shape, const exporting *how) {
+    piece made = {.kind = shape->form == NARC_FORM_SHAPE        ? OUTLINE
+                          : shape->form == NARC_FORM_OPEN_CHAIN ? LINE
+                                                                : LOOP,
+                  .name = shape->name};
+    size_t capacity = 0;
+    const double s = how->scale, up = how->y_down ? -s : s;
+    double near = 0, first_near = 0; /* of this arc or the one before, and of the first one */
+    for (size_t i = 0; i < shape->arc_count; i++) {
+        const narc_arc *arc = &shape->arcs[i];
+        const double turn = find_turn(arc);
+        const int steps = turn == 0 ? 0 : fabs(turn) > 0.51 * FULL_TURN ? 2 : 1;
+        const double before = near;
+        near = 4 * (double)FLT_EPSILON * s * (hypot(arc->center_x, arc->center_y) + fabs(arc->radius));
+        first_near = i == 0 ? near : first_near;
+        for (int k = 0; k <= steps; k++) {
+            const double at = arc->start + (steps ? turn * k / steps : 0),
+                         bulge = k < steps ? tan(turn / steps / 4) : 0,
+                         x = s * (arc->center_x + arc->radius * cos(at) + shape->origin.x),
+                         y = up * (arc->center_y + arc->radius * sin(at) + shape->origin.y);
+            if (made.count == 0 || !join_corners(&made.corners[made.count - 1], x, y, bulge, fmax(before, near)))
+                add_corner(&made, &capacity, x, y, bulge);
+        }
+    }
+    const corner *const begin = made.corners;
+    if (made.kind != LINE && made.count > 3 &&
+        join_corners(&made.corners[made.count - 1], begin->x, begin->y, begin->bulge, fmax(near, first_near))) {
+        made.corners[0] = made.corners[made.count - 1];
+        made.count--;
+    }
+    /* Turned over, arcs turn the other way; backwards, as before. */
+    for (size_t i = 0, j = made.count - 1; how->y_down && i < j; i++, j--) {
+        const corner kept = made.corners[i];
+        made.corners[i] = made.corners[j];
+        made.corners[j] = kept;
+    }
+    if (how->y_down) { /* a bulge belongs to the corner before its arc */
+        const double first = made.corners[0].bulge;
+        for (size_t k = 0; k + 1 < made.count; k++)
+            made.corners[k].bulge = made.corners[k + 1].bulge;
+        made.corners[made.count - 1].bulge = first;
+    }
+    drop_corners(&made, false);
+    return made;
+}
+
+/* Is it one of the plain shapes? */
+static void recognise(piece *of) {
+    const double near = MERGED * measure_piece(of);
+    const corner *c = of->corners;
+    const narc_aabb box = bound_piece(of);
+    of->center = (narc_point){(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2};
+    of->width = box.max_x - box.min_x;
+    of->height = box.max_y - box.min_y;
+    if (of->kind != OUTLINE)
+        return;
+    bool circle = true, sharp = of->count == 4;
+    const double radius = of->width / 2;
+    for (size_t k = 0; k < of->count; k++) {
+        const bent arc = c[k].bulge > 0 ? bend(&c[k], next_corner(of, k)) : (bent){of->center, INFINITY, 0, 0};
+        circle = circle && fabs(arc.radius - radius) <= near &&
+                 hypot(arc.center.x - of->center.x, arc.center.y - of->center.y) <= near;
+        sharp = sharp && c[k].bulge == 0 && fabs(fabs(c[k].x - of->center.x) - of->width / 2) <= near &&
+                fabs(fabs(c[k].y - of->center.y) - of->height / 2) <= near;
+    }
+    const size_t k = of->count == 4 && c[0].bulge == 0 ? 1 : 0; /* the first arc of a capsule */
+    if (circle || sharp) {
+        of->kind = circle ? CIRCLE : BOX;
+        of->radius = radius;
+    } else if (of->count == 4 && c[k].bulge > 0 && c[k + 2].bulge > 0 && c[k + 1].bulge == 0 &&
+               c[(k + 3) % 4].bulge == 0) {
+        const bent a = bend(&c[k], &c[k + 1]), b = bend(&c[k + 2], &c[(k + 3) % 4]);
+        const double dx = b.center.x - a.center.x, dy = b.center.y - a.center.y, half = FULL_TURN / 2;
+        if (fabs(a.radius - b.radius) <= near && fabs(a.turn - half) < 1e-6 && fabs(b.turn - half) < 1e-6) {
+            of->kind = CAPSULE;
+            of->radius = (a.radius + b.radius) / 2;
+            of->width = hypot(dx, dy) + 2 * of->radius;
+            of->angle = atan2(dy, dx);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------- polygons */
+
+/* How many edges an arc needs: the corners of tangents, the middles of chords are within the tolerance. */
+static size_t count_steps(const exporting *how, const piece *of, const bent *arc) {
+    const double t = how->tolerance / arc->radius, turn = fabs(arc->turn);
+    const double widest = fmin(2 * (arc->turn > 0 ? acos(1 / (1 + t)) : acos(fmax(1 - t, 0))), FULL_TURN / 4);
+    const double steps = ceil(turn / widest - 1e-9);
+    if (!(how->tolerance > 0))
+        fail_at(how->path, 0,
+                "shape '%s' has arcs and %s has none: --tolerance, in units of the output, is missing (%.2g is 1 %% of "
+                "this shape's size)",
+                of->name, how->to->name, 0.01 * measure_piece(of));
+    if (!(steps <= MOST_STEPS))
+        fail_at(how->path, 0, "shape '%s': an arc has more than %d corners with --tolerance %g; %.2g will do", of->name,
+                MOST_STEPS, how->tolerance, 1.1 * arc->radius * (1 / cos(turn / MOST_STEPS / 2) - 1));
+    return (size_t)fmax(steps, 1);
+}
+
+/* Of a convex shape's polygon, whatever was rounded, the convex hull: no further out than the tolerance either. */
+static void make_convex(piece *of) {
+    narc_point *points = allocate(of->count, sizeof *points);
+    size_t count;
+    for (size_t k = 0; k < of->count; k++)
+        points[k] = (narc_point){of->corners[k].x, of->corners[k].y};
+    if (narc_compute_hull(points, of->count, points, &count, NULL) == NARC_OK && count > 2) {
+        for (size_t k = 0; k < count; k++)
+            of->corners[k] = (corner){points[k].x, points[k].y, 0};
+        of->count = count;
+    }
+    free(points);
+}
+
+static void flatten_piece(piece *of, const exporting *how) {
+    piece flat = *of;
+    size_t capacity = 0;
+    flat.corners = NULL;
+    flat.count = 0;
+    for (size_t k = 0; k < of->count; k++) {
+        const corner *at = &of->corners[k];
+        add_corner(&flat, &capacity, at->x, at->y, 0);
+        if (at->bulge == 0)
+            continue;
+        const bent arc = bend(at, next_corner(of, k));
+        const size_t steps = count_steps(how, of, &arc);
+        const double step = arc.turn / (double)steps, reach = arc.turn > 0 ? arc.radius / cos(step / 2) : arc.radius;
+        for (size_t i = arc.turn > 0 ? 0 : 1; i < steps; i++) {
+            const double to = arc.start + step * ((double)i + (arc.turn > 0 ? 0.5 : 0));
+            add_corner(&flat, &capacity, arc.center.x + reach * cos(to), arc.center.y + reach * sin(to), 0);
+        }
+    }
+    drop_corners(&flat, true);
+    if (flat.kind == OUTLINE)
+        make_convex(&flat);
+    free(of->corners);
+    *of = flat;
+}
+
+static void add_piece(export_body *to, const piece *added) {
+    to->pieces = grow(to->pieces, &to->capacity, to->count + 1, sizeof *to->pieces);
+    to->pieces[to->count++] = *added;
+}
+
+/* A convex polygon as the fewest with at most so many corners, of about the same number: chords part it. */
+static void split_outline(export_body *to, const piece *of, size_t most) {
+    const size_t pieces = most ? (of->count - 2 + most - 3) / (most - 2) : 1;
+    if (pieces <= 1) {
+        add_piece(to, of);
+        return;
+    }
+    const size_t left = (of->count - 2) * (pieces / 2) / pieces + 2, right = of->count - left + 2;
+    piece a = *of, b = *of;
+    a.count = left;
+    b.count = right;
+    b.corners = allocate(right, sizeof *b.corners);
+    memcpy(b.corners, of->corners + left - 1, (right - 1) * sizeof *b.corners);
+    b.corners[right - 1] = of->corners[0];
+    split_outline(to, &a, most);
+    split_outline(to, &b, most);
+}
+
+/* ---------------------------------------------------------------------------- bodies */
+
+/* Where NAME/1, NAME/2 ... are parts of a body NAME: how long that name is, and the part's number; else 0. */
+static size_t find_number(const char *name, uint64_t *number) {
+    const char *slash = strrchr(name, '/');
+    return slash && slash > name && parse_whole(slash + 1, 1000000, number) ? (size_t)(slash - name) : 0;
+}
+
+static size_t find_part(const narc_shape_list *shapes, const char *name, size_t length, uint64_t number) {
+    char suffix[24] = "";
+    if (number)
+        snprintf(suffix, sizeof suffix, "/%u", (unsigned)number);
+    char *part = join_text(name, length, suffix);
+    const size_t found = narc_find_named_shape(shapes, part);
+    free(part);
+    return found;
+}
+
+/* Takes a shape into a body, with its parts. False: it is a part of one that begins elsewhere. */
+static bool gather(const exporting *how, const narc_shape_list *shapes, size_t k, export_body *out) {
+    const char *name = shapes->items[k].name;
+    uint64_t number = 0;
+    const size_t length = find_number(name, &number);
+    const bool is_part = length && number && find_part(shapes, name, length, 0) == shapes->count;
+    if (is_part && number > 1 && find_part(shapes, name, length, number - 1) < shapes->count)
+        return false;
+    const bool compound = is_part && number == 1;
+    *out = (export_body){.name = join_text(name, compound ? length : strlen(name), "")};
+    for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count) {
+        const piece outline = outline_shape(&shapes->items[at], how);
+        add_piece(out, &outline);
+    }
+    return true;
+}
+
+/* Ten digits are what is written. */
+static double shorten(double value) {
+    char digits[40];
+    snprintf(digits, sizeof digits, "%.10g", value);
+    return strtod(digits, NULL) + 0.0;
+}
+
+/* Moves a body to its origin, and gives its pieces the kinds that the format has. */
+static void place_body(export_body *of, const exporting *how) {
+    narc_aabb box = EMPTY_BOX;
+    for (size_t k = 0; k < of->count; k++)
+        box = join_boxes(box, bound_piece(&of->pieces[k]));
+    const double x = how->origin == INPUT ? 0 : (box.min_x + box.max_x) / 2;
+    const double y = how->origin == INPUT    ? 0
+                     : how->origin == CENTER ? (box.min_y + box.max_y) / 2
+                     : how->y_down           ? box.max_y
+                                             : box.min_y;
+    export_body placed = {.name = of->name, .box = {box.min_x - x, box.min_y - y, box.max_x - x, box.max_y - y}};
+    for (size_t k = 0; k < of->count; k++) {
+        piece *p = &of->pieces[k];
+        for (size_t i = 0; i < p->count; i++) {
+            p->corners[i].x -= x;
+            p->corners[i].y -= y;
+        }
+        recognise(p);
+        if (p->kind & (LOOP | LINE) & ~how->to->keeps)
+            fail_at(how->path, 0, "shape '%s' is a chain, and %s has only convex pieces: narc fit --parts makes these",
+                    p->name, how->to->name);
+        p->kind = p->kind & how->to->keeps ? p->kind : OUTLINE;
+        if (!(how->to->keeps & ARCS) && p->kind & (OUTLINE | LOOP | LINE))
+            flatten_piece(p, how);
+        split_outline(&placed, p, p->kind == OUTLINE ? how->to->most_corners : 0);
+    }
+    for (size_t k = 0; k < placed.count; k++) {
+        piece *p = &placed.pieces[k];
+        double *const numbers[] = {&p->center.x, &p->center.y, &p->radius, &p->width, &p->height, &p->angle};
+        for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+            *numbers[i] = shorten(*numbers[i]);
+        for (size_t i = 0; i < p->count; i++)
+            p->corners[i] = (corner){shorten(p->corners[i].x), shorten(p->corners[i].y), shorten(p->corners[i].bulge)};
+        if (p->kind == OUTLINE && !(how->to->keeps & ARCS)) /* in the digits that are written, too */
+            make_convex(p);
+    }
+    free(of->pieces);
+    *of = placed;
+}
+
+static exported make_bodies(const exporting *how, const narc_shape_list *shapes) {
+    exported made = {.box = EMPTY_BOX};
+    for (size_t k = 0; k < shapes->count; k++) {
+        made.bodies = grow(made.bodies, &made.capacity, made.count + 1, sizeof *made.bodies);
+        export_body *body = &made.bodies[made.count];
+        if (!gather(how, shapes, k, body))
+            continue;
+        place_body(body, how);
+        made.box = join_boxes(made.box, body->box);
+        made.count++;
+    }
+    return made;
+}
+
+/* ---------------------------------------------------------------------------- command */
+
+static void print_bodies(FILE *report, const exported *what) {
+    size_t pieces = 0, corners = 0;
+    fprintf(report, "%-20s %8s %8s\n", "body", "pieces", "corners");
+    for (size_t i = 0; i < what->count; i++) {
+        size_t own = 0;
+        for (size_t k = 0; k < what->bodies[i].count; k++)
+            own += what->bodies[i].pieces[k].kind & (CIRCLE | CAPSULE) ? 0 : what->bodies[i].pieces[k].count;
+        fprintf(report, "%-20s %8zu %8zu\n", what->bodies[i].name, what->bodies[i].count, own);
+        pieces += what->bodies[i].count;
+        corners += own;
+    }
+    fprintf(report, "%-20s %8zu %8zu\n", "all", pieces, corners);
+}
+
+static const export_format *find_format(const char *name) {
+    char all[200] = "";
+    for (const export_format *format = export_formats; format->name; format++) {
+        if (strcmp(name, format->name) == 0)
+            return format;
+        strcat(strcat(all, *all ? ", " : ""), format->name);
+    }
+    fail("--to must be one of %s, not '%s'", all, narc_make_excerpt(name).text);
+}
+
+static origin find_origin(const char *name) {
+    origin found = INPUT;
+    while (name && found < ORIGINS && strcmp(name, origin_names[found]) != 0)
+        found++;
+    if (found == ORIGINS)
+        fail("--origin must be one of input, center, bottom, not '%s'", narc_make_excerpt(name).text);
+    return found;
+}
+
+static void run(int argc, char **argv) {
+    option options[OPTIONS] = {[TO] = {"--to", true, NULL},           [TOLERANCE] = {"--tolerance", true, NULL},
+                               [SCALE] = {"--scale", true, NULL},     [Y_DOWN] = {"--y-down", false, NULL},
+                               [ORIGIN] = {"--origin", true, NULL},   [OUT] = {"--out", true, NULL},
+                               [DRY_RUN] = {"--dry-run", false, NULL}};
+    const char **files = allocate((size_t)argc + 1, sizeof *files);
+    if (parse_options(argc, argv, options, OPTIONS, "SHAPES", files) > 1)
+        fail("unexpected argument '%s'", narc_make_excerpt(files[1]).text);
+    const export_format *to = find_format(required_option(&options[TO]));
+    const exporting how = {.path = files[0],
+                           .to = to,
+                           .tolerance = number_option(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0", 0),
+                           .scale = number_option(&options[SCALE], 1e-9, 1e9, "from 1e-9 to 1e9", 1),
+                           .y_down = to->y_down || options[Y_DOWN].value,
+                           .origin = find_origin(options[ORIGIN].value)};
+    narc_shape_list *shapes = read_shapes(files[0], NULL);
+    exported made = make_bodies(&how, shapes);
+    FILE *report = stdout;
+    if (!options[DRY_RUN].value) {
+        to->write(open_output(options[OUT].value ? options[OUT].value : "-"), &made);
+        report = finish_outputs();
+    }
+    print_bodies(report, &made);
+    finish_report(report);
+    commit_outputs();
+    for (size_t i = 0; i < made.count; i++) {
+        for (size_t k = 0; k < made.bodies[i].count; k++)
+            free(made.bodies[i].pieces[k].corners);
+        free(made.bodies[i].pieces);
+        free((char *)made.bodies[i].name);
+    }
+    free(made.bodies);
+    narc_destroy_shape_list(shapes);
+    free(files);
+}
+
+const command export_command = {"export", "shapes for editors and engines", HELP, run, MORE_HELP};

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * export.h - shapes as other programs take them: bodies of a few kinds of pieces, in the target's coordinates.
+ */
+#ifndef NARC_TOOL_EXPORT_H
+#define NARC_TOOL_EXPORT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "narc_shapes.h"
+
+/* A corner of an outline. From it to the next one goes a straight edge, bulge 0, or an arc that turns by 4 atan(bulge):
+ * above 0 counter-clockwise. */
+typedef struct corner {
+    double x, y, bulge;
+} corner;
+
+/* Outlines and loops are closed; outlines are convex and counter-clockwise, as their numbers tell: where y points down
+ * that looks clockwise. The bits of a set. */
+typedef enum piece_kind { CIRCLE = 1, CAPSULE = 2, BOX = 4, OUTLINE = 8, LOOP = 16, LINE = 32, ARCS = 64 } piece_kind;
+
+typedef struct piece {
+    piece_kind kind;
+    const char *name; /* of its shape */
+    corner *corners;  /* of every kind */
+    size_t count;
+    narc_point center;            /* of circles, capsules and boxes */
+    double radius, width, height; /* a capsule's width is its whole length */
+    double angle;                 /* of a capsule's axis */
+} piece;
+
+typedef struct export_body {
+    const char *name; /* of a compound: what its parts' names begin with */
+    piece *pieces;
+    size_t count, capacity;
+    narc_aabb box;
+} export_body;
+
+typedef struct exported {
+    export_body *bodies;
+    size_t count, capacity;
+    narc_aabb box;
+} exported;
+
+typedef struct export_format {
+    const char *name;
+    bool y_down;
+    unsigned keeps;      /* kinds of pieces; ARCS: arcs in outlines, loops and lines */
+    size_t most_corners; /* of an outline; 0: any number */
+    void (*write)(FILE *file, const exported *what);
+} export_format;
+
+/* Ends with one without a name. */
+extern const export_format export_formats[];
+
+/* The circle of an arc between two corners. */
+typedef struct bent {
+    narc_point center;
+    double radius, start, turn; /* the first corner is at angle `start` */
+} bent;
+bent bend(const corner *from, const corner *to);
+
+#endif

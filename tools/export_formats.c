@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * export_formats.c - the files of other programs, as their documents and loaders have them.
+ */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "export.h"
+#include "fail.h"
+#include "turn.h"
+
+/* ---------------------------------------------------------------------------- texts */
+
+/* A name, of which `odd` characters are written as the format wants them: `words` of them, one for each. */
+static void put_name(FILE *file, const char *name, const char *odd, const char *const *words) {
+    for (; *name; name++) {
+        const char *found = strchr(odd, *name);
+        if (found)
+            fputs(words[found - odd], file);
+        else
+            fputc(*name, file);
+    }
+}
+
+static void put_xml(FILE *file, const char *name) {
+    static const char *const words[] = {"&amp;", "&lt;", "&gt;"};
+    put_name(file, name, "&<>", words);
+}
+
+static void put_points(FILE *file, const piece *of, const char *between, const char *next) {
+    for (size_t k = 0; k < of->count; k++)
+        fprintf(file, "%s%.10g%s%.10g", k ? next : "", of->corners[k].x, between, of->corners[k].y);
+}
+
+/* ---------------------------------------------------------------------------- JSON */
+
+static cJSON *put(cJSON *to, const char *key, cJSON *item) {
+    if (!item || !(key ? cJSON_AddItemToObject(to, key, item) : cJSON_AddItemToArray(to, item)))
+        fail("not enough memory for JSON");
+    return item;
+}
+static cJSON *put_list(cJSON *to, const char *key) { return put(to, key, cJSON_CreateArray()); }
+static cJSON *put_object(cJSON *to, const char *key) { return put(to, key, cJSON_CreateObject()); }
+static void put_number(cJSON *to, const char *key, double value) { put(to, key, cJSON_CreateNumber(value)); }
+static void put_text(cJSON *to, const char *key, const char *value) { put(to, key, cJSON_CreateString(value)); }
+
+static void put_vector(cJSON *to, const char *key, double x, double y) {
+    cJSON *vector = put_object(to, key);
+    put_number(vector, "x", x);
+    put_number(vector, "y", y);
+}
+
+static cJSON *put_vectors(cJSON *to, const char *key, const piece *of) {
+    cJSON *list = put_list(to, key);
+    for (size_t k = 0; k < of->count; k++)
+        put_vector(list, NULL, of->corners[k].x, of->corners[k].y);
+    return list;
+}
+
+static cJSON *open_json(void) {
+    cJSON *root = cJSON_CreateObject();
+    if (!root)
+        fail("not enough memory for JSON");
+    return root;
+}
+
+static void close_json(FILE *file, cJSON *root) {
+    char *text = cJSON_Print(root);
+    if (!text)
+        fail("not enough memory for JSON");
+    fprintf(file, "%s\n", text);
+    cJSON_free(text);
+    cJSON_Delete(root);
+}
+
+/* ---------------------------------------------------------------------------- Tiled */
+
+/* A map has tiles, which its editor needs; these cover what is right of and below the origin. */
+enum { TILE = 32 };
+static double count_tiles(double length) { return fmax(ceil(length / TILE), 1); }
+
+static void write_tmx(FILE *file, const exported *what) {
+    size_t objects = 1;
+    for (size_t i = 0; i < what->count; i++)
+        objects += what->bodies[i].count;
+    fprintf(file,
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<map version=\"1.10\" orientation=\"orthogonal\" "
+            "renderorder=\"right-down\" width=\"%.0f\" height=\"%.0f\" tilewidth=\"%d\" tileheight=\"%d\" "
+            "infinite=\"0\" nextlayerid=\"%zu\" nextobjectid=\"%zu\">\n",
+            count_tiles(what->box.max_x), count_tiles(what->box.max_y), TILE, TILE, what->count + 1, objects);
+    objects = 1;
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        fprintf(file, " <objectgroup id=\"%zu\" name=\"", i + 1);
+        put_xml(file, body->name);
+        fputs("\">\n", file);
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            fprintf(file, "  <object id=\"%zu\" name=\"", objects++);
+            put_xml(file, p->name);
+            if (p->kind & (CIRCLE | BOX)) {
+                fprintf(file, "\" x=\"%.10g\" y=\"%.10g\" width=\"%.10g\" height=\"%.10g\"%s\n",
+                        p->center.x - p->width / 2, p->center.y - p->height / 2, p->width, p->height,
+                        p->kind == BOX ? "/>" : "><ellipse/></object>");
+            } else {
+                fprintf(file, "\" x=\"0\" y=\"0\"><%s points=\"", p->kind == LINE ? "polyline" : "polygon");
+                put_points(file, p, ",", " ");
+                fputs("\"/></object>\n", file);
+            }
+        }
+        fputs(" </objectgroup>\n", file);
+    }
+    fputs("</map>\n", file);
+}
+
+static void write_tmj(FILE *file, const exported *what) {
+    cJSON *map = open_json(), *layers = put_list(map, "layers");
+    size_t objects = 1;
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        cJSON *layer = put_object(layers, NULL), *list = put_list(layer, "objects");
+        put_text(layer, "type", "objectgroup");
+        put_number(layer, "id", (double)i + 1);
+        put_text(layer, "name", body->name);
+        put_text(layer, "draworder", "topdown");
+        put(layer, "visible", cJSON_CreateTrue());
+        put_number(layer, "opacity", 1);
+        put_number(layer, "x", 0);
+        put_number(layer, "y", 0);
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            const bool plain = p->kind & (CIRCLE | BOX);
+            cJSON *object = put_object(list, NULL);
+            put_number(object, "id", (double)objects++);
+            put_text(object, "name", p->name);
+            put_text(object, "type", "");
+            put_number(object, "rotation", 0);
+            put(object, "visible", cJSON_CreateTrue());
+            put_number(object, "x", plain ? p->center.x - p->width / 2 : 0);
+            put_number(object, "y", plain ? p->center.y - p->height / 2 : 0);
+            put_number(object, "width", plain ? p->width : 0);
+            put_number(object, "height", plain ? p->height : 0);
+            if (p->kind == CIRCLE)
+                put(object, "ellipse", cJSON_CreateTrue());
+            else if (!plain)
+                put_vectors(object, p->kind == LINE ? "polyline" : "polygon", p);
+        }
+    }
+    put_text(map, "type", "map");
+    put_text(map, "version", "1.10");
+    put_text(map, "orientation", "orthogonal");
+    put_text(map, "renderorder", "right-down");
+    put_number(map, "width", count_tiles(what->box.max_x));
+    put_number(map, "height", count_tiles(what->box.max_y));
+    put_number(map, "tilewidth", TILE);
+    put_number(map, "tileheight", TILE);
+    put(map, "infinite", cJSON_CreateFalse());
+    put_number(map, "nextlayerid", (double)what->count + 1);
+    put_number(map, "nextobjectid", (double)objects);
+    put_list(map, "tilesets");
+    close_json(file, map);
+}
+
+/* ---------------------------------------------------------------------------- Godot */
+
+/* A name that is changed gets the body's number, so that no two are one. */
+static void put_node(FILE *file, const export_body *body, size_t number) {
+    static const char *const words[] = {"_", "_", "_", "_", "_", "_"};
+    static const char odd[] = ".:@/%\\";
+    put_name(file, body->name, odd, words);
+    if (body->name[strcspn(body->name, odd)])
+        fprintf(file, "_%zu", number);
+}
+
+static void put_godot_shape(FILE *file, const piece *p, size_t number, bool is_3) {
+    static const char *const types[] = {
+        [CIRCLE] = "Circle", [CAPSULE] = "Capsule", [BOX] = "Rectangle", [OUTLINE] = "ConvexPolygon"};
+    const char *type = p->kind & (LOOP | LINE) ? "ConcavePolygon" : types[p->kind];
+    const char *array = is_3 ? "PoolVector2Array" : "PackedVector2Array";
+    fprintf(file,
+            is_3 ? "[sub_resource type=\"%sShape2D\" id=%zu]\n" : "[sub_resource type=\"%sShape2D\" id=\"%zu\"]\n",
+            type, number);
+    if (p->kind & (CIRCLE | CAPSULE))
+        fprintf(file, "radius = %.10g\n", p->radius);
+    if (p->kind == CAPSULE)
+        fprintf(file, "height = %.10g\n", is_3 ? p->width - 2 * p->radius : p->width);
+    if (p->kind == BOX)
+        fprintf(file, is_3 ? "extents = Vector2(%.10g, %.10g)\n" : "size = Vector2(%.10g, %.10g)\n",
+                is_3 ? p->width / 2 : p->width, is_3 ? p->height / 2 : p->height);
+    if (p->kind == OUTLINE) {
+        fprintf(file, "points = %s(", array);
+        put_points(file, p, ", ", ", ");
+        fputs(")\n", file);
+    }
+    if (p->kind & (LOOP | LINE)) {
+        fprintf(file, "segments = %s(", array);
+        for (size_t k = 0; k + (p->kind == LINE) < p->count; k++) {
+            const corner *to = &p->corners[(k + 1) % p->count];
+            fprintf(file, "%s%.10g, %.10g, %.10g, %.10g", k ? ", " : "", p->corners[k].x, p->corners[k].y, to->x,
+                    to->y);
+        }
+        fputs(")\n", file);
+    }
+    fputc('\n', file);
+}
+
+static void write_scene(FILE *file, const exported *what, bool is_3) {
+    size_t shapes = 0;
+    for (size_t i = 0; i < what->count; i++)
+        shapes += what->bodies[i].count;
+    fprintf(file, "[gd_scene load_steps=%zu format=%d]\n\n", shapes + 1, is_3 ? 2 : 3);
+    shapes = 0;
+    for (size_t i = 0; i < what->count; i++)
+        for (size_t k = 0; k < what->bodies[i].count; k++)
+            put_godot_shape(file, &what->bodies[i].pieces[k], ++shapes, is_3);
+    fputs("[node name=\"Colliders\" type=\"Node2D\"]\n", file);
+    shapes = 0;
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        fputs("\n[node name=\"", file);
+        put_node(file, body, i);
+        fputs("\" type=\"StaticBody2D\" parent=\".\"]\n", file);
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            fprintf(file, "\n[node name=\"%zu\" type=\"CollisionShape2D\" parent=\"", k + 1);
+            put_node(file, body, i);
+            fputs("\"]\n", file);
+            if (p->kind & (CIRCLE | CAPSULE | BOX))
+                fprintf(file, "position = Vector2(%.10g, %.10g)\n", p->center.x, p->center.y);
+            if (p->kind == CAPSULE) /* whose axis is y */
+                fprintf(file, "rotation = %.10g\n", p->angle - FULL_TURN / 4);
+            fprintf(file, is_3 ? "shape = SubResource( %zu )\n" : "shape = SubResource(\"%zu\")\n", ++shapes);
+        }
+    }
+}
+
+static void write_godot(FILE *file, const exported *what) { write_scene(file, what, false); }
+static void write_godot_3(FILE *file, const exported *what) { write_scene(file, what, true); }
+
+/* ---------------------------------------------------------------------------- engines */
+
+static void write_phaser(FILE *file, const exported *what) {
+    cJSON *root = open_json();
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        cJSON *out = put_object(root, body->name);
+        put_text(out, "type", "fromPhysicsEditor");
+        put_text(out, "label", body->name);
+        cJSON *fixtures = put_list(out, "fixtures");
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            cJSON *fixture = put_object(fixtures, NULL);
+            put_text(fixture, "label", p->name);
+            if (p->kind == CIRCLE) {
+                cJSON *circle = put_object(fixture, "circle");
+                put_number(circle, "x", p->center.x);
+                put_number(circle, "y", p->center.y);
+                put_number(circle, "radius", p->radius);
+            } else {
+                put_vectors(put_list(fixture, "vertices"), NULL, p);
+            }
+        }
+    }
+    close_json(file, root);
+}
+
+/* x and y of corners in a list each; a loop ends with its first corner. */
+static void put_columns(cJSON *to, const piece *of) {
+    cJSON *vertices = put_object(to, "vertices"), *x = put_list(vertices, "x"), *y = put_list(vertices, "y");
+    for (size_t k = 0; k < of->count + (of->kind == LOOP); k++) {
+        put_number(x, NULL, of->corners[k % of->count].x);
+        put_number(y, NULL, of->corners[k % of->count].y);
+    }
+}
+
+static void write_box2d(FILE *file, const exported *what) {
+    cJSON *root = open_json(), *bodies = put_list(root, "body");
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        cJSON *out = put_object(bodies, NULL);
+        put_text(out, "name", body->name);
+        put_number(out, "type", body->pieces[0].kind & (LOOP | LINE) ? 0 : 2); /* static, dynamic */
+        put_vector(out, "position", 0, 0);
+        put_number(out, "angle", 0);
+        cJSON *fixtures = put_list(out, "fixture");
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            cJSON *fixture = put_object(fixtures, NULL);
+            put_text(fixture, "name", p->name);
+            put_number(fixture, "density", 1);
+            put_number(fixture, "friction", 0.2);
+            cJSON *shape = put_object(fixture, p->kind == CIRCLE ? "circle" : p->kind == OUTLINE ? "polygon" : "chain");
+            if (p->kind == CIRCLE) {
+                put_vector(shape, "center", p->center.x, p->center.y);
+                put_number(shape, "radius", p->radius);
+            } else {
+                put_columns(shape, p);
+            }
+        }
+    }
+    close_json(file, root);
+}
+
+static void write_libgdx(FILE *file, const exported *what) {
+    cJSON *root = open_json(), *bodies = put_list(root, "rigidBodies");
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        cJSON *out = put_object(bodies, NULL);
+        put_text(out, "name", body->name);
+        put_text(out, "imagePath", "");
+        put_vector(out, "origin", 0, 0);
+        cJSON *polygons = put_list(out, "polygons"), *circles = put_list(out, "circles"),
+              *shapes = put_list(out, "shapes");
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            cJSON *shape = put_object(p->kind == CIRCLE ? circles : shapes, NULL);
+            if (p->kind == CIRCLE) {
+                put_number(shape, "cx", p->center.x);
+                put_number(shape, "cy", p->center.y);
+                put_number(shape, "r", p->radius);
+            } else {
+                put_text(shape, "type", "POLYGON");
+                put_vectors(shape, "vertices", p);
+                put_vectors(polygons, NULL, p);
+            }
+        }
+    }
+    put_list(root, "dynamicObjects");
+    close_json(file, root);
+}
+
+/* ---------------------------------------------------------------------------- drawings */
+
+static void write_svg(FILE *file, const exported *what) {
+    const narc_aabb box = what->box;
+    const double width = box.max_x - box.min_x, height = box.max_y - box.min_y, margin = 0.02 * fmax(width, height);
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"%.10g %.10g %.10g %.10g\">\n",
+            box.min_x - margin, box.min_y - margin, width + 2 * margin, height + 2 * margin);
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        fputs("<g id=\"", file);
+        put_xml(file, body->name);
+        fputs("\">\n", file);
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            if (p->kind == CIRCLE) {
+                fprintf(file, "<circle cx=\"%.10g\" cy=\"%.10g\" r=\"%.10g\"/>\n", p->center.x, p->center.y, p->radius);
+                continue;
+            }
+            fprintf(file, "<path d=\"M%.10g %.10g", p->corners[0].x, p->corners[0].y);
+            for (size_t c = 0; c + (p->kind == LINE) < p->count; c++) {
+                const corner *from = &p->corners[c], *to = &p->corners[(c + 1) % p->count];
+                if (from->bulge != 0) {
+                    const double radius = bend(from, to).radius;
+                    fprintf(file, "A%.10g %.10g 0 0 %d %.10g %.10g", radius, radius, from->bulge > 0, to->x, to->y);
+                } else {
+                    fprintf(file, "L%.10g %.10g", to->x, to->y);
+                }
+            }
+            if (p->kind == LINE)
+                fprintf(file, "\" fill=\"none\" stroke=\"#000\" stroke-width=\"%.3g\"/>\n", margin / 8);
+            else
+                fputs("z\"/>\n", file);
+        }
+        fputs("</g>\n", file);
+    }
+    fputs("</svg>\n", file);
+}
+
+static void write_dxf(FILE *file, const exported *what) {
+    static const char *const words[] = {"_", "_", "_", "_", "_", "_", "_", "_", "_", "_", "_"};
+    fputs("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n", file);
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        for (size_t k = 0; k < body->count; k++) {
+            const piece *p = &body->pieces[k];
+            fprintf(file, "0\n%s\n8\n", p->kind == CIRCLE ? "CIRCLE" : "POLYLINE");
+            put_name(file, body->name, "<>/\\:;?*|=`", words);
+            if (p->kind == CIRCLE) {
+                fprintf(file, "\n10\n%.10g\n20\n%.10g\n30\n0\n40\n%.10g\n", p->center.x, p->center.y, p->radius);
+                continue;
+            }
+            fprintf(file, "\n66\n1\n10\n0\n20\n0\n30\n0\n70\n%d\n", p->kind != LINE);
+            for (size_t c = 0; c < p->count; c++) {
+                const corner *at = &p->corners[c];
+                fprintf(file, "0\nVERTEX\n8\n0\n10\n%.10g\n20\n%.10g\n30\n0\n42\n%.10g\n", at->x, at->y, at->bulge);
+            }
+            fputs("0\nSEQEND\n8\n0\n", file);
+        }
+    }
+    fputs("0\nENDSEC\n0\nEOF\n", file);
+}
+
+/* clang-format off */
+const export_format export_formats[] = {
+    {"tmx",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, write_tmx},
+    {"tmj",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, write_tmj},
+    {"godot",  true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, write_godot},
+    {"godot3", true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, write_godot_3},
+    {"phaser", true,  CIRCLE | OUTLINE,                               0, write_phaser},
+    {"box2d",  false, CIRCLE | OUTLINE | LOOP | LINE,                 8, write_box2d},
+    {"libgdx", false, CIRCLE | OUTLINE,                               8, write_libgdx},
+    {"svg",    true,  CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, write_svg},
+    {"dxf",    false, CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, write_dxf},
+    {NULL,     false, 0,                                              0, NULL},
+};
+/* clang-format on */
