@@ -442,7 +442,7 @@ dem() {
     *) fail "dem $1: it is pile or cases" ;;
     esac
     [ "${1:-pile}" = pile ] && which=sand || which=all
-    say "cases ($which): $([ $which = sand ] && echo '11 minutes' || echo 'two hours') of processor time"
+    say "cases ($which): $([ $which = sand ] && echo '11 minutes' || echo 'half an hour') of processor time"
     # Debian's Python has its packages.
     /usr/bin/python3 apps/dem/cases/cases.py build/dem/dem out/dem --sand out/dem/sand.json --jobs "$jobs" \
         $which | tee out/dem/results.txt

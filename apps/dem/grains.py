@@ -2,7 +2,7 @@
 """Measures and pictures of grains, of what apps/dem and LAMMPS write. Needs NumPy, and matplotlib for pictures.
 
   python3 grains.py draw FRAME.vtk PICTURE [--color FIELD|none] [--top VALUE] [--no-forces]
-                    [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES]
+                    [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES] [--unit NAME]
   python3 grains.py contacts CONTACTS ...        fabric, anisotropy, distribution of forces
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
 
@@ -145,8 +145,14 @@ def find_lines(frame, contacts, centres, size):
     return lines, np.array(widths)
 
 
-def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, dpi=110):
-    """Grains in colours for a field, walls grey, forces as lines."""
+def find_ruler(width):
+    """A round length, a fourth to a tenth of the width."""
+    decade = 10 ** math.floor(math.log10(width / 4))
+    return max(step * decade for step in (1, 2, 5) if step * decade <= width / 4)
+
+
+def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, dpi=110, unit=""):
+    """Grains in colours for a field, walls grey, forces as lines; below them a ruler and what the colours mean."""
     pyplot = open_plots()
     from matplotlib.collections import LineCollection, PolyCollection
 
@@ -154,9 +160,16 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
     fields, points = frame["fields"], frame["points"]
     outlines, is_grain = [points[cell] for cell in frame["cells"]], fields["wall"] == 0
     low_x, low_y, high_x, high_y = region or (*points.min(0), *points.max(0))
-    figure = pyplot.figure(figsize=(width, width * (high_y - low_y) / (high_x - low_x)))
-    axes = figure.add_axes([0, 0, 1, 1], xlim=(low_x, high_x), ylim=(low_y, high_y), aspect="equal")
+    strip, height = 0.55, width * (high_y - low_y) / (high_x - low_x)
+    pyplot.rcParams["axes.grid"] = False
+    figure = pyplot.figure(figsize=(width, height + strip))
+    below = strip / (height + strip)
+    axes = figure.add_axes([0, below, 1, 1 - below], xlim=(low_x, high_x), ylim=(low_y, high_y), aspect="equal")
     axes.axis("off")
+    ruler = find_ruler(high_x - low_x)
+    right = 0.97 - ruler / (high_x - low_x)
+    bar = figure.add_axes([right, 0.75 * below, 0.97 - right, 0.02 * below], xticks=[], yticks=[], facecolor="black")
+    bar.set_xlabel(("%g " + unit) % ruler)
     grains = [outline for outline, grain in zip(outlines, is_grain) if grain]
     axes.add_collection(PolyCollection([o for o, g in zip(outlines, is_grain) if not g], facecolors="#aaaaaa"))
     patches = PolyCollection(grains, edgecolors="#666666", linewidths=0.3, facecolors="#c6dbef")
@@ -164,7 +177,8 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
         values = fields[color][is_grain].astype(float)
         patches.set(array=values, cmap="YlOrRd", clim=(0, top or values.max() or 1))
         patches.set_facecolors(None)
-        figure.colorbar(patches, cax=axes.inset_axes([0.02, 0.93, 0.25, 0.02]), orientation="horizontal", label=color)
+        figure.colorbar(patches, cax=figure.add_axes([0.03, 0.75 * below, 0.4, 0.15 * below]), orientation="horizontal",
+                        label=color)
     axes.add_collection(patches)
     if forces:
         centres = {body: fields["centre"][k, :2] for k, body in enumerate(fields["id"]) if is_grain[k]}
@@ -213,6 +227,7 @@ def main():
     one.add_argument("--top", type=float)
     one.add_argument("--region", type=float, nargs=4)
     one.add_argument("--width", type=float, default=8)
+    one.add_argument("--unit", default="")
     one.add_argument("--no-forces", dest="forces", action="store_false")
     commands.add_parser("contacts").add_argument("paths", nargs="+")
     one = commands.add_parser("repose")

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * forms.c - closed forms of what a referee checks: bodies that are cut, dashpots, Hertz with friction, cohesion, drag, cells
+ * forms.c - closed forms of what a referee checks: bodies that are cut, dashpots, cohesion, drag, cells
  * that hold a stress, groups of walls, chains.
  */
 #include <math.h>
@@ -115,44 +115,6 @@ TEST(test_dashpots_are_of_second_order) {
             assert_true(account[0] < 0.005);
             assert_true(worst[0] < 0.015 && worst[2] < 0.25 * worst[0] + 1e-4);
         }
-}
-
-/* A gas of Hertz's discs without dashpots: what friction takes rises, damping takes nothing, all is accounted for. */
-TEST(test_hertz_with_friction_gives_no_energy) {
-    for (double friction = 0.5; friction < 100; friction *= 100) {
-        dem_settings settings = plain_settings();
-        settings.law = DEM_HERTZ;
-        settings.periodic_x = settings.periodic_y = true;
-        settings.high = (vec){24, 24};
-        settings.max_overlap = 0.3;
-        settings.time_step = 1e-4;
-        dem_contact_law law = plain_law();
-        law.friction = friction;
-        dem d = make_world(settings, law);
-        const dem_filling filling = {.region = {true, {0, 0}, {24, 24}},
-                                     .shapes = {DISC},
-                                     .shape_count = 1,
-                                     .sizes = {DEM_UNIFORM, 0, 0, 1.6, 2},
-                                     .spacing = {2.1, 2.1},
-                                     .speed = 5,
-                                     .spin = 5};
-        uint64_t random = 3;
-        dem_fill_lattice(&d, &filling, &random);
-        dem_start(&d);
-        const double energy = total_energy(&d);
-        double least = 0, before = 0;
-        for (int k = 0; k < 200; k++) {
-            step(&d, 100);
-            const dem_energies e = energies(&d);
-            least = fmin(least, e.friction + d.account.tangential - before);
-            before = e.friction + d.account.tangential;
-            assert_true(e.damping == 0);
-        }
-        print_message("friction %g: lost %.3f, off by %.2g\n", friction, before / energy,
-                      total_energy(&d) / energy - 1);
-        assert_true(before > 0 && fabs(total_energy(&d) / energy - 1) < 2e-3);
-        dem_destroy(&d);
-    }
 }
 
 /* The force that two discs pull with is `cohesion` where they touch, and the work to part them from rest cohesion * range / 2

@@ -77,7 +77,7 @@ TEST(test_depth_never_jumps) {
     size_t doubles = 0;
     double worst = 0;
     for (uint32_t shape = OCTAGON; shape <= SAND; shape++)
-        for (int trial = 0; trial < 3000; trial++) {
+        for (int trial = 0; trial < 500; trial++) {
             pose p = draw_pose(&d, shape, &random);
             double way[4], last = INFINITY;
             for (int i = 0; i < 4; i++)
@@ -118,7 +118,7 @@ TEST(test_force_is_the_gradient_of_the_depth) {
     size_t slides = 0;
     double worst = 0;
     for (uint32_t shape = OCTAGON; shape <= SAND; shape++)
-        for (int trial = 0; trial < 20000; trial++) {
+        for (int trial = 0; trial < 4000; trial++) {
             const pose p = draw_pose(&d, shape, &random);
             unsigned feature = 0;
             const touch t = ask(&d, shape, p, true, &feature);
