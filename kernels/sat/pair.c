@@ -120,8 +120,9 @@ NOINLINE int finish_one(const struct call *call, struct queue *queues) {
     return end_one(call->rows);
 }
 
-/* All that is searched for, in the order of rows.c's stages. */
-NOINLINE int search_one(const narc_one_pair *asked) {
+/* All that is searched for, in the order of rows.c's stages. `polygons`: two polygons, sharp or each with corners of one
+ * radius. Equal radii only take their sum from every gap. */
+NOINLINE int search_one(const narc_one_pair *asked, bool polygons) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
     struct call own;
@@ -134,9 +135,18 @@ NOINLINE int search_one(const narc_one_pair *asked) {
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
+    if (polygons) {
+        fill_one(&queues[POLYGONS], item);
+        compare_edges(call, queues, 0);
+        if (queues[POLYGONS].count > 0)
+            answer_compared(call, queues, 0, asked->manifold);
+        return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
+    }
+    for (int s = PROBE; s <= CLIMB; s++) {
+        queues[s].record_a = arcs.record_a;
+        queues[s].record_b = arcs.record_b;
+    }
     const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
-    for (int s = PROBE; s <= CLIMB; s++)
-        start_queue(&queues[s], &arcs);
     fill_one(&queues[smooth ? PROBE : CLIMB], item);
     if (smooth)
         probe_axis(&rows, call, queues, 0);
@@ -145,25 +155,6 @@ NOINLINE int search_one(const narc_one_pair *asked) {
     if (queues[CLIMB].count > 0)
         climb_from(&rows, call, queues, 0);
     return finish_one(call, queues);
-}
-
-/* Two polygons, sharp or each with corners of one radius. Equal radii only take their sum from every gap. */
-NOINLINE int find_of_polygons(const narc_one_pair *asked) {
-    struct queue queues[STAGES];
-    struct call own;
-    struct rows found;
-    vf item[FIELDS];
-    const struct call *const call = &own;
-    start_one(asked, &own, &found);
-    const struct filter circles = set_up_one(call, asked, item);
-    if (vm_any(vm_or(circles.invalid, circles.apart)))
-        return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
-    queues[POLYGONS].count = queues[DECIDE].count = queues[ANSWER].count = queues[ANSWER_EDGES].count = 0;
-    fill_one(&queues[POLYGONS], item);
-    compare_edges(call, queues, 0);
-    if (queues[POLYGONS].count > 0)
-        answer_compared(call, queues, 0, asked->manifold);
-    return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
 }
 
 /* Two boxes or two capsules. */
@@ -179,7 +170,7 @@ INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
     const vm taken = capsules ? take_capsules(&call, &a, &b, &placement, placement.in_range, 0, &queue)
                               : take_boxes(&call, &a, &b, &placement, placement.in_range, 0, &queue);
     if (!vm_any(taken))
-        return capsules ? search_one(asked) : find_of_polygons(asked);
+        return search_one(asked, !capsules);
     if (queue.count > 0 && !answer_boxes(&call, &queue, 0, 1, capsules, asked->manifold))
         return UNANSWERED;
     return end_one(&found);
@@ -201,7 +192,7 @@ INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
     vm near;
     start_one(asked, &call, &found);
     if (!vm_any(judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &near, &pair)))
-        return search_one(asked);
+        return search_one(asked, false);
     if (!vm_any(near))
         return WITHOUT_ROW;
     const struct circle_contact c = find_circle_contact(&pair, of);
@@ -230,11 +221,11 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
     if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
         return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))
-        return find_of_polygons(asked);
+        return search_one(asked, true);
     const narc_shape_header *const header_a = &shapes->headers[a], *const header_b = &shapes->headers[b];
     if (narc_is_piece(header_a) || narc_is_piece(header_b))
         return UNANSWERED;
-    return search_one(asked);
+    return search_one(asked, false);
 }
 
 #else
