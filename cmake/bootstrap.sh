@@ -198,7 +198,7 @@ check_golden() {
 # What of bindings/web needs no npm: its modules, and the page's engine, whose bits are those of build/bare.
 check_modules() {
     check_golden "$1"
-    build "$1" narc_module narc_threads narc_page
+    build "$1" narc_module narc_threads narc_small narc_page
     ctest --preset "$1" -R '^narc_(module|threads)$' || fail "tests failed in build/$1"
     node bindings/web/tests/engine.mjs "build/$1/page.wasm" build/bare/tests/examples/example_world || fail "the page's engine is not as it should be"
 }

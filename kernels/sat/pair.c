@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * pair.c - the pair kernel: one pair by itself, with one lane. The functions are those of all pairs, one after the other,
- * and so are the bits; there is no block, and no queue has more than one pair. What only the whole formula decides, what
- * more than two edges of boxes may, pieces of chains and pairs without an answer are left to the other kernels.
+ * and so are the bits; there is no block, and no queue has more than one pair. What only the whole formula decides (but
+ * in WebAssembly), what more than two edges of boxes may, pieces of chains and pairs without an answer are left to the other
+ * kernels.
  *
  * Without vectors there is no kernel but in narc_small.wasm: all is left. SSE4.1's lanes take more instructions and text than plain C.
  */
