@@ -170,6 +170,27 @@ NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_ima
 NARC_API narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                                    narc_error *error);
 
+/* How DXF drawings are read; NULL in its place or zeros: as usual. */
+typedef struct narc_dxf_request {
+    const char *layer; /* what is drawn on it counts; NULL: all. One without anything is NARC_ERROR_INDEX */
+    double *out_unit;  /* NULL, or set on success: the drawing's unit in metres; 0: it tells none */
+    size_t *out_open;  /* NULL, or set on success: how many contours are open, such as strokes */
+    void *reserved[2];
+} narc_dxf_request;
+
+/* What is drawn in model space of a DXF file in ASCII, R12 to 2018: LINE, ARC, CIRCLE, ELLIPSE, LWPOLYLINE and POLYLINE with
+ * bulges, SPLINE (degree 1 to 3, without weights), INSERT of blocks. Lines and arcs are exact but for roundings, of the order of
+ * 1e-16 of the coordinates, ellipses are curves within 1e-11. Strokes of one layer whose ends are within 1e-6 of the drawing's
+ * extent are joined; a line then ends where the next stroke begins. In blocks layer 0 is that of the block. Texts, measures,
+ * hatches and what else has no outline are left out. Lengths are in the drawing's units, y points up. Errors tell line and value.
+ * A build without dxflib reads none: NARC_ERROR_FORMAT. */
+NARC_API narc_status narc_read_dxf(const void *data, size_t size, const narc_dxf_request *request, narc_path *path,
+                                   narc_error *error);
+
+/* The names of the layers that something is drawn on, in the order of the drawing, a newline behind each; to be freed with
+ * free(). Errors as above. */
+NARC_API narc_status narc_list_dxf_layers(const void *data, size_t size, char **out_names, narc_error *error);
+
 /* Points, blank lines between contours: CSV as spreadsheets write it, UTF-8. The first row tells what separates fields:
  * semicolons, or else tabs, commas, blanks; fields may be in quotes, and numbers have a decimal comma where semicolons or
  * tabs separate them. A header names the columns "x" and "y", in any order among others, which are not looked at. Without

@@ -38,6 +38,7 @@ static const char HELP[] =
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
     "                  SVG           what is drawn, as one shape: plain drawings exactly, others traced\n"
     "                  PNG           the silhouette; lengths in pixels\n"
+    "                  DXF           what is drawn in model space, exactly; ASCII, R12 to 2018\n"
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists; or the frames of\n"
     "                                TexturePacker or Aseprite, whose image is beside it\n"
@@ -65,7 +66,8 @@ static const char HELP[] =
 static const char MORE_HELP[] =
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
-    "  --ids A,B|'*'   of SVG: a shape for each element with one of these ids, or each layer\n"
+    "  --ids A,B|'*'   of SVG: a shape for each element with one of these ids, or each layer; of DXF:\n"
+    "                  for each layer of that name, or all that have something\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"

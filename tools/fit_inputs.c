@@ -20,7 +20,7 @@
 
 /* ---------------------------------------------------------------------------- kinds of files */
 
-typedef enum file_kind { FONT, SVG, PNG, CSV, JSON, KIND_COUNT, UNKNOWN = KIND_COUNT } file_kind;
+typedef enum file_kind { FONT, SVG, PNG, DXF, CSV, JSON, KIND_COUNT, UNKNOWN = KIND_COUNT } file_kind;
 
 /* How files begin. Fonts: TrueType, OpenType, Apple's two, collections, WOFF, Type 1 as text and in segments. XML may
  * be in UTF-16. */
@@ -49,9 +49,9 @@ static const struct {
     const char *suffix;
     file_kind kind;
 } suffixes[] = {
-    {".svg", SVG},   {".xml", SVG},  {".png", PNG},   {".csv", CSV},    {".txt", CSV},  {".tsv", CSV},
-    {".json", JSON}, {".ttf", FONT}, {".otf", FONT},  {".ttc", FONT},   {".otc", FONT}, {".pfb", FONT},
-    {".pfa", FONT},  {".cff", FONT}, {".woff", FONT}, {".woff2", FONT},
+    {".dxf", DXF},  {".svg", SVG},   {".xml", SVG},  {".png", PNG},   {".csv", CSV},    {".txt", CSV},
+    {".tsv", CSV},  {".json", JSON}, {".ttf", FONT}, {".otf", FONT},  {".ttc", FONT},   {".otc", FONT},
+    {".pfb", FONT}, {".pfa", FONT},  {".cff", FONT}, {".woff", FONT}, {".woff2", FONT},
 };
 enum { SUFFIX_COUNT = sizeof suffixes / sizeof suffixes[0] };
 
@@ -81,6 +81,14 @@ static file_kind kind_of_suffix(const char *file) {
     return UNKNOWN;
 }
 
+/* A DXF file begins with a section or comments: 0 or 999, and the value on the next line. */
+static bool is_dxf(const char *text) {
+    const size_t digits = strspn(text, "09"), end = digits + strspn(text + digits, " \t\r\n");
+    return (digits == 3 && strncmp(text, "999", 3) == 0 && end > digits) ||
+           (digits == 1 && text[0] == '0' && strncmp(text + end, "SECTION", 7) == 0) ||
+           strncmp(text, "AutoCAD Binary DXF", 18) == 0;
+}
+
 static file_kind kind_of(const char *file, const char *bytes, size_t size) {
     for (size_t i = 0; i < BEGINNING_COUNT; i++)
         if (size >= beginnings[i].length && memcmp(bytes, beginnings[i].bytes, beginnings[i].length) == 0)
@@ -91,9 +99,12 @@ static file_kind kind_of(const char *file, const char *bytes, size_t size) {
         return SVG;
     if (*text == '[' || *text == '{')
         return JSON;
+    const file_kind suffix = kind_of_suffix(file);
+    if (is_dxf(text) || suffix == DXF)
+        return DXF;
     if (*text && strchr("+-.0123456789\"", *text))
         return CSV;
-    return kind_of_suffix(file);
+    return suffix;
 }
 
 /* ---------------------------------------------------------------------------- outlines */
@@ -344,8 +355,12 @@ static narc_silhouette choose_silhouette(const char *name) {
 }
 
 static narc_status call_reader(file_kind kind, const char *bytes, size_t size, const narc_image_request *how,
-                               narc_path *path, narc_error *error) {
+                               outline *out, narc_error *error) {
+    narc_path *path = out->path;
     switch (kind) {
+    case DXF:
+        return narc_read_dxf(bytes, size, &(narc_dxf_request){.layer = how->element, .out_unit = &out->unit}, path,
+                             error);
     case SVG:
         return narc_read_svg(bytes, size, how, path, error);
     case PNG:
@@ -399,10 +414,10 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false, exact = false;
-    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole,
-                                      kind == SVG ? element : NULL,       how->trace,     &exact};
+    const narc_image_request image = {choose_silhouette(how->silhouette),          how->threshold, &whole,
+                                      kind == SVG || kind == DXF ? element : NULL, how->trace,     &exact};
     warning[0] = 0;
-    if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
+    if (call_reader(kind, bytes, size, &image, added, &error) != NARC_OK) {
         if (kind == PNG && element)
             report_at(file, 0, "frame '%s': %s", narc_make_excerpt(element).text, error.message);
         else
@@ -421,15 +436,29 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         warn_at(file, "%s throughout, its outline is a rectangle", how->silhouette);
 }
 
-static void read_elements(const char *file, const char *bytes, size_t size, const reading *how,
+/* The names of a DXF drawing's layers, with commas between them; NULL, and an error is told. */
+static char *list_layers(const char *file, const char *bytes, size_t size) {
+    narc_error error;
+    char *names = NULL;
+    if (narc_list_dxf_layers(bytes, size, &names, &error) != NARC_OK)
+        report_text(file, &error);
+    for (char *c = names; c && *c; c++)
+        *c = *c != '\n' ? *c : c[1] ? ',' : 0;
+    return names;
+}
+
+static void read_elements(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                           outline_list *outlines) {
     const bool all = strcmp(how->ids, "*") == 0;
-    char *ids = all ? list_ids(file, bytes, size) : strcpy(allocate(strlen(how->ids) + 1, 1), how->ids), *rest = ids;
+    char *ids = !all          ? strcpy(allocate(strlen(how->ids) + 1, 1), how->ids)
+                : kind == DXF ? list_layers(file, bytes, size)
+                              : list_ids(file, bytes, size);
+    char *rest = ids;
     while (rest) {
         char *comma = strchr(rest, ',');
         if (comma)
             *comma = 0;
-        read_outline(file, SVG, bytes, size, how, rest, outlines);
+        read_outline(file, kind, bytes, size, how, rest, outlines);
         rest = comma ? comma + 1 : NULL;
     }
     free(ids);
@@ -464,11 +493,11 @@ static void read_file(const char *file, const reading *how, bool *met, outline_l
     if (kind < KIND_COUNT)
         met[kind] = true;
     if (kind == UNKNOWN)
-        report_at(file, 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
+        report_at(file, 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, DXF, CSV or JSON");
     else if (kind == FONT)
         read_glyphs(file, bytes, size, how->characters, outlines);
-    else if (kind == SVG && how->ids)
-        read_elements(file, bytes, size, how, outlines);
+    else if ((kind == SVG || kind == DXF) && how->ids)
+        read_elements(file, kind, bytes, size, how, outlines);
     else if (kind == PNG && how->cells.width)
         read_cells(file, bytes, size, &at);
     else if (kind != JSON || !read_sheet(file, bytes, size, take_outline, &at))
@@ -510,8 +539,8 @@ void read_outlines(const char *const *files, size_t count, const reading *how, o
     }
     if (how->characters && !met[FONT])
         fail("--characters is for fonts, and none is given");
-    if (how->ids && !met[SVG])
-        fail("--ids is for SVG, and none is given");
+    if (how->ids && !met[SVG] && !met[DXF])
+        fail("--ids is for SVG and DXF, and neither is given");
     if (how->cells.width && !met[PNG])
         fail("--grid is for PNG, and none is given");
     if (how->threshold > 0 && !met[PNG] && !met[SVG])

@@ -291,7 +291,7 @@ printf 'x,y,motion_x,motion_y\n-10,0,20,0\n' >rays.csv
 works "a ray at a body in parts" cast --shapes parts.json --bodies frames.csv --rays rays.csv --out hit.txt
 check "a ray at a body in parts: the first frame" grep -qE "^0,0,0\.(4|39999)" hit.txt
 
-fails "ids without SVG" "narc: --ids is for SVG" fit fits/square.csv --ids roof --arcs 4 --out new.json
+fails "ids without SVG" "narc: --ids is for SVG and DXF" fit fits/square.csv --ids roof --arcs 4 --out new.json
 
 # Images: what narc draws.
 printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv

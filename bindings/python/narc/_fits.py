@@ -27,7 +27,7 @@ Goal = Literal["area", "perimeter", "distance", "nearest", "difference"]
 _FAMILIES = ("n-arc", "edges", "polygon", "paper", "plain")
 _GOALS = ("area", "perimeter", "distance", "nearest", "difference")
 _FORMS: tuple[Literal["shape"], Literal["open"], Literal["closed"]] = ("shape", "open", "closed")
-_READERS = ("svg", "png", "csv", "json")
+_READERS = ("svg", "png", "dxf", "csv", "json")
 
 
 def _library() -> Any:
@@ -86,9 +86,9 @@ class Outline:
     @classmethod
     def read(cls, file: str | pathlib.Path, *, silhouette: Literal["alpha", "dark", "light"] = "alpha", threshold: float = 0.0,
              element: str | None = None) -> Outline:
-        """Reads a drawing (.svg), an image (.png), or points (.csv, .json). Of drawings and images that is what is not
+        """Reads a drawing (.svg, .dxf), an image (.png), or points (.csv, .json). Of drawings and images that is what is not
         transparent, or dark, or light, from a threshold on (0: as usual, 0.5 of images and 0.25 of drawings); of a drawing the
-        one `element` with that id, if one is given."""
+        one `element` with that id, or of a DXF drawing that layer, if one is given."""
         path = pathlib.Path(file)
         kind = path.suffix.lower().removeprefix(".")
         _choose("the file's ending", kind, _READERS)

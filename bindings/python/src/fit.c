@@ -50,6 +50,8 @@ static PyObject *read_outline(PyObject *self, PyObject *given) {
     if (status == NARC_OK)
         status = strcmp(kind, "svg") == 0   ? narc_read_svg(data.buf, size, &request, path, &error)
                  : strcmp(kind, "png") == 0 ? narc_read_png(data.buf, size, &request, path, &error)
+                 : strcmp(kind, "dxf") == 0
+                     ? narc_read_dxf(data.buf, size, &(narc_dxf_request){.layer = request.element}, path, &error)
                  : strcmp(kind, "csv") == 0 ? narc_read_csv(data.buf, size, path, &error)
                                             : narc_read_json(data.buf, size, path, &error);
     PyEval_RestoreThread(state);

@@ -104,6 +104,12 @@ def test_drawings_images_points_and_glyphs(tmp_path):
         assert area(narc.Outline.read(tmp_path / name).contours()[0]) == pytest.approx(2)
     with pytest.raises(narc.OutOfRange):
         narc.Outline.read(svg, element="c")
+    dxf = tmp_path / "plate.dxf"
+    dxf.write_text("\n".join("0 SECTION 2 ENTITIES 0 CIRCLE 8 hole 10 3 20 1 40 2 0 ENDSEC 0 EOF".split()) + "\n")
+    try:
+        assert area(narc.Outline.read(dxf, element="hole").contours()[0]) == pytest.approx(4 * np.pi, rel=1e-3)
+    except narc.Error as error:  # a build without dxflib
+        assert "DXF" in str(error)
     pyplot = pytest.importorskip("matplotlib.pyplot")
     image = np.zeros((40, 60, 4))
     image[10:30, 10:50] = 1
