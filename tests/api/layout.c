@@ -163,6 +163,7 @@ static void check_pointers(void) {
     LAYOUT(narc_image_request, 48,
            AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24) && AT(trace, 32) &&
                AT(out_exact, 40));
+    LAYOUT(narc_dxf_request, 40, AT(layer, 0) && AT(out_unit, 8) && AT(out_open, 16) && AT(reserved, 24));
     LAYOUT(narc_parts_request, 48,
            AT(most, 0) && AT(tolerance, 8) && AT(lap, 16) && AT(flatness, 24) && AT(reserved, 32));
     LAYOUT(narc_parts, 32, AT(paths, 0) && AT(count, 8) && AT(distance, 16) && AT(area, 24));

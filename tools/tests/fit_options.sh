@@ -73,7 +73,6 @@ fails "fit: picture in no folder" "narc: absent/new.png" fit fits/square.csv --a
 fails "fit: output is an input" "narc: fits/square.csv: .*input" fit fits/square.csv --arcs 4 --out fits/square.csv
 fails "fit: no such font" "narc: absent.ttf: " fit absent.ttf --characters a --arcs 8 --out new.json
 fails "fit: one missing file of two" "narc: absent.csv: " fit fits/square.csv absent.csv --arcs 8 --out new.json
-fails "fit: a folder" "narc: fits: " fit fits --arcs 8 --out new.json
 fails "fit: a shapes file" "\(narc: \)*shapes.json:" fit shapes.json --arcs 8 --out new.json
 
 finish
