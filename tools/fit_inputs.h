@@ -15,7 +15,7 @@ typedef struct outline {
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
     narc_path *path;
-    double unit; /* of a DXF drawing, in metres; 0: unknown */
+    double unit;                                   /* of a DXF drawing, in metres; 0: unknown */
     enum { NOT_SVG, BY_GEOMETRY, BY_PICTURE } way; /* an SVG file was read */
 } outline;
 
