@@ -28,7 +28,7 @@ static void put_xml(FILE *file, const char *name) {
 
 /* The name without `odd` characters; for DXF R12, what is not ASCII as \U+XXXX, which has four digits. */
 static char *clean_name(const char *name, const char *odd, bool is_dxf) {
-    char *clean = allocate(7 * strlen(name) + 1, 1), *end = clean;
+    char *clean = allocate(7 * strlen(name) + 1, sizeof *clean), *end = clean;
     for (const char *at = name; *at;) {
         const char *from = at;
         uint32_t code = '?';
@@ -36,7 +36,7 @@ static char *clean_name(const char *name, const char *odd, bool is_dxf) {
         if (code < 0x80 ? strchr(odd, (int)code) != NULL : is_dxf && code > 0xffff)
             *end++ = '_';
         else if (code >= 0x80 && is_dxf)
-            end += sprintf(end, "\\U+%04X", (unsigned)code);
+            end += snprintf(end, sizeof "\\U+XXXX", "\\U+%04X", (unsigned)code);
         else
             while (from < at)
                 *end++ = *from++;
