@@ -144,14 +144,15 @@ static double find_turn(const narc_arc *arc) {
     return way * (rest < nothing || rest > FULL_TURN - nothing ? FULL_TURN : rest);
 }
 
-/* The shape's arcs as corners with bulges, in the target's coordinates but for the origin. */
-static piece outline_shape(const narc_named_shape *shape, const exporting *how) {
+/* The shape's arcs as corners with bulges, in the target's coordinates, but around a point of the input. */
+static piece outline_shape(const narc_named_shape *shape, narc_point around, const exporting *how) {
     piece made = {.kind = shape->form == NARC_FORM_SHAPE        ? OUTLINE
                           : shape->form == NARC_FORM_OPEN_CHAIN ? LINE
                                                                 : LOOP,
                   .name = shape->name};
     size_t capacity = 0;
-    const double s = how->scale, up = how->y_down ? -s : s;
+    const double s = how->scale, up = how->y_down ? -s : s, move_x = shape->origin.x - around.x,
+                 move_y = shape->origin.y - around.y;
     double near = 0, first_near = 0; /* of this arc or the one before, and of the first one */
     for (size_t i = 0; i < shape->arc_count; i++) {
         const narc_arc *arc = &shape->arcs[i];
@@ -163,8 +164,8 @@ static piece outline_shape(const narc_named_shape *shape, const exporting *how) 
         for (int k = 0; k <= steps; k++) {
             const double at = arc->start + (steps ? turn * k / steps : 0),
                          bulge = k < steps ? tan(turn / steps / 4) : 0,
-                         x = s * (arc->center_x + arc->radius * cos(at) + shape->origin.x),
-                         y = up * (arc->center_y + arc->radius * sin(at) + shape->origin.y);
+                         x = s * (arc->center_x + arc->radius * cos(at) + move_x),
+                         y = up * (arc->center_y + arc->radius * sin(at) + move_y);
             if (made.count == 0 || !join_corners(&made.corners[made.count - 1], x, y, bulge, fmax(before, near)))
                 add_corner(&made, &capacity, x, y, bulge);
         }
@@ -196,6 +197,7 @@ static void recognise(piece *of) {
     const double near = MERGED * measure_piece(of);
     const corner *c = of->corners;
     const narc_aabb box = bound_piece(of);
+    of->low = (narc_point){box.min_x, box.min_y};
     of->center = (narc_point){(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2};
     of->width = box.max_x - box.min_x;
     of->height = box.max_y - box.min_y;
@@ -245,18 +247,19 @@ static size_t count_steps(const exporting *how, const piece *of, const bent *arc
     return (size_t)fmax(steps, 1);
 }
 
-/* Of a convex shape's polygon, whatever was rounded, the convex hull: no further out than the tolerance either. */
-static void make_convex(piece *of) {
+/* Of a convex shape's polygon, whatever was rounded, the convex hull: no further out than the tolerance either. False: it
+ * has no area. */
+static bool make_convex(piece *of) {
     narc_point *points = allocate(of->count, sizeof *points);
     size_t count;
     for (size_t k = 0; k < of->count; k++)
         points[k] = (narc_point){of->corners[k].x, of->corners[k].y};
-    if (narc_compute_hull(points, of->count, points, &count, NULL) == NARC_OK && count > 2) {
-        for (size_t k = 0; k < count; k++)
-            of->corners[k] = (corner){points[k].x, points[k].y, 0};
-        of->count = count;
-    }
+    const bool made = narc_compute_hull(points, of->count, points, &count, NULL) == NARC_OK && count > 2;
+    for (size_t k = 0; made && k < count; k++)
+        of->corners[k] = (corner){points[k].x, points[k].y, 0};
+    of->count = made ? count : of->count;
     free(points);
+    return made;
 }
 
 static void flatten_piece(piece *of, const exporting *how) {
@@ -334,38 +337,68 @@ static bool gather(const exporting *how, const narc_shape_list *shapes, size_t k
     if (is_part && number > 1 && find_part(shapes, name, length, number - 1) < shapes->count)
         return false;
     const bool compound = is_part && number == 1;
-    *out = (export_body){.name = join_text(name, compound ? length : strlen(name), "")};
+    *out =
+        (export_body){.name = join_text(name, compound ? length : strlen(name), ""), .origin = shapes->items[k].origin};
     for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count) {
-        const piece outline = outline_shape(&shapes->items[at], how);
+        const piece outline = outline_shape(&shapes->items[at], out->origin, how);
         add_piece(out, &outline);
     }
     return true;
 }
 
-/* Ten digits are what is written. */
-static double shorten(double value) {
-    char digits[40];
-    snprintf(digits, sizeof digits, "%.10g", value);
-    return strtod(digits, NULL) + 0.0;
+/* Numbers of a shape of this size, as they are written: ten digits, fewer of what is smaller, up to 15 of what is larger. */
+static double shorten(double value, double size) {
+    const double digits = 10 + floor(log10(fabs(value))) - floor(log10(size));
+    char text[40];
+    if (!(digits >= 1))
+        return 0;
+    snprintf(text, sizeof text, "%.*g", (int)fmin(digits, 15), value);
+    return strtod(text, NULL) + 0.0;
 }
 
-/* Moves a body to its origin, and gives its pieces the kinds that the format has. */
+/* Moves a piece to where it is written, and shortens its numbers. */
+static void write_numbers(piece *p, narc_point offset, double size, const exporting *how) {
+    const double allowed = fmin(how->tolerance > 0 ? how->tolerance / 10 : INFINITY, 1e-4 * measure_piece(p));
+    double *const own[] = {&p->radius, &p->width, &p->height, &p->angle};
+    narc_point *const points[] = {&p->center, &p->low};
+    double moved = 0;
+    for (size_t i = 0; i < sizeof own / sizeof own[0]; i++)
+        *own[i] = shorten(*own[i], fabs(*own[i]));
+    for (size_t i = 0; i < sizeof points / sizeof points[0]; i++)
+        *points[i] = (narc_point){shorten(points[i]->x + offset.x, size), shorten(points[i]->y + offset.y, size)};
+    for (size_t i = 0; i < p->count; i++) {
+        const corner c = p->corners[i], to = {shorten(c.x + offset.x, size), shorten(c.y + offset.y, size),
+                                              shorten(c.bulge, fabs(c.bulge))};
+        moved = fmax(moved, fmax(fabs(to.x - offset.x - c.x), fabs(to.y - offset.y - c.y)));
+        p->corners[i] = to;
+    }
+    const bool is_polygon = p->kind == OUTLINE && !(how->to->keeps & ARCS);
+    if (!(moved <= allowed) || (is_polygon && !make_convex(p))) /* convex in the digits that are written, too */
+        fail_at(how->path, 0,
+                "shape '%s' is too thin, or at (%.3g, %.3g) too far from the origin, for numbers of 15 digits: "
+                "--origin center brings it near",
+                p->name, p->corners[0].x, p->corners[0].y);
+}
+
+/* Gives a body's pieces the kinds that the format has, and moves them to its origin. */
 static void place_body(export_body *of, const exporting *how) {
+    const double s = how->scale, up = how->y_down ? -s : s;
     narc_aabb box = EMPTY_BOX;
-    for (size_t k = 0; k < of->count; k++)
+    double size = how->tolerance > 0 ? 1e6 * how->tolerance : INFINITY; /* of what must not move */
+    for (size_t k = 0; k < of->count; k++) {
         box = join_boxes(box, bound_piece(&of->pieces[k]));
-    const double x = how->origin == INPUT ? 0 : (box.min_x + box.max_x) / 2;
-    const double y = how->origin == INPUT    ? 0
-                     : how->origin == CENTER ? (box.min_y + box.max_y) / 2
-                     : how->y_down           ? box.max_y
-                                             : box.min_y;
-    export_body placed = {.name = of->name, .box = {box.min_x - x, box.min_y - y, box.max_x - x, box.max_y - y}};
+        size = fmin(size, measure_piece(&of->pieces[k]));
+    }
+    const double low = how->y_down ? box.max_y : box.min_y;
+    const narc_point offset =
+        how->origin == INPUT
+            ? (narc_point){s * of->origin.x, up * of->origin.y}
+            : (narc_point){-(box.min_x + box.max_x) / 2, -(how->origin == CENTER ? (box.min_y + box.max_y) / 2 : low)};
+    export_body placed = {.name = of->name,
+                          .box = {shorten(box.min_x + offset.x, size), shorten(box.min_y + offset.y, size),
+                                  shorten(box.max_x + offset.x, size), shorten(box.max_y + offset.y, size)}};
     for (size_t k = 0; k < of->count; k++) {
         piece *p = &of->pieces[k];
-        for (size_t i = 0; i < p->count; i++) {
-            p->corners[i].x -= x;
-            p->corners[i].y -= y;
-        }
         recognise(p);
         if (p->kind & (LOOP | LINE) & ~how->to->keeps)
             fail_at(how->path, 0, "shape '%s' is a chain, and %s has only convex pieces: narc fit --parts makes these",
@@ -375,16 +408,8 @@ static void place_body(export_body *of, const exporting *how) {
             flatten_piece(p, how);
         split_outline(&placed, p, p->kind == OUTLINE ? how->to->most_corners : 0);
     }
-    for (size_t k = 0; k < placed.count; k++) {
-        piece *p = &placed.pieces[k];
-        double *const numbers[] = {&p->center.x, &p->center.y, &p->radius, &p->width, &p->height, &p->angle};
-        for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-            *numbers[i] = shorten(*numbers[i]);
-        for (size_t i = 0; i < p->count; i++)
-            p->corners[i] = (corner){shorten(p->corners[i].x), shorten(p->corners[i].y), shorten(p->corners[i].bulge)};
-        if (p->kind == OUTLINE && !(how->to->keeps & ARCS)) /* in the digits that are written, too */
-            make_convex(p);
-    }
+    for (size_t k = 0; k < placed.count; k++)
+        write_numbers(&placed.pieces[k], offset, size, how);
     free(of->pieces);
     *of = placed;
 }

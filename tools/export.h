@@ -25,7 +25,7 @@ typedef struct piece {
     const char *name; /* of its shape */
     corner *corners;  /* of every kind */
     size_t count;
-    narc_point center;            /* of circles, capsules and boxes */
+    narc_point center, low;       /* of circles, capsules and boxes; the corner of their least coordinates */
     double radius, width, height; /* a capsule's width is its whole length */
     double angle;                 /* of a capsule's axis */
 } piece;
@@ -34,6 +34,7 @@ typedef struct export_body {
     const char *name; /* of a compound: what its parts' names begin with */
     piece *pieces;
     size_t count, capacity;
+    narc_point origin; /* of its first shape, in the coordinates of the input */
     narc_aabb box;
 } export_body;
 

@@ -3,18 +3,20 @@
  * export_formats.c - the files of other programs, as their documents and loaders have them.
  */
 #include <cjson/cJSON.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "export.h"
 #include "fail.h"
+#include "names.h"
 #include "turn.h"
 
 /* ---------------------------------------------------------------------------- texts */
 
-/* A name, of which `odd` characters are written as the format wants them: `words` of them, one for each. */
-static void put_name(FILE *file, const char *name, const char *odd, const char *const *words) {
+static void put_xml(FILE *file, const char *name) {
+    static const char odd[] = "&<>", *const words[] = {"&amp;", "&lt;", "&gt;"};
     for (; *name; name++) {
         const char *found = strchr(odd, *name);
         if (found)
@@ -24,14 +26,84 @@ static void put_name(FILE *file, const char *name, const char *odd, const char *
     }
 }
 
-static void put_xml(FILE *file, const char *name) {
-    static const char *const words[] = {"&amp;", "&lt;", "&gt;"};
-    put_name(file, name, "&<>", words);
+/* The name without `odd` characters; for DXF R12, what is not ASCII as \U+XXXX, which has four digits. */
+static char *clean_name(const char *name, const char *odd, bool is_dxf) {
+    char *clean = allocate(7 * strlen(name) + 1, sizeof *clean), *end = clean;
+    for (const char *at = name; *at;) {
+        const char *from = at;
+        uint32_t code = '?';
+        (void)narc_next_code_point(&at, &code); /* names are UTF-8 */
+        if (code < 0x80 ? strchr(odd, (int)code) != NULL : is_dxf && code > 0xffff)
+            *end++ = '_';
+        else if (code >= 0x80 && is_dxf)
+            end += snprintf(end, sizeof "\\U+XXXX", "\\U+%04X", (unsigned)code);
+        else
+            while (from < at)
+                *end++ = *from++;
+    }
+    *end = 0;
+    return clean;
+}
+
+typedef struct taken_name {
+    char *text;
+    size_t number;
+    bool is_changed, is_dxf;
+} taken_name;
+
+/* By their letters, of DXF without case; among those of the same ones, a body's true name is first. */
+static int compare_letters(const taken_name *a, const taken_name *b) {
+    const unsigned char *p = (const unsigned char *)a->text, *q = (const unsigned char *)b->text;
+    while (*p && (a->is_dxf ? toupper(*p) == toupper(*q) : *p == *q)) {
+        p++;
+        q++;
+    }
+    return a->is_dxf ? toupper(*p) - toupper(*q) : *p - *q;
+}
+static int compare_names(const void *x, const void *y) {
+    const taken_name *a = x, *b = y;
+    const int letters = compare_letters(a, b);
+    return letters                          ? letters
+           : a->is_changed != b->is_changed ? (int)a->is_changed - (int)b->is_changed
+                                            : (a->number > b->number) - (a->number < b->number);
+}
+
+/* Names of all bodies as a format can have them: of those that would be one, all but one get their body's number. */
+static char **name_bodies(const exported *what, const char *odd, bool is_dxf) {
+    char **names = allocate(what->count, sizeof *names);
+    taken_name *taken = allocate(what->count, sizeof *taken);
+    for (size_t i = 0; i < what->count; i++) {
+        taken[i] = (taken_name){clean_name(what->bodies[i].name, odd, is_dxf), i, false, is_dxf};
+        taken[i].is_changed = strcmp(taken[i].text, what->bodies[i].name) != 0;
+    }
+    for (bool again = true; again;) {
+        again = false;
+        qsort(taken, what->count, sizeof *taken, compare_names);
+        for (size_t i = what->count; i-- > 1;) {
+            if (compare_letters(&taken[i - 1], &taken[i]) == 0) {
+                char number[24], *old = taken[i].text;
+                snprintf(number, sizeof number, "_%zu", taken[i].number);
+                taken[i].text = join_text(old, strlen(old), number);
+                taken[i].is_changed = again = true;
+                free(old);
+            }
+        }
+    }
+    for (size_t i = 0; i < what->count; i++)
+        names[taken[i].number] = taken[i].text;
+    free(taken);
+    return names;
+}
+
+static void free_names(char **names, const exported *what) {
+    for (size_t i = 0; i < what->count; i++)
+        free(names[i]);
+    free(names);
 }
 
 static void put_points(FILE *file, const piece *of, const char *between, const char *next) {
     for (size_t k = 0; k < of->count; k++)
-        fprintf(file, "%s%.10g%s%.10g", k ? next : "", of->corners[k].x, between, of->corners[k].y);
+        fprintf(file, "%s%.15g%s%.15g", k ? next : "", of->corners[k].x, between, of->corners[k].y);
 }
 
 /* ---------------------------------------------------------------------------- JSON */
@@ -79,7 +151,12 @@ static void close_json(FILE *file, cJSON *root) {
 
 /* A map has tiles, which its editor needs; these cover what is right of and below the origin. */
 enum { TILE = 32 };
-static double count_tiles(double length) { return fmax(ceil(length / TILE), 1); }
+static double count_tiles(double length) {
+    const double count = fmax(ceil(length / TILE), 1);
+    if (!(count < 0x1p31))
+        fail("what is %.3g from the origin needs a map of more than 2^31 tiles: --origin center", length);
+    return count;
+}
 
 static void write_tmx(FILE *file, const exported *what) {
     size_t objects = 1;
@@ -101,9 +178,8 @@ static void write_tmx(FILE *file, const exported *what) {
             fprintf(file, "  <object id=\"%zu\" name=\"", objects++);
             put_xml(file, p->name);
             if (p->kind & (CIRCLE | BOX)) {
-                fprintf(file, "\" x=\"%.10g\" y=\"%.10g\" width=\"%.10g\" height=\"%.10g\"%s\n",
-                        p->center.x - p->width / 2, p->center.y - p->height / 2, p->width, p->height,
-                        p->kind == BOX ? "/>" : "><ellipse/></object>");
+                fprintf(file, "\" x=\"%.15g\" y=\"%.15g\" width=\"%.10g\" height=\"%.10g\"%s\n", p->low.x, p->low.y,
+                        p->width, p->height, p->kind == BOX ? "/>" : "><ellipse/></object>");
             } else {
                 fprintf(file, "\" x=\"0\" y=\"0\"><%s points=\"", p->kind == LINE ? "polyline" : "polygon");
                 put_points(file, p, ",", " ");
@@ -138,8 +214,8 @@ static void write_tmj(FILE *file, const exported *what) {
             put_text(object, "type", "");
             put_number(object, "rotation", 0);
             put(object, "visible", cJSON_CreateTrue());
-            put_number(object, "x", plain ? p->center.x - p->width / 2 : 0);
-            put_number(object, "y", plain ? p->center.y - p->height / 2 : 0);
+            put_number(object, "x", plain ? p->low.x : 0);
+            put_number(object, "y", plain ? p->low.y : 0);
             put_number(object, "width", plain ? p->width : 0);
             put_number(object, "height", plain ? p->height : 0);
             if (p->kind == CIRCLE)
@@ -165,15 +241,6 @@ static void write_tmj(FILE *file, const exported *what) {
 
 /* ---------------------------------------------------------------------------- Godot */
 
-/* A name that is changed gets the body's number, so that no two are one. */
-static void put_node(FILE *file, const export_body *body, size_t number) {
-    static const char *const words[] = {"_", "_", "_", "_", "_", "_"};
-    static const char odd[] = ".:@/%\\";
-    put_name(file, body->name, odd, words);
-    if (body->name[strcspn(body->name, odd)])
-        fprintf(file, "_%zu", number);
-}
-
 static void put_godot_shape(FILE *file, const piece *p, size_t number, bool is_3) {
     static const char *const types[] = {
         [CIRCLE] = "Circle", [CAPSULE] = "Capsule", [BOX] = "Rectangle", [OUTLINE] = "ConvexPolygon"};
@@ -198,7 +265,7 @@ static void put_godot_shape(FILE *file, const piece *p, size_t number, bool is_3
         fprintf(file, "segments = %s(", array);
         for (size_t k = 0; k + (p->kind == LINE) < p->count; k++) {
             const corner *to = &p->corners[(k + 1) % p->count];
-            fprintf(file, "%s%.10g, %.10g, %.10g, %.10g", k ? ", " : "", p->corners[k].x, p->corners[k].y, to->x,
+            fprintf(file, "%s%.15g, %.15g, %.15g, %.15g", k ? ", " : "", p->corners[k].x, p->corners[k].y, to->x,
                     to->y);
         }
         fputs(")\n", file);
@@ -207,6 +274,7 @@ static void put_godot_shape(FILE *file, const piece *p, size_t number, bool is_3
 }
 
 static void write_scene(FILE *file, const exported *what, bool is_3) {
+    char **names = name_bodies(what, ".:@/%\\", false);
     size_t shapes = 0;
     for (size_t i = 0; i < what->count; i++)
         shapes += what->bodies[i].count;
@@ -220,20 +288,21 @@ static void write_scene(FILE *file, const exported *what, bool is_3) {
     for (size_t i = 0; i < what->count; i++) {
         const export_body *body = &what->bodies[i];
         fputs("\n[node name=\"", file);
-        put_node(file, body, i);
+        fputs(names[i], file);
         fputs("\" type=\"StaticBody2D\" parent=\".\"]\n", file);
         for (size_t k = 0; k < body->count; k++) {
             const piece *p = &body->pieces[k];
             fprintf(file, "\n[node name=\"%zu\" type=\"CollisionShape2D\" parent=\"", k + 1);
-            put_node(file, body, i);
+            fputs(names[i], file);
             fputs("\"]\n", file);
             if (p->kind & (CIRCLE | CAPSULE | BOX))
-                fprintf(file, "position = Vector2(%.10g, %.10g)\n", p->center.x, p->center.y);
+                fprintf(file, "position = Vector2(%.15g, %.15g)\n", p->center.x, p->center.y);
             if (p->kind == CAPSULE) /* whose axis is y */
                 fprintf(file, "rotation = %.10g\n", p->angle - FULL_TURN / 4);
             fprintf(file, is_3 ? "shape = SubResource( %zu )\n" : "shape = SubResource(\"%zu\")\n", ++shapes);
         }
     }
+    free_names(names, what);
 }
 
 static void write_godot(FILE *file, const exported *what) { write_scene(file, what, false); }
@@ -298,6 +367,13 @@ static void write_box2d(FILE *file, const exported *what) {
             } else {
                 put_columns(shape, p);
             }
+            if (p->kind == LOOP) { /* its neighbours over the seam */
+                const corner *before = &p->corners[p->count - 1], *after = &p->corners[1];
+                put(shape, "hasPrevVertex", cJSON_CreateTrue());
+                put_vector(shape, "prevVertex", before->x, before->y);
+                put(shape, "hasNextVertex", cJSON_CreateTrue());
+                put_vector(shape, "nextVertex", after->x, after->y);
+            }
         }
     }
     close_json(file, root);
@@ -336,7 +412,7 @@ static void write_libgdx(FILE *file, const exported *what) {
 static void write_svg(FILE *file, const exported *what) {
     const narc_aabb box = what->box;
     const double width = box.max_x - box.min_x, height = box.max_y - box.min_y, margin = 0.02 * fmax(width, height);
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"%.10g %.10g %.10g %.10g\">\n",
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"%.15g %.15g %.10g %.10g\">\n",
             box.min_x - margin, box.min_y - margin, width + 2 * margin, height + 2 * margin);
     for (size_t i = 0; i < what->count; i++) {
         const export_body *body = &what->bodies[i];
@@ -346,17 +422,17 @@ static void write_svg(FILE *file, const exported *what) {
         for (size_t k = 0; k < body->count; k++) {
             const piece *p = &body->pieces[k];
             if (p->kind == CIRCLE) {
-                fprintf(file, "<circle cx=\"%.10g\" cy=\"%.10g\" r=\"%.10g\"/>\n", p->center.x, p->center.y, p->radius);
+                fprintf(file, "<circle cx=\"%.15g\" cy=\"%.15g\" r=\"%.10g\"/>\n", p->center.x, p->center.y, p->radius);
                 continue;
             }
-            fprintf(file, "<path d=\"M%.10g %.10g", p->corners[0].x, p->corners[0].y);
+            fprintf(file, "<path d=\"M%.15g %.15g", p->corners[0].x, p->corners[0].y);
             for (size_t c = 0; c + (p->kind == LINE) < p->count; c++) {
                 const corner *from = &p->corners[c], *to = &p->corners[(c + 1) % p->count];
                 if (from->bulge != 0) {
                     const double radius = bend(from, to).radius;
-                    fprintf(file, "A%.10g %.10g 0 0 %d %.10g %.10g", radius, radius, from->bulge > 0, to->x, to->y);
+                    fprintf(file, "A%.10g %.10g 0 0 %d %.15g %.15g", radius, radius, from->bulge > 0, to->x, to->y);
                 } else {
-                    fprintf(file, "L%.10g %.10g", to->x, to->y);
+                    fprintf(file, "L%.15g %.15g", to->x, to->y);
                 }
             }
             if (p->kind == LINE)
@@ -370,27 +446,27 @@ static void write_svg(FILE *file, const exported *what) {
 }
 
 static void write_dxf(FILE *file, const exported *what) {
-    static const char *const words[] = {"_", "_", "_", "_", "_", "_", "_", "_", "_", "_", "_"};
+    char **names = name_bodies(what, "<>/\\:;?*|=`", true);
     fputs("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n", file);
     for (size_t i = 0; i < what->count; i++) {
         const export_body *body = &what->bodies[i];
         for (size_t k = 0; k < body->count; k++) {
             const piece *p = &body->pieces[k];
-            fprintf(file, "0\n%s\n8\n", p->kind == CIRCLE ? "CIRCLE" : "POLYLINE");
-            put_name(file, body->name, "<>/\\:;?*|=`", words);
+            fprintf(file, "0\n%s\n8\n%s", p->kind == CIRCLE ? "CIRCLE" : "POLYLINE", names[i]);
             if (p->kind == CIRCLE) {
-                fprintf(file, "\n10\n%.10g\n20\n%.10g\n30\n0\n40\n%.10g\n", p->center.x, p->center.y, p->radius);
+                fprintf(file, "\n10\n%.15g\n20\n%.15g\n30\n0\n40\n%.10g\n", p->center.x, p->center.y, p->radius);
                 continue;
             }
             fprintf(file, "\n66\n1\n10\n0\n20\n0\n30\n0\n70\n%d\n", p->kind != LINE);
             for (size_t c = 0; c < p->count; c++) {
                 const corner *at = &p->corners[c];
-                fprintf(file, "0\nVERTEX\n8\n0\n10\n%.10g\n20\n%.10g\n30\n0\n42\n%.10g\n", at->x, at->y, at->bulge);
+                fprintf(file, "0\nVERTEX\n8\n0\n10\n%.15g\n20\n%.15g\n30\n0\n42\n%.10g\n", at->x, at->y, at->bulge);
             }
             fputs("0\nSEQEND\n8\n0\n", file);
         }
     }
     fputs("0\nENDSEC\n0\nEOF\n", file);
+    free_names(names, what);
 }
 
 /* clang-format off */

@@ -67,7 +67,7 @@ SUPPORT = {
 
 
 def narc(*arguments):
-    done = subprocess.run([NARC, *arguments], capture_output=True, text=True)
+    done = subprocess.run([NARC, *arguments], capture_output=True, encoding="utf-8")
     return done.returncode, done.stdout, done.stderr
 
 
@@ -85,10 +85,11 @@ def fails(message, *arguments):
 
 
 def area(points):
-    return sum(p[0] * q[1] - q[0] * p[1] for p, q in zip(points, points[1:] + points[:1])) / 2
+    x, y = points[0]
+    return sum((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y) for p, q in zip(points, points[1:] + points[:1])) / 2
 
 
-def check(bodies, y_down, most=0, moved=None, tolerance=T, scale=1):
+def check(bodies, y_down, most=0, moved=None, tolerance=T, scale=1, inside=2e-6):
     """bodies: name to pieces, circles (x, y, radius) or convex polygons. They bound the shapes, within the tolerance."""
     assert sorted(bodies) == sorted(SUPPORT), sorted(bodies)
     for name, pieces in bodies.items():
@@ -101,10 +102,10 @@ def check(bodies, y_down, most=0, moved=None, tolerance=T, scale=1):
                 assert turn > 0, (name, r, q, p)
         for k in range(180):
             u, v = math.cos(k * math.tau / 180), math.sin(k * math.tau / 180)
-            reach = max(p[0] * u + p[1] * v + p[2] if isinstance(p, tuple) else max(a * u + b * v for a, b in p)
-                        for p in pieces) - x * u - y * v
+            reach = max((p[0] - x) * u + (p[1] - y) * v + p[2] if isinstance(p, tuple)
+                        else max((a - x) * u + (b - y) * v for a, b in p) for p in pieces)
             want = SUPPORT[name](u, -v if y_down else v) * scale
-            assert -2e-6 * scale <= reach - want <= tolerance, (name, k, reach, want)
+            assert -inside * scale <= reach - want <= tolerance, (name, k, reach, want)
 
 
 def pairs(text):
@@ -258,6 +259,40 @@ def pivot(place):
 for place in "center", "bottom":
     check(read_box2d(export("box2d", "--tolerance", str(T), "--origin", place)), False, 8, pivot(place))
 
+# Far from the origin digits are enough, or it is an error that says what to do; around its centre a body is as it is here.
+for away, tolerance in (1e4, 1e-5), (1e9, T), (1e9, 1e-5), (1e14, T):
+    with open("far.json", "w", encoding="utf-8") as file:
+        json.dump({"shapes": [{**s, "origin": [c + d for c, d in zip(s.get("origin", [0, 0]), (away, -away))]}
+                              for s in SHAPES["shapes"]]}, file)
+    fine, rounded = ["--tolerance", str(tolerance)], 8e-15 * away
+    for form in "tmx", "godot", "box2d", "svg":
+        read, y_down, most = READERS[form]
+        if rounded < tolerance / 10:
+            check(read(export(form, *fine, shapes="far.json")), y_down, most, lambda _: (away, away if y_down else -away),
+                  tolerance + rounded, inside=2e-6 + rounded)
+        else:
+            fails("far.json: shape '.*' is too thin, or at .* too far from the origin, .*: --origin center brings",
+                  "export", "far.json", "--to", form, *fine, "--out", "new")
+    if away == 1e14:
+        check(read_box2d(export("box2d", *fine, "--origin", "center", shapes="far.json")), False, 8, pivot("center"), tolerance)
+
+with open("far.json", "w", encoding="utf-8") as file:
+    json.dump({"shapes": [{"name": "far", "box": {"width": 64, "height": 64}, "origin": [0, -1e11]}]}, file)
+for form in "tmx", "tmj":
+    fails(r"what is 1e\+11 from the origin needs a map of more than 2\^31 tiles: --origin center", "export", "far.json", "--to",
+          form, "--out", "new")
+
+# No two bodies get one name, and one that can keep its own does: nodes, and layers, which have no case.
+NAMES = ["a.b", "a:b", "a_b", "a_b_0", "A_B", "Käse", "日本", "x😀", "x_", "a/b"]
+with open("names.json", "w", encoding="utf-8") as file:
+    json.dump({"shapes": [{"name": name, "circle": k + 1} for k, name in enumerate(NAMES)]}, file)
+for form in "godot", "godot3":
+    bodies = read_godot(export(form, shapes="names.json"))
+    assert {name: shape[0][2] - 1 for name, shape in bodies.items()} == {
+        "a_b_0_0": 0, "a_b_1": 1, "a_b": 2, "a_b_0": 3, "A_B": 4, "Käse": 5, "日本": 6, "x😀": 7, "x_": 8, "a_b_9": 9}, bodies
+layers = re.findall(r"CIRCLE\n8\n(.*)\n", export("dxf", shapes="names.json"))
+assert layers == ["a.b", "a_b_1", "a_b", "a_b_0", "A_B_4", r"K\U+00E4se", r"\U+65E5\U+672C", "x__7", "x_", "a_b_9"], layers
+
 # The fewest corners: a circle of 1.5 within 0.01 takes 28; what is plain stays plain; 30 corners are 5 pieces of 8.
 bodies = read_godot(export("godot", "--tolerance", str(T)))
 assert [len(bodies[n]) for n in ("a&b", "pill", "box", "many")] == [1, 2, 1, 1] and len(bodies["box"][0]) == 4
@@ -278,6 +313,11 @@ for form, read in ("tmx", None), ("godot", None), ("box2d", read_box2d), ("svg",
         assert -1e-9 <= away <= T, (x, y, away)
     bay = chains["bay"][0]
     assert (bay[0] == bay[-1]) == (form == "box2d")
+    if form == "box2d": # over the seam
+        loop = json.loads(text)["body"][1]["fixture"][0]["chain"]
+        assert loop["hasPrevVertex"] is loop["hasNextVertex"] is True
+        assert xy([loop["prevVertex"], loop["nextVertex"]]) == [bay[-2], bay[1]]
+        assert "hasPrevVertex" not in json.loads(text)["body"][0]["fixture"][0]["chain"]
     assert -1e-6 <= area(bay) - (16 - math.pi) <= (0.1 if form == "box2d" else 1e-4), area(bay)
 
 # Drawings come back.
@@ -322,9 +362,12 @@ fails("chains.json: shape 'ground' is a chain, and phaser has only convex pieces
 
 try:
     import ezdxf
+    from ezdxf import recover
 except ImportError:
     print("skipped: DXF, without ezdxf")
 else:
+    export("dxf", shapes="names.json")
+    assert {"Käse", "日本"} < {entity.dxf.layer for entity in recover.readfile("out.dxf")[0].modelspace()}
     export("dxf")
     bodies = {}
     for entity in ezdxf.readfile("out.dxf").modelspace():
