@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # What compilers other than the one in use would say. Run as cmake -D SOURCE=<the project's folder> -P compilers.cmake:
 # words that are not C17 stand in soa/compiler.h and the public include/narc_export.h alone. With
-#   CLANG, HEADERS   and the libraries go through clang's front end as for Microsoft's compiler, without a warning, with
-#                    mingw-w64's headers (which take the compiler for GCC; compiler.h alone asks for it)
+#   CLANG, HEADERS, LAYOUTS  the libraries go through clang's front end as for Microsoft's compiler, without a warning, with
+#                            mingw-w64's headers (which take the compiler for GCC; compiler.h alone asks for it); LAYOUTS is
+#                            where layouts.inl lies
 cmake_minimum_required(VERSION 3.22)
 set(words "__(attribute|builtin|typeof|asm|declspec|restrict|inline|has_feature|int128)|_Pragma|_MSC_|__GNU|__clang")
 foreach(layer include soa kernels dispatch methods files fit tools examples)
@@ -38,7 +39,7 @@ endforeach()
 
 function(compile file)
   execute_process(COMMAND "${CLANG}" --target=x86_64-pc-windows-msvc -fgnuc-version=4.2.1 -fsyntax-only -std=c17
-    -nostdlibinc -isystem "${HEADERS}" -D_CRT_SECURE_NO_WARNINGS -I include -I soa -I kernels -I dispatch -I methods -I .
+    -nostdlibinc -isystem "${HEADERS}" -D_CRT_SECURE_NO_WARNINGS -I include -I soa -I kernels -I dispatch -I methods -I . -I "${LAYOUTS}"
     -DNARC_BUILDING=1 ${definitions} -Wall -Wextra -Wundef -Werror ${ARGN} ${file}
     WORKING_DIRECTORY "${SOURCE}" RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
