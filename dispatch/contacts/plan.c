@@ -273,6 +273,7 @@ static void note_lost_ground(const narc_contact_step *s) {
 void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
+    const bool has_ground = NARC_PIECES && s->has_ground;
     const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
     c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
@@ -283,16 +284,17 @@ void narc_plan_ground(const narc_contact_step *s) {
     }
     for (size_t slot = 0; slot < c->slot_count && c->again; slot++)
         c->flags[slot] |= NARC_SLOT_STALE;
-    if (s->has_ground && !s->list->kept)
+    if (has_ground && !s->list->kept)
         note_lost_ground(s);
-    for (size_t k = 0, end; k < count && s->has_ground && c->changed; k = end) {
+    for (size_t k = 0, end; k < count && has_ground && c->changed; k = end) {
         bool ground = false;
         for (end = k; end < count && v.a[end] == v.a[k]; end++)
             ground = ground || is_ground(&v, end);
         if (ground)
             list_ground(s, &v, k, end);
     }
-    plan_all_ground(s, &v);
+    if (NARC_PIECES)
+        plan_all_ground(s, &v);
 }
 
 /* ------------------------------------------------------------------------------------------------ slots */

@@ -173,8 +173,7 @@ static narc_status prepare(narc_contact_step *s) {
                            "not enough memory for %zu contacts", s->list->pairs.count);
     if (status != NARC_OK)
         return status;
-    if (NARC_PIECES)
-        narc_plan_ground(s);
+    narc_plan_ground(s);
     status = NARC_PIECES ? narc_ask_ground(s) : NARC_OK;
     return status == NARC_ERROR_MEMORY ? narc_fail(s->error, status, 0, (double)c->ground_count,
                                                    "not enough memory for %zu contacts with ground", c->ground_count)
