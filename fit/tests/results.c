@@ -117,7 +117,7 @@ TEST(test_errors) {
     assert_int_equal(narc_fit_path(good.path, &four, NULL, NULL), NARC_ERROR_ARGUMENT);
     const narc_path *path = good.path;
     assert_int_equal(narc_fit_path(path, &(narc_fit_request){.arc_count = 33}, &fit, NULL), NARC_ERROR_COUNT);
-    refuse_fit(path, (narc_fit_request){.arc_count = 4, .family = (narc_fit_family)4}, NARC_ERROR_ARGUMENT, "family");
+    refuse_fit(path, (narc_fit_request){.arc_count = 4, .family = (narc_fit_family)5}, NARC_ERROR_ARGUMENT, "family");
     refuse_fit(path, (narc_fit_request){.arc_count = 4, .family = (narc_fit_family)-1}, NARC_ERROR_ARGUMENT, "family");
     refuse_fit(path, (narc_fit_request){.arc_count = 4, .goal = (narc_fit_goal)5}, NARC_ERROR_ARGUMENT, "goal");
     for (int goal = NARC_FIT_BOUND_PERIMETER; goal <= NARC_FIT_DIFFERENCE; goal++) {
