@@ -25,8 +25,7 @@
  * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
  * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On an
  * error the outputs are untouched. Where memory runs out it is NARC_ERROR_MEMORY, except in narc_read_svg(): librsvg
- * and GLib end the process. (What CLP, which a fit uses, has of memory when it runs out is not released.) Units and
- * directions are those of narc_shapes.h: y points up, counter-clockwise.
+ * and GLib end the process. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
  *
  * Example
  *

@@ -20,7 +20,7 @@ static size_t least_count(narc_fit_family family) { return family == NARC_FIT_ED
  * Fewer arcs have fewer ways to be placed; and fewer starts of many arcs, whose searches take long. The first start, on
  * the sides of a bounding polygon, is always there: chains that only grow from fewer arcs stay behind it. */
 enum { FEW_ARCS = 8, STARTS_OF_OTHERS = 36 };
-static const size_t STARTS[FEW_ARCS + 1] = {8, 8, 8, 8, 12, 20, 32, 44, USUAL_STARTS};
+static const size_t STARTS[FEW_ARCS + 1] = {8, 8, 8, 8, 12, 12, 24, 32, USUAL_STARTS};
 
 static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *rung) {
     const size_t n = rung->count, starts = ladder->starts;

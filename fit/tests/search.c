@@ -154,7 +154,9 @@ static void check_least_radius(const struct outline *of, narc_fit_family family,
     }
     check_fit_result(of, &request, &fit);
     /* What is allowed with a least radius is allowed without. Both are searched for, so they may differ a little. */
-    assert_true(goal_value(&fit, goal) >= goal_value(&free_fit, goal) * 0.9);
+    if (!(goal_value(&fit, goal) >= goal_value(&free_fit, goal) * 0.9))
+        fail_msg("%s, family %d, goal %d, %zu arcs: %.9g with a least radius, %.9g without", of->name, (int)family,
+                 (int)goal, arcs, goal_value(&fit, goal), goal_value(&free_fit, goal));
 }
 
 TEST(test_least_radius) {

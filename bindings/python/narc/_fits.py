@@ -32,7 +32,7 @@ _READERS = ("svg", "png", "dxf", "csv", "json")
 
 def _library() -> Any:
     if _fit is None:
-        raise ImportError(f"fits and shapes files need FreeType, libpng, librsvg, CLP, NLopt and cJSON, where narc is built and "
+        raise ImportError(f"fits and shapes files need FreeType, libpng, librsvg and cJSON, where narc is built and "
                           f"where it runs (sh cmake/bootstrap.sh python installs them): {_missing}")
     return _fit
 
