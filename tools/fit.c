@@ -59,8 +59,8 @@ static const char HELP[] =
     "                  perimeter     with --bound only: the shape's perimeter\n"
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
-    "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
-    "  --no-edges      not in these either, nor plain shapes with a tolerance\n"
+    "  --edges         straight edges may stand between arcs; the default of --parts\n"
+    "  --no-edges      not in parts either, nor plain shapes with a tolerance\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
 static const char MORE_HELP[] =
@@ -190,7 +190,8 @@ static narc_fit_request make_request(const option *options) {
     static const narc_fit_family families[] = {
         [EDGES] = NARC_FIT_EDGES, [POLYGON] = NARC_FIT_POLYGON, [PAPER] = NARC_FIT_PAPER};
     check_combinations(options);
-    narc_fit_request request = {.goal = choose_goal(options), .family = NARC_FIT_N_ARC};
+    const bool edges = options[PARTS].value && !options[NO_EDGES].value; /* cuts are straight */
+    narc_fit_request request = {.goal = choose_goal(options), .family = edges ? NARC_FIT_EDGES : NARC_FIT_N_ARC};
     for (int k = EDGES; k <= PAPER; k++)
         request.family = options[k].value ? families[k] : request.family;
     if (options[ARCS].value) {
@@ -236,7 +237,7 @@ static double measure_extent(const outline *of) {
 typedef struct fitting {
     narc_fit_request request;
     size_t parts;       /* at most; 0: the hull */
-    bool no_edges;      /* also in parts that smooth arcs do not come near */
+    bool no_edges;      /* no plain shapes either */
     double flatness;    /* relative to an outline's extent; 0: the usual one */
     narc_shapes *store; /* takes what a file must be able to bring there */
     stage at;
@@ -265,12 +266,6 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
         request.family = family;
         if (status == NARC_ERROR_NO_SOLUTION && may_be_plain)
             status = narc_fit_path(paths[how->at.part], &request, fit, error);
-        if (status == NARC_ERROR_NO_SOLUTION && how->parts && !how->no_edges && request.family == NARC_FIT_N_ARC) {
-            request.family = NARC_FIT_EDGES;
-            status = narc_fit_path(paths[how->at.part], &request, fit, error);
-            request.family = NARC_FIT_N_ARC;
-            out->unasked += status == NARC_OK && fit->edge_count > 0;
-        }
         if (status != NARC_OK || narc_add_shape(how->store, fit->arcs, fit->arc_count, NULL, error) != NARC_OK)
             return false;
         out->distance = fmax(out->distance, fit->max_distance);
@@ -445,10 +440,6 @@ static void print_parts(FILE *file, const outline_list *outlines, const collider
         fprintf(file, " %5zu %5zu %5zu %11.6g %12.6g %8.5f %12.4g %8.2f\n", f->count, arcs, edges, f->area,
                 f->outline_area, f->area / f->outline_area, f->distance, f->seconds);
     }
-    for (size_t i = 0; i < outlines->count; i++)
-        if (fits[i].unasked)
-            fprintf(file, "smooth arcs do not come near enough, straight edges do: %zu of the parts of %s\n",
-                    fits[i].unasked, outlines->items[i].name);
 }
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
