@@ -135,8 +135,7 @@ static void drop_corners(piece *of, bool straight) {
     }
 }
 
-/* How far an arc turns, counter-clockwise if it is convex. Its angles are whole turns away from any others. */
-static double find_turn(const narc_arc *arc) {
+double find_turn(const narc_arc *arc) {
     const double way = arc->radius > 0 ? 1 : -1, turn = way * (arc->end - arc->start), nothing = 1e-6;
     if (arc->radius == 0 || fabs(turn) < nothing)
         return 0;
@@ -328,22 +327,19 @@ static size_t find_part(const narc_shape_list *shapes, const char *name, size_t 
     return found;
 }
 
-/* Takes a shape into a body, with its parts. False: it is a part of one that begins elsewhere. */
-static bool gather(const exporting *how, const narc_shape_list *shapes, size_t k, export_body *out) {
+size_t list_parts(const narc_shape_list *shapes, size_t k, size_t *out_parts, char **out_name) {
     const char *name = shapes->items[k].name;
     uint64_t number = 0;
     const size_t length = find_number(name, &number);
     const bool is_part = length && number && find_part(shapes, name, length, 0) == shapes->count;
     if (is_part && number > 1 && find_part(shapes, name, length, number - 1) < shapes->count)
-        return false;
+        return 0;
     const bool compound = is_part && number == 1;
-    *out =
-        (export_body){.name = join_text(name, compound ? length : strlen(name), ""), .origin = shapes->items[k].origin};
-    for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count) {
-        const piece outline = outline_shape(&shapes->items[at], out->origin, how);
-        add_piece(out, &outline);
-    }
-    return true;
+    size_t count = 0;
+    *out_name = join_text(name, compound ? length : strlen(name), "");
+    for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count)
+        out_parts[count++] = at;
+    return count;
 }
 
 /* Numbers of a shape of this size, as they are written: ten digits, fewer of what is smaller, up to 15 of what is larger. */
@@ -416,15 +412,24 @@ static void place_body(export_body *of, const exporting *how) {
 
 static exported make_bodies(const exporting *how, const narc_shape_list *shapes) {
     exported made = {.box = EMPTY_BOX};
+    size_t *parts = allocate(shapes->count, sizeof *parts);
     for (size_t k = 0; k < shapes->count; k++) {
         made.bodies = grow(made.bodies, &made.capacity, made.count + 1, sizeof *made.bodies);
         export_body *body = &made.bodies[made.count];
-        if (!gather(how, shapes, k, body))
+        char *name;
+        const size_t count = list_parts(shapes, k, parts, &name);
+        if (count == 0)
             continue;
+        *body = (export_body){.name = name, .origin = shapes->items[k].origin};
+        for (size_t i = 0; i < count; i++) {
+            const piece outline = outline_shape(&shapes->items[parts[i]], body->origin, how);
+            add_piece(body, &outline);
+        }
         place_body(body, how);
         made.box = join_boxes(made.box, body->box);
         made.count++;
     }
+    free(parts);
     return made;
 }
 

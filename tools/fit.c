@@ -104,13 +104,8 @@ enum {
     POLYGON,
     PAPER,
     NO_EDGES,
-    CHARACTERS,
-    IDS,
-    SILHOUETTE,
-    THRESHOLD,
-    TRACE,
-    GRID,
-    FLATNESS,
+    READING,
+    FLATNESS = READING + READING_OPTIONS,
     MIN_RADIUS,
     STARTS,
     CHAIN,
@@ -546,12 +541,6 @@ static void run(int argc, char **argv) {
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
                                [NO_EDGES] = {"--no-edges", false, NULL},
-                               [CHARACTERS] = {"--characters", true, NULL},
-                               [IDS] = {"--ids", true, NULL},
-                               [SILHOUETTE] = {"--silhouette", true, NULL},
-                               [THRESHOLD] = {"--threshold", true, NULL},
-                               [TRACE] = {"--trace", false, NULL},
-                               [GRID] = {"--grid", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
@@ -562,18 +551,13 @@ static void run(int argc, char **argv) {
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
                                [PICTURE] = {"--picture", true, NULL}};
+    name_reading_options(&options[READING]);
     const char **files = allocate((size_t)argc, sizeof *files);
     const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
     const narc_fit_request request = make_request(options);
     const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
-    const reading how = {.characters = options[CHARACTERS].value,
-                         .ids = options[IDS].value,
-                         .silhouette = options[SILHOUETTE].value,
-                         .trace = options[TRACE].value,
-                         .cells = parse_grid(options[GRID].value),
-                         .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
-                                                    "more than 0 and less than 1", 0)};
+    const reading how = take_reading(&options[READING]);
     const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";
     picture_kind_of(picture);
 

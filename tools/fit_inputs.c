@@ -4,6 +4,7 @@
  */
 #include "fit_inputs.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,26 @@
 #if NARC_SVG
 #include <glib.h>
 #endif
+
+/* ---------------------------------------------------------------------------- options */
+
+void name_reading_options(option *first) {
+    static const option all[READING_OPTIONS] = {
+        [CHARACTERS_OPTION] = {"--characters", true, NULL}, [IDS_OPTION] = {"--ids", true, NULL},
+        [SILHOUETTE_OPTION] = {"--silhouette", true, NULL}, [THRESHOLD_OPTION] = {"--threshold", true, NULL},
+        [TRACE_OPTION] = {"--trace", false, NULL},          [GRID_OPTION] = {"--grid", true, NULL}};
+    memcpy(first, all, sizeof all);
+}
+
+reading take_reading(const option *first) {
+    return (reading){.characters = first[CHARACTERS_OPTION].value,
+                     .ids = first[IDS_OPTION].value,
+                     .silhouette = first[SILHOUETTE_OPTION].value,
+                     .trace = first[TRACE_OPTION].value,
+                     .cells = parse_grid(first[GRID_OPTION].value),
+                     .threshold = number_option(&first[THRESHOLD_OPTION], DBL_MIN, 1 - DBL_EPSILON / 2,
+                                                "more than 0 and less than 1", 0)};
+}
 
 /* ---------------------------------------------------------------------------- kinds of files */
 
@@ -147,6 +168,7 @@ void report_outline(const outline *at, const char *message) {
 
 static void free_outline(outline *removed) {
     free(removed->name);
+    free(removed->image);
     narc_destroy_path(removed->path);
 }
 
@@ -424,6 +446,10 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
             report_text(file, &error);
         cut_outlines(outlines, outlines->count - 1);
         return;
+    }
+    if (how->keep_images && (kind == SVG || kind == PNG)) {
+        added->image = memcpy(allocate(size, 1), bytes, size);
+        added->image_size = size;
     }
     added->way = kind != SVG ? NOT_SVG : exact ? BY_GEOMETRY : BY_PICTURE;
     if (warning[0])

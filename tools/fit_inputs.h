@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "narc_fit.h"
+#include "options.h"
 #include "sheets.h"
 
 typedef struct outline {
@@ -15,6 +16,8 @@ typedef struct outline {
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
     narc_path *path;
+    char *image; /* what a PNG or SVG drawing holds, if that is kept; of a frame its own */
+    size_t image_size;
     double unit;                                   /* of a DXF drawing, in metres; 0: unknown */
     enum { NOT_SVG, BY_GEOMETRY, BY_PICTURE } way; /* an SVG file was read */
 } outline;
@@ -33,7 +36,13 @@ typedef struct reading {
     bool trace;             /* SVG files are drawn and traced even if they are plain */
     grid cells;             /* of PNG images that are sheets */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
+    bool keep_images;       /* in outlines */
 } reading;
+
+/* The options that tell it, which stand one after the other. */
+enum { CHARACTERS_OPTION, IDS_OPTION, SILHOUETTE_OPTION, THRESHOLD_OPTION, TRACE_OPTION, GRID_OPTION, READING_OPTIONS };
+void name_reading_options(option *first);
+reading take_reading(const option *first);
 
 /* Reads files, and those folders that are named; of these the pictures: each font gives an outline for each character (once, without variation selectors), SVG one for each
  * id, each other file one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
