@@ -207,16 +207,16 @@ int print_name(FILE *file, const outline_list *outlines, const char *name, int w
 }
 
 void print_ways(FILE *file, const outline_list *outlines) {
-    static const char *const told[] = {[BY_GEOMETRY] = "exactly", [BY_PICTURE] = "as a picture"};
-    for (int way = BY_GEOMETRY; way <= BY_PICTURE; way++) {
+    for (int picture = 0; picture <= 1; picture++) {
         bool any = false;
         for (size_t i = 0; i < outlines->count; i++) {
-            if ((int)outlines->items[i].way != way)
+            const outline *of = &outlines->items[i];
+            if (!of->is_svg || of->is_picture != picture)
                 continue;
             if (any)
-                fprintf(file, ", %s", outlines->items[i].name);
+                fprintf(file, ", %s", of->name);
             else
-                fprintf(file, "SVG read %s: %s", told[way], outlines->items[i].name);
+                fprintf(file, "SVG read %s: %s", picture ? "as a picture" : "exactly", of->name);
             any = true;
         }
         if (any)
@@ -238,9 +238,9 @@ char *name_part(const outline *of, size_t index, size_t count) {
 void free_outlines(outline_list *outlines) {
     cut_outlines(outlines, 0);
     free(outlines->items);
-    while (outlines->found_count)
-        free(outlines->found[--outlines->found_count]);
-    free(outlines->found);
+    while (outlines->file_count)
+        free(outlines->files[--outlines->file_count]);
+    free(outlines->files);
     *outlines = (outline_list){0};
 }
 
@@ -451,7 +451,8 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         added->image = memcpy(allocate(size, 1), bytes, size);
         added->image_size = size;
     }
-    added->way = kind != SVG ? NOT_SVG : exact ? BY_GEOMETRY : BY_PICTURE;
+    added->is_svg = kind == SVG;
+    added->is_picture = kind == PNG || (kind == SVG && !exact);
     if (warning[0])
         warn_at(file, "a part of it, perhaps some text, may be missing: %s", warning);
     if (whole && kind == PNG && element) /* a wall of a tileset */
@@ -509,8 +510,12 @@ static void read_cells(const char *file, const char *bytes, size_t size, sheet_r
     free(name);
 }
 
-static void read_file(const char *file, const reading *how, bool *met, outline_list *outlines) {
+static void read_file(const char *path, const reading *how, bool *met, outline_list *outlines) {
     size_t size;
+    char *file = join_text(path, strlen(path), "");
+    outlines->files =
+        grow(outlines->files, &outlines->file_capacity, outlines->file_count + 1, sizeof *outlines->files);
+    outlines->files[outlines->file_count++] = file;
     char *bytes = try_read_bytes(file, &size);
     if (!bytes)
         return;
@@ -538,14 +543,10 @@ static void read_folder(const char *folder, char **paths, size_t count, const re
     for (size_t k = 0; k < count; k++) {
         const file_kind kind = kind_of_suffix(paths[k]);
         if (kind == SVG || kind == PNG || (kind == FONT && how->characters)) {
-            outlines->found =
-                grow(outlines->found, &outlines->found_capacity, outlines->found_count + 1, sizeof *outlines->found);
-            outlines->found[outlines->found_count++] = paths[k];
             read_file(paths[k], how, met, outlines);
             taken++;
-        } else {
-            free(paths[k]);
         }
+        free(paths[k]);
     }
     free(paths);
     if (taken == 0)

@@ -18,15 +18,15 @@ typedef struct outline {
     narc_path *path;
     char *image; /* what a PNG or SVG drawing holds, if that is kept; of a frame its own */
     size_t image_size;
-    double unit;                                   /* of a DXF drawing, in metres; 0: unknown */
-    enum { NOT_SVG, BY_GEOMETRY, BY_PICTURE } way; /* an SVG file was read */
+    double unit;             /* of a DXF drawing, in metres; 0: unknown */
+    bool is_svg, is_picture; /* it was traced: all PNG, some SVG */
 } outline;
 
 typedef struct outline_list {
     outline *items;
     size_t count, capacity;
-    char **found; /* paths of files in folders, which outlines have */
-    size_t found_count, found_capacity;
+    char **files; /* paths of all that were read, which outlines have */
+    size_t file_count, file_capacity;
 } outline_list;
 
 typedef struct reading {

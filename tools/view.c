@@ -32,12 +32,6 @@ static const char page[] = {
 #include "view_page.inc"
 };
 
-/* Names have no quotes and no control characters. */
-static void put_name(FILE *file, const char *name) {
-    for (; *name; name++)
-        fprintf(file, *name == '\\' ? "\\\\" : *name == '<' ? "\\u003c" : "%c", *name);
-}
-
 static void put_base64(FILE *file, const unsigned char *bytes, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < size; i += 3) {
@@ -51,9 +45,9 @@ static void put_base64(FILE *file, const unsigned char *bytes, size_t size) {
 }
 
 static void put_part(FILE *file, const narc_named_shape *part) {
-    fputs("{\"name\":\"", file);
-    put_name(file, part->name);
-    fprintf(file, "\",\"closed\":%s,\"chain\":%s,\"arcs\":[", part->form == NARC_FORM_OPEN_CHAIN ? "false" : "true",
+    fputs("{\"name\":", file);
+    put_json_text(file, part->name);
+    fprintf(file, ",\"closed\":%s,\"chain\":%s,\"arcs\":[", part->form == NARC_FORM_OPEN_CHAIN ? "false" : "true",
             part->form == NARC_FORM_SHAPE ? "false" : "true");
     for (size_t i = 0; i < part->arc_count; i++) {
         const narc_arc *a = &part->arcs[i];
@@ -102,7 +96,7 @@ static void put_drawing(FILE *file, const outline *of) {
     narc_release_contours(&contours);
     fputc(']', file);
     if (of->image) {
-        fprintf(file, ",\"image\":\"data:image/%s;base64,", of->way == NOT_SVG ? "png" : "svg+xml");
+        fprintf(file, ",\"image\":\"data:image/%s;base64,", of->is_svg ? "svg+xml" : "png");
         put_base64(file, (const unsigned char *)of->image, of->image_size);
         fputc('"', file);
     }
@@ -117,9 +111,9 @@ static void write_page(FILE *file, const narc_shape_list *shapes, const outline_
         const size_t count = list_parts(shapes, k, parts, &name);
         if (count == 0)
             continue;
-        fputs(bodies++ ? ",\n{\"name\":\"" : "\n{\"name\":\"", file);
-        put_name(file, name);
-        fprintf(file, "\",\"area\":%.17g,\"parts\":[", measure_area(shapes, parts, count));
+        fputs(bodies++ ? ",\n{\"name\":" : "\n{\"name\":", file);
+        put_json_text(file, name);
+        fprintf(file, ",\"area\":%.17g,\"parts\":[", measure_area(shapes, parts, count));
         for (size_t i = 0; i < count; i++) {
             fputs(i ? "," : "", file);
             put_part(file, &shapes->items[parts[i]]);
