@@ -298,8 +298,40 @@ static bool measure_union(collider *of, narc_error *error) {
     return done;
 }
 
+/* How many parts would do, and with which tolerance these would: each is tried. */
+static void find_remedy(const fitting *how, const narc_path *path, const narc_parts_request *cut, char *reason,
+                        size_t size) {
+    const double whole = how->request.tolerance;
+    narc_parts_request more = *cut, wider = *cut;
+    narc_parts parts;
+    size_t used = (size_t)snprintf(reason, size, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+    more.most = NARC_MAX_PARTS;
+    if (narc_cut_path(path, &more, &parts, NULL) == NARC_OK) {
+        used += (size_t)snprintf(reason + used, size - used, ", --parts %zu may do", parts.count);
+        narc_release_parts(&parts);
+    }
+    wider.tolerance = 0;
+    if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
+        return;
+    double enough = parts.distance * whole / cut->tolerance;
+    narc_release_parts(&parts);
+    for (int tries = 0; tries < 8; tries++) { /* what is simplified takes a part */
+        char text[32];
+        enough *= 1.03;
+        snprintf(text, sizeof text, "%.3g", enough);
+        wider.tolerance = strtod(text, NULL) * cut->tolerance / whole;
+        wider.lap = cut->lap * wider.tolerance / cut->tolerance;
+        if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
+            continue;
+        narc_release_parts(&parts);
+        snprintf(reason + used, size - used, ", or --tolerance %s", text);
+        return;
+    }
+}
+
 /* What went wrong with cuts, or with the shape of the part that how->at tells, in the numbers of the whole tolerance. */
-static void explain(const fitting *how, const narc_parts_request *cut, bool is_cut, narc_error *error) {
+static void explain(const fitting *how, const narc_path *path, const narc_parts_request *cut, bool is_cut,
+                    narc_error *error) {
     const double whole = how->request.tolerance, lap = NARC_LAP_REACH * cut->lap;
     char reason[sizeof error->message];
     if (!(whole > 0) || error->status != NARC_ERROR_NO_SOLUTION)
@@ -311,7 +343,7 @@ static void explain(const fitting *how, const narc_parts_request *cut, bool is_c
         snprintf(reason, sizeof reason, "the tolerance %g is too small for parts and their shapes, %g may do", whole,
                  whole * (error->value - lap) / (cut->tolerance - lap));
     else
-        snprintf(reason, sizeof reason, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+        find_remedy(how, path, cut, reason, sizeof reason);
     memcpy(error->message, reason, sizeof reason);
 }
 
@@ -332,7 +364,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
     for (int tries = approximates && request.arc_count ? 2 : 1; tries > 0; tries--) {
         narc_parts parts;
         if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK) {
-            explain(how, &cut, true, error);
+            explain(how, of->path, &cut, true, error);
             return false;
         }
         free(out->fits);
@@ -346,7 +378,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
             request.tolerance = approximates ? cut.lap / 2 : whole - parts.distance;
         const bool done = fit_each(how, parts.paths, request, out, error);
         if (!done)
-            explain(how, &cut, false, error);
+            explain(how, of->path, &cut, false, error);
         cut.lap = 2 * out->distance;
         out->distance += parts.distance;
         narc_release_parts(&parts);
@@ -615,7 +647,8 @@ static void run(int argc, char **argv) {
     const narc_fit_request request = make_request(options);
     const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
-    const reading how = take_reading(&options[READING]);
+    reading how = take_reading(&options[READING]);
+    how.open = options[OPEN].value;
     wanted to = {.out = options[OUT].value ? options[OUT].value : "-",
                  .picture = options[PICTURE].value,
                  .json = wants_json(&options[REPORT])};

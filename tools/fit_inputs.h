@@ -18,6 +18,7 @@ typedef struct outline {
     narc_path *path;
     char *image; /* what a PNG or SVG drawing holds, if that is kept; of a frame its own */
     size_t image_size;
+    size_t open_count;       /* strokes of a DXF drawing that do not close */
     double unit;             /* of a DXF drawing, in metres; 0: unknown */
     bool is_svg, is_picture; /* it was traced: all PNG, some SVG */
 } outline;
@@ -37,6 +38,7 @@ typedef struct reading {
     grid cells;             /* of PNG images that are sheets */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
     bool keep_images;       /* in outlines */
+    bool open;              /* lines of DXF that do not close are meant */
 } reading;
 
 /* The options that tell it, which stand one after the other. */
