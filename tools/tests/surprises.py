@@ -81,11 +81,11 @@ done = subprocess.run([NARC, "fit", "open.dxf", "--chain", "--open", "--toleranc
 assert done.returncode == 0 and not done.stderr, done
 
 # A tolerance that is not reached: what is said to do does.
-with open("star.csv", "w", encoding="utf-8") as file:
-    file.write("0,10\n2,2\n10,0\n2,-2\n0,-10\n-2,-2\n-10,0\n-2,2\n")
-fit = lambda *options: subprocess.run([NARC, "fit", "star.csv", "--polygon", "--starts", "1", *options, "--out", "new.json"], capture_output=True, encoding="utf-8")
+with open("comb.csv", "w", encoding="utf-8") as file:
+    file.write("0,0\n10,0\n10,2\n2,2\n2,4\n10,4\n10,6\n2,6\n2,8\n10,8\n10,10\n0,10\n")
+fit = lambda *options: subprocess.run([NARC, "fit", "comb.csv", "--polygon", "--starts", "1", *options, "--out", "new.json"], capture_output=True, encoding="utf-8")
 done = fit("--parts", "2", "--tolerance", "0.5")
-said = re.fullmatch("narc: star.csv: the tolerance 0.5 is not reached with 2 parts, --parts (.*) may do, or --tolerance (.*)\n", done.stderr)
+said = re.fullmatch("narc: comb.csv: the tolerance 0.5 is not reached with 2 parts, --parts (.*) may do, or --tolerance (.*)\n", done.stderr)
 assert done.returncode == 2 and said and fit("--parts", said[1], "--tolerance", "0.5").returncode == 0, done
 assert fit("--parts", "2", "--tolerance", said[2]).returncode == 0, said[2]
 
