@@ -54,12 +54,12 @@ static void put_collider(FILE *file, const collider *of) {
 
 void put_fits(FILE *file, const outline_list *outlines, const collider *fits, const narc_arc_chains *chains,
               char *const *kinds, const char *out) {
-    size_t next = 0, count, told_count;
+    size_t begun = 0, next = 0, count, told_count;
     const told *all = list_told(&told_count);
     fputs("{\"inputs\": [", file);
     for (size_t f = 0; f < outlines->file_count; f++) {
         const char *path = outlines->files[f];
-        fputs(f ? ",\n  " : "\n  ", file);
+        fputs(begun++ ? ",\n  " : "\n  ", file);
         put_input(file, path);
         fputs(", \"shapes\": [", file);
         bool any = false;
@@ -99,7 +99,7 @@ void put_fits(FILE *file, const outline_list *outlines, const collider *fits, co
             is_known = is_known || strcmp(all[k].path, all[i].path) == 0;
         if (is_known)
             continue;
-        fputs(",\n  " + (outlines->file_count == 0 && i == 0), file);
+        fputs(begun++ ? ",\n  " : "\n  ", file);
         put_input(file, all[i].path);
         fputs(", \"shapes\": []}", file);
     }
