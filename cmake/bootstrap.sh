@@ -59,8 +59,8 @@ fit_packages="g++ libfreetype-dev librsvg2-dev libdxflib-dev libpng-dev libcjson
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libccd-dev libgeos-dev"
-test_packages="$run_packages g++ binutils python3-dev python3-numpy python3-pytest python3-hypothesis python3-shapely python3-ezdxf dpkg-dev file
-    meson"
+test_packages="$run_packages g++ binutils python3-dev python3-numpy python3-pytest python3-hypothesis python3-shapely python3-ezdxf
+    python3-jsonschema dpkg-dev file meson"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
