@@ -54,8 +54,8 @@ static void answer_rows(const struct call *call, struct queue *queues, int begin
     answer_settled(call, queues, begin, false);
 }
 
-static vm settle_circles(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
-                         vm open, vf margin, const vf item[FIELDS]) {
+NOINLINE vm settle_circles(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
+                           vm open, vf margin, const vf item[FIELDS]) {
     (void)indices, (void)k;
     const vm left = settle_circles_beside(call, queues, open, margin, item);
     if (queues[ANSWER].count >= FLUSH)
@@ -71,8 +71,8 @@ static void answer_settled_rows(const struct call *call, struct queue *queues) {
         run_stage(call, call->question->edges, queues, ANSWER_EDGES);
 }
 
-static vm settle_above(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
-                       vm open, vf margin, const vf item[FIELDS]) {
+NOINLINE vm settle_above(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
+                         vm open, vf margin, const vf item[FIELDS]) {
     const vm left = settle_above_edges(call, queues, indices, k, open, margin, item);
     answer_settled_rows(call, queues);
     if (queues[DECIDE].count >= FLUSH) {
