@@ -424,8 +424,8 @@ static void keep_shape(reader *at, list *shapes, const char *name, const narc_ar
 }
 
 static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list *shapes) {
-    static const char *const keys[] = {"name", "origin", "arcs",    "points",   "polygon", "circle",
-                                       "box",  "radius", "capsule", "four_arc", "chain",   NULL};
+    static const char *const keys[] = {"name",   "origin",  "arcs",     "points", "polygon", "circle", "box",
+                                       "radius", "capsule", "four_arc", "chain",  "user",    NULL};
     narc_named_shape *shape = &shapes->items[shapes->shown.count];
     snprintf(at->shape, sizeof at->shape, "shape %zu", shapes->shown.count);
     if (!cJSON_IsObject(object))
@@ -457,7 +457,7 @@ static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list
 
 /* The list of shapes that the file must be; NULL after an error. */
 static const cJSON *find_list(reader *at) {
-    static const char *const keys[] = {"shapes", NULL};
+    static const char *const keys[] = {"shapes", "user", NULL};
     check_object(at, at->root, "the file's value", keys);
     const cJSON *found = at->status ? NULL : require(at, at->root, "shapes");
     if (found && !cJSON_IsArray(found))

@@ -13,6 +13,7 @@ typedef struct command {
     const char *more; /* of the help; NULL: that is all */
 } command;
 
-extern const command fit_command, export_command, scene_command, collide_command, cast_command, info_command;
+extern const command fit_command, export_command, view_command, scene_command, collide_command, cast_command,
+    info_command;
 
 #endif

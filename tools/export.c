@@ -17,12 +17,13 @@
 #include "fail.h"
 #include "options.h"
 #include "output.h"
+#include "report.h"
 #include "text.h"
 #include "turn.h"
 
 static const char HELP[] =
     "usage: narc export SHAPES --to FORMAT [--tolerance T] [--scale S] [--y-down] [--origin NAME]\n"
-    "                   [--out FILE] [--dry-run]\n"
+    "                   [--out FILE] [--dry-run] [--report json]\n"
     "\n"
     "Writes shapes as the files of editors and engines. Shapes NAME/1, NAME/2 ... are one body NAME.\n"
     "\n"
@@ -41,10 +42,11 @@ static const char MORE_HELP[] =
     "  --y-down        y points down in box2d, libgdx and dxf too, as it does in the others\n"
     "  --origin NAME   where each body's origin is: input (the default, in the coordinates of what was\n"
     "                  fitted), center or bottom (the middle of its bounding box, or of its lower side)\n"
-    "  --out FILE      the file to write; left out or -: standard output\n"
-    "  --dry-run       nothing is written but the table of bodies, pieces and corners\n";
+    "  --out FILE      the file to write; left out or -: standard output; with {name} in it one for each body\n"
+    "  --dry-run       nothing is written but the table of bodies, pieces and corners\n"
+    "  --report json   instead of the table JSON\n";
 
-enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, OPTIONS };
+enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, REPORT, OPTIONS };
 typedef enum origin { INPUT, CENTER, BOTTOM, ORIGINS } origin;
 static const char *const origin_names[ORIGINS] = {"input", "center", "bottom"};
 
@@ -135,8 +137,7 @@ static void drop_corners(piece *of, bool straight) {
     }
 }
 
-/* How far an arc turns, counter-clockwise if it is convex. Its angles are whole turns away from any others. */
-static double find_turn(const narc_arc *arc) {
+double find_turn(const narc_arc *arc) {
     const double way = arc->radius > 0 ? 1 : -1, turn = way * (arc->end - arc->start), nothing = 1e-6;
     if (arc->radius == 0 || fabs(turn) < nothing)
         return 0;
@@ -328,22 +329,19 @@ static size_t find_part(const narc_shape_list *shapes, const char *name, size_t 
     return found;
 }
 
-/* Takes a shape into a body, with its parts. False: it is a part of one that begins elsewhere. */
-static bool gather(const exporting *how, const narc_shape_list *shapes, size_t k, export_body *out) {
+size_t list_parts(const narc_shape_list *shapes, size_t k, size_t *out_parts, char **out_name) {
     const char *name = shapes->items[k].name;
     uint64_t number = 0;
     const size_t length = find_number(name, &number);
     const bool is_part = length && number && find_part(shapes, name, length, 0) == shapes->count;
     if (is_part && number > 1 && find_part(shapes, name, length, number - 1) < shapes->count)
-        return false;
+        return 0;
     const bool compound = is_part && number == 1;
-    *out =
-        (export_body){.name = join_text(name, compound ? length : strlen(name), ""), .origin = shapes->items[k].origin};
-    for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count) {
-        const piece outline = outline_shape(&shapes->items[at], out->origin, how);
-        add_piece(out, &outline);
-    }
-    return true;
+    size_t count = 0;
+    *out_name = join_text(name, compound ? length : strlen(name), "");
+    for (size_t at = k; at < shapes->count; at = compound ? find_part(shapes, name, length, ++number) : shapes->count)
+        out_parts[count++] = at;
+    return count;
 }
 
 /* Numbers of a shape of this size, as they are written: ten digits, fewer of what is smaller, up to 15 of what is larger. */
@@ -416,32 +414,77 @@ static void place_body(export_body *of, const exporting *how) {
 
 static exported make_bodies(const exporting *how, const narc_shape_list *shapes) {
     exported made = {.box = EMPTY_BOX};
+    size_t *parts = allocate(shapes->count, sizeof *parts);
     for (size_t k = 0; k < shapes->count; k++) {
         made.bodies = grow(made.bodies, &made.capacity, made.count + 1, sizeof *made.bodies);
         export_body *body = &made.bodies[made.count];
-        if (!gather(how, shapes, k, body))
+        char *name;
+        const size_t count = list_parts(shapes, k, parts, &name);
+        if (count == 0)
             continue;
+        *body = (export_body){.name = name, .origin = shapes->items[k].origin};
+        for (size_t i = 0; i < count; i++) {
+            const piece part = outline_shape(&shapes->items[parts[i]], body->origin, how);
+            add_piece(body, &part);
+        }
         place_body(body, how);
         made.box = join_boxes(made.box, body->box);
         made.count++;
     }
+    free(parts);
     return made;
 }
 
 /* ---------------------------------------------------------------------------- command */
 
+static size_t count_corners(const export_body *of) {
+    size_t count = 0;
+    for (size_t k = 0; k < of->count; k++)
+        count += of->pieces[k].kind & (CIRCLE | CAPSULE) ? 0 : of->pieces[k].count;
+    return count;
+}
+
 static void print_bodies(FILE *report, const exported *what) {
     size_t pieces = 0, corners = 0;
     fprintf(report, "%-20s %8s %8s\n", "body", "pieces", "corners");
     for (size_t i = 0; i < what->count; i++) {
-        size_t own = 0;
-        for (size_t k = 0; k < what->bodies[i].count; k++)
-            own += what->bodies[i].pieces[k].kind & (CIRCLE | CAPSULE) ? 0 : what->bodies[i].pieces[k].count;
-        fprintf(report, "%-20s %8zu %8zu\n", what->bodies[i].name, what->bodies[i].count, own);
-        pieces += what->bodies[i].count;
-        corners += own;
+        const export_body *of = &what->bodies[i];
+        fprintf(report, "%-20s %8zu %8zu\n", of->name, of->count, count_corners(of));
+        pieces += of->count;
+        corners += count_corners(of);
     }
     fprintf(report, "%-20s %8zu %8zu\n", "all", pieces, corners);
+}
+
+static void put_bodies(FILE *report, const exported *what, const char *path, const char *out) {
+    fputs("{\"inputs\": [\n  ", report);
+    put_input(report, path);
+    fputs(", \"bodies\": [", report);
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *of = &what->bodies[i];
+        char *own = expand_pattern(out, of->name);
+        fputs(i ? ",\n    {\"name\": " : "\n    {\"name\": ", report);
+        put_json_text(report, of->name);
+        fprintf(report, ", \"pieces\": %zu, \"corners\": %zu, \"out\": ", of->count, count_corners(of));
+        put_json_text(report, own ? own : out);
+        fputc('}', report);
+        free(own);
+    }
+    fputs("]}\n]}\n", report);
+}
+
+/* One file, or one for each body. */
+static void write_bodies(const exported *what, const export_format *to, const char *out) {
+    for (size_t i = 0; i < what->count; i++) {
+        char *path = expand_pattern(out, what->bodies[i].name);
+        FILE *file = open_output(path ? path : out);
+        const exported alone = {&what->bodies[i], 1, 1, what->bodies[i].box};
+        to->write(file, path ? &alone : what);
+        close_output(file);
+        free(path);
+        if (!path)
+            return;
+    }
 }
 
 static const export_format *find_format(const char *name) {
@@ -464,10 +507,14 @@ static origin find_origin(const char *name) {
 }
 
 static void run(int argc, char **argv) {
-    option options[OPTIONS] = {[TO] = {"--to", true, NULL},           [TOLERANCE] = {"--tolerance", true, NULL},
-                               [SCALE] = {"--scale", true, NULL},     [Y_DOWN] = {"--y-down", false, NULL},
-                               [ORIGIN] = {"--origin", true, NULL},   [OUT] = {"--out", true, NULL},
-                               [DRY_RUN] = {"--dry-run", false, NULL}};
+    option options[OPTIONS] = {[TO] = {"--to", true, NULL},
+                               [TOLERANCE] = {"--tolerance", true, NULL},
+                               [SCALE] = {"--scale", true, NULL},
+                               [Y_DOWN] = {"--y-down", false, NULL},
+                               [ORIGIN] = {"--origin", true, NULL},
+                               [OUT] = {"--out", true, NULL},
+                               [DRY_RUN] = {"--dry-run", false, NULL},
+                               [REPORT] = {"--report", true, NULL}};
     const char **files = allocate((size_t)argc + 1, sizeof *files);
     if (parse_options(argc, argv, options, OPTIONS, "SHAPES", files) > 1)
         fail("unexpected argument '%s'", narc_make_excerpt(files[1]).text);
@@ -478,14 +525,19 @@ static void run(int argc, char **argv) {
                            .scale = number_option(&options[SCALE], 1e-9, 1e9, "from 1e-9 to 1e9", 1),
                            .y_down = to->y_down || options[Y_DOWN].value,
                            .origin = find_origin(options[ORIGIN].value)};
+    const char *out = options[OUT].value ? options[OUT].value : "-";
+    const bool json = wants_json(&options[REPORT]);
     narc_shape_list *shapes = read_shapes(files[0], NULL);
     exported made = make_bodies(&how, shapes);
     FILE *report = stdout;
     if (!options[DRY_RUN].value) {
-        to->write(open_output(options[OUT].value ? options[OUT].value : "-"), &made);
+        write_bodies(&made, to, out);
         report = finish_outputs();
     }
-    print_bodies(report, &made);
+    if (json)
+        put_bodies(report, &made, files[0], out);
+    else
+        print_bodies(report, &made);
     finish_report(report);
     commit_outputs();
     for (size_t i = 0; i < made.count; i++) {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "narc_shapes.h"
+#include "narc_files.h"
 
 /* A corner of an outline. From it to the next one goes a straight edge, bulge 0, or an arc that turns by 4 atan(bulge):
  * above 0 counter-clockwise. */
@@ -51,6 +51,13 @@ typedef struct export_format {
     size_t most_corners; /* of an outline; 0: any number */
     void (*write)(FILE *file, const exported *what);
 } export_format;
+
+/* Shapes NAME/1, NAME/2 ... of a file are one body NAME. Lists the shapes of the body that begins with shape k, at most
+ * shapes->count; 0: it is a part of one that begins elsewhere. Free the name. */
+size_t list_parts(const narc_shape_list *shapes, size_t k, size_t *out_parts, char **out_name);
+
+/* How far an arc turns, counter-clockwise if it is convex. Its angles are whole turns away from any others. */
+double find_turn(const narc_arc *arc);
 
 /* Ends with one without a name. */
 extern const export_format export_formats[];

@@ -13,10 +13,12 @@
 #include "commands.h"
 #include "fail.h"
 #include "fit_inputs.h"
+#include "json.h"
 #include "options.h"
 #include "output.h"
 #include "picture_fits.h"
 #include "progress.h"
+#include "report.h"
 #include "text.h"
 
 static const char HELP[] =
@@ -83,8 +85,10 @@ static const char MORE_HELP[] =
     "                  --tolerance, of the fewest arcs and edges; --smooth: they join without\n"
     "                  corners, for ground; --open: contours are strokes, left open\n"
     "  --keep-going    what cannot be read or fitted is left out; the exit status is 1\n"
-    "  --out FILE      the shapes file to write; left out or -: standard output\n"
+    "  --out FILE      the shapes file to write; left out or -: standard output; with {name} in it one for each\n"
+    "                  shape, with its parts\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
+    "  --report json   instead of the table JSON, with warnings, and with --keep-going errors, of each input\n"
     "\n"
     "A shape is named by its file without the suffix (shape-0 for 0.csv), a glyph by its ASCII letter or\n"
     "its code point (U+1F47B); names that are taken get -2, -3 and so on. A shape's centroid is its\n"
@@ -104,13 +108,8 @@ enum {
     POLYGON,
     PAPER,
     NO_EDGES,
-    CHARACTERS,
-    IDS,
-    SILHOUETTE,
-    THRESHOLD,
-    TRACE,
-    GRID,
-    FLATNESS,
+    READING,
+    FLATNESS = READING + READING_OPTIONS,
     MIN_RADIUS,
     STARTS,
     CHAIN,
@@ -120,6 +119,7 @@ enum {
     KEEP_GOING,
     OUT,
     PICTURE,
+    REPORT,
     OPTIONS
 };
 
@@ -293,8 +293,40 @@ static bool measure_union(collider *of, narc_error *error) {
     return done;
 }
 
+/* How many parts would do, and with which tolerance these would: each is tried. */
+static void find_remedy(const fitting *how, const narc_path *path, const narc_parts_request *cut, char *reason,
+                        size_t size) {
+    const double whole = how->request.tolerance;
+    narc_parts_request more = *cut, wider = *cut;
+    narc_parts parts;
+    size_t used = (size_t)snprintf(reason, size, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+    more.most = NARC_MAX_PARTS;
+    if (narc_cut_path(path, &more, &parts, NULL) == NARC_OK) {
+        used += (size_t)snprintf(reason + used, size - used, ", --parts %zu may do", parts.count);
+        narc_release_parts(&parts);
+    }
+    wider.tolerance = 0;
+    if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
+        return;
+    double enough = parts.distance * whole / cut->tolerance;
+    narc_release_parts(&parts);
+    for (int tries = 0; tries < 8; tries++) { /* what is simplified takes a part */
+        char text[32];
+        enough *= 1.03;
+        snprintf(text, sizeof text, "%.3g", enough);
+        wider.tolerance = strtod(text, NULL) * cut->tolerance / whole;
+        wider.lap = cut->lap * wider.tolerance / cut->tolerance;
+        if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
+            continue;
+        narc_release_parts(&parts);
+        snprintf(reason + used, size - used, ", or --tolerance %s", text);
+        return;
+    }
+}
+
 /* What went wrong with cuts, or with the shape of the part that how->at tells, in the numbers of the whole tolerance. */
-static void explain(const fitting *how, const narc_parts_request *cut, bool is_cut, narc_error *error) {
+static void explain(const fitting *how, const narc_path *path, const narc_parts_request *cut, bool is_cut,
+                    narc_error *error) {
     const double whole = how->request.tolerance, lap = NARC_LAP_REACH * cut->lap;
     char reason[sizeof error->message];
     if (!(whole > 0) || error->status != NARC_ERROR_NO_SOLUTION)
@@ -306,7 +338,7 @@ static void explain(const fitting *how, const narc_parts_request *cut, bool is_c
         snprintf(reason, sizeof reason, "the tolerance %g is too small for parts and their shapes, %g may do", whole,
                  whole * (error->value - lap) / (cut->tolerance - lap));
     else
-        snprintf(reason, sizeof reason, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+        find_remedy(how, path, cut, reason, sizeof reason);
     memcpy(error->message, reason, sizeof reason);
 }
 
@@ -327,7 +359,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
     for (int tries = approximates && request.arc_count ? 2 : 1; tries > 0; tries--) {
         narc_parts parts;
         if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK) {
-            explain(how, &cut, true, error);
+            explain(how, of->path, &cut, true, error);
             return false;
         }
         free(out->fits);
@@ -341,7 +373,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
             request.tolerance = approximates ? cut.lap / 2 : whole - parts.distance;
         const bool done = fit_each(how, parts.paths, request, out, error);
         if (!done)
-            explain(how, &cut, false, error);
+            explain(how, of->path, &cut, false, error);
         cut.lap = 2 * out->distance;
         out->distance += parts.distance;
         narc_release_parts(&parts);
@@ -444,12 +476,6 @@ static void print_parts(FILE *file, const outline_list *outlines, const collider
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
 
-/* Nothing is left of the inputs: their errors have been told. */
-static void check_any(const outline_list *outlines) {
-    if (outlines->count == 0)
-        fail("no outline is left to fit");
-}
-
 /* All shapes, those of one outline one after the other: with its name if it has one, else NAME/1, NAME/2 ... */
 static narc_named_shape *name_shapes(const outline_list *outlines, const collider *fits, size_t *out_count) {
     size_t count = 0, used = 0;
@@ -469,60 +495,118 @@ static narc_named_shape *name_shapes(const outline_list *outlines, const collide
     return shapes;
 }
 
-static void write_file(FILE *file, narc_named_shape *shapes, size_t count) {
+/* What the command was asked to write. */
+typedef struct wanted {
+    const char *out, *picture;
+    FILE *file, *picture_file; /* NULL: a file for each outline; no picture */
+    bool json;
+} wanted;
+
+/* Nothing is left of the inputs: their errors have been told. */
+static void check_any(const outline_list *outlines, const wanted *to) {
+    if (outlines->count)
+        return;
+    FILE *report = strcmp(to->out, "-") == 0 ? stderr : stdout;
+    if (to->json)
+        put_fits(report, outlines, NULL, NULL, NULL, to->out);
+    finish_report(report);
+    fail("no outline is left to fit");
+}
+
+/* Says early what is wrong with outputs. */
+static void open_files(wanted *of, const outline_list *outlines) {
+    for (size_t i = 0; i < outlines->count && !of->file; i++) {
+        char *path = expand_pattern(of->out, outlines->items[i].name);
+        if (path)
+            reserve_output(path);
+        else
+            of->file = open_output(of->out);
+        free(path);
+    }
+    if (of->picture)
+        of->picture_file = open_output(of->picture);
+}
+
+/* `kinds` get what the file calls each shape. */
+static void write_file(FILE *file, const narc_named_shape *shapes, size_t count, char **kinds) {
     char *text;
     size_t size;
     narc_error error;
+    cJSON *root = NULL;
     if (narc_write_shapes(shapes, count, NULL, &text, &size, &error) != NARC_OK)
         fail("%s", error.message);
     fwrite(text, 1, size, file);
-    free(text);
     flush_output(file);
-    for (size_t k = 0; k < count; k++)
-        free((char *)shapes[k].name);
+    if (kinds && narc_parse_json(text, &root, &error) != NARC_OK)
+        fail("%s", error.message);
+    const cJSON *shape = root ? root->child->child : NULL;
+    for (size_t k = 0; shape; shape = shape->next, k++) { /* behind name and origin */
+        const char *kind = shape->child->next->next->string;
+        kinds[k] = join_text(kind, strlen(kind), "");
+    }
+    cJSON_Delete(root);
+    free(text);
 }
 
-static void make_shapes(outline_list *outlines, fitting how, FILE *file, const char *picture, FILE *picture_file) {
-    collider *fits = fit_outlines(outlines, how);
-    check_any(outlines);
-    size_t count;
-    narc_named_shape *shapes = name_shapes(outlines, fits, &count);
-    write_file(file, shapes, count);
-    if (picture)
-        draw_fits(picture, picture_file, outlines, fits, NULL);
+/* One of `fits` and `chains` is NULL. */
+static void write_all(const outline_list *outlines, const collider *fits, const narc_arc_chains *chains,
+                      narc_named_shape *shapes, size_t count, const wanted *to) {
+    char **kinds = to->json ? allocate(count, sizeof *kinds) : NULL;
+    if (to->file)
+        write_file(to->file, shapes, count, kinds);
+    for (size_t i = 0, begin = 0, own; i < outlines->count && !to->file; i++, begin += own) {
+        char *path = expand_pattern(to->out, outlines->items[i].name);
+        FILE *file = open_output(path);
+        own = fits ? fits[i].count : chains[i].count;
+        write_file(file, shapes + begin, own, kinds ? kinds + begin : NULL);
+        close_output(file);
+        free(path);
+    }
+    if (to->picture)
+        draw_fits(to->picture, to->picture_file, outlines, fits, chains);
     FILE *report = finish_outputs();
-    if (how.parts)
+    if (to->json)
+        put_fits(report, outlines, fits, chains, kinds, to->out);
+    else if (chains)
+        print_chains(report, outlines, chains);
+    else if (fits->outline_area > 0)
         print_parts(report, outlines, fits);
     else
         print_table(report, outlines, fits);
-    print_ways(report, outlines);
+    if (!to->json)
+        print_ways(report, outlines);
     finish_report(report);
     commit_outputs();
+    for (size_t k = 0; k < count; k++) {
+        free((char *)shapes[k].name);
+        if (chains)
+            free((narc_arc *)shapes[k].arcs);
+        if (kinds)
+            free(kinds[k]);
+    }
+    free(kinds);
+    free(shapes);
+}
+
+static void make_shapes(outline_list *outlines, fitting how, const wanted *to) {
+    collider *fits = fit_outlines(outlines, how);
+    check_any(outlines, to);
+    size_t count;
+    narc_named_shape *shapes = name_shapes(outlines, fits, &count);
+    write_all(outlines, fits, NULL, shapes, count, to);
     for (size_t i = 0; i < outlines->count; i++)
         free(fits[i].fits);
-    free(shapes);
     free(fits);
 }
 
-static void make_chains(outline_list *outlines, double tolerance, bool open, bool smooth, FILE *file,
-                        const char *picture, FILE *picture_file) {
+static void make_chains(outline_list *outlines, double tolerance, bool open, bool smooth, const wanted *to) {
     narc_arc_chains *chains = fit_chains(outlines, tolerance, open, smooth);
-    check_any(outlines);
+    check_any(outlines, to);
     size_t count;
     narc_named_shape *shapes = describe_chains(outlines, chains, open, &count);
-    write_file(file, shapes, count);
-    if (picture)
-        draw_fits(picture, picture_file, outlines, NULL, chains);
-    FILE *report = finish_outputs();
-    print_chains(report, outlines, chains);
-    print_ways(report, outlines);
-    finish_report(report);
-    commit_outputs();
-    for (size_t k = 0; k < count; k++)
-        free((narc_arc *)shapes[k].arcs);
+    write_all(outlines, NULL, chains, shapes, count, to);
     for (size_t i = 0; i < outlines->count; i++)
         narc_release_chains(&chains[i]);
-    free(shapes);
     free(chains);
 }
 
@@ -537,12 +621,6 @@ static void run(int argc, char **argv) {
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
                                [NO_EDGES] = {"--no-edges", false, NULL},
-                               [CHARACTERS] = {"--characters", true, NULL},
-                               [IDS] = {"--ids", true, NULL},
-                               [SILHOUETTE] = {"--silhouette", true, NULL},
-                               [THRESHOLD] = {"--threshold", true, NULL},
-                               [TRACE] = {"--trace", false, NULL},
-                               [GRID] = {"--grid", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
@@ -552,36 +630,34 @@ static void run(int argc, char **argv) {
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
-                               [PICTURE] = {"--picture", true, NULL}};
+                               [PICTURE] = {"--picture", true, NULL},
+                               [REPORT] = {"--report", true, NULL}};
+    name_reading_options(&options[READING]);
     const char **files = allocate((size_t)argc, sizeof *files);
     const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
     const narc_fit_request request = make_request(options);
     const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
-    const reading how = {.characters = options[CHARACTERS].value,
-                         .ids = options[IDS].value,
-                         .silhouette = options[SILHOUETTE].value,
-                         .trace = options[TRACE].value,
-                         .cells = parse_grid(options[GRID].value),
-                         .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
-                                                    "more than 0 and less than 1", 0)};
-    const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";
-    picture_kind_of(picture);
+    reading how = take_reading(&options[READING]);
+    how.open = options[OPEN].value;
+    wanted to = {.out = options[OUT].value ? options[OUT].value : "-",
+                 .picture = options[PICTURE].value,
+                 .json = wants_json(&options[REPORT])};
+    picture_kind_of(to.picture);
 
     outline_list outlines = {0};
     if (options[KEEP_GOING].value)
         keep_going();
     read_outlines(files, file_count, &how, &outlines);
-    check_any(&outlines);
-    FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
+    check_any(&outlines, &to);
+    open_files(&to, &outlines);
     if (options[CHAIN].value)
-        make_chains(&outlines, request.tolerance, options[OPEN].value, options[SMOOTH].value, shapes_file, picture,
-                    picture_file);
+        make_chains(&outlines, request.tolerance, options[OPEN].value, options[SMOOTH].value, &to);
     else
         make_shapes(
             &outlines,
             (fitting){.request = request, .parts = parts, .no_edges = options[NO_EDGES].value, .flatness = flatness},
-            shapes_file, picture, picture_file);
+            &to);
     if (count_reports())
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);

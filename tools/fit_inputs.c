@@ -4,6 +4,7 @@
  */
 #include "fit_inputs.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +19,47 @@
 #include <glib.h>
 #endif
 
+/* ---------------------------------------------------------------------------- options */
+
+void name_reading_options(option *first) {
+    static const option all[READING_OPTIONS] = {
+        [CHARACTERS_OPTION] = {"--characters", true, NULL}, [IDS_OPTION] = {"--ids", true, NULL},
+        [SILHOUETTE_OPTION] = {"--silhouette", true, NULL}, [THRESHOLD_OPTION] = {"--threshold", true, NULL},
+        [TRACE_OPTION] = {"--trace", false, NULL},          [GRID_OPTION] = {"--grid", true, NULL}};
+    memcpy(first, all, sizeof all);
+}
+
+reading take_reading(const option *first) {
+    return (reading){.characters = first[CHARACTERS_OPTION].value,
+                     .ids = first[IDS_OPTION].value,
+                     .silhouette = first[SILHOUETTE_OPTION].value,
+                     .trace = first[TRACE_OPTION].value,
+                     .cells = parse_grid(first[GRID_OPTION].value),
+                     .threshold = number_option(&first[THRESHOLD_OPTION], DBL_MIN, 1 - DBL_EPSILON / 2,
+                                                "more than 0 and less than 1", 0)};
+}
+
 /* ---------------------------------------------------------------------------- kinds of files */
 
 typedef enum file_kind { FONT, SVG, PNG, DXF, CSV, JSON, KIND_COUNT, UNKNOWN = KIND_COUNT } file_kind;
+
+/* What is often given instead, how it begins, and what to do. */
+static const struct {
+    const char *bytes, *what;
+} others[] = {
+    {"GIF8", "a GIF image: save it as PNG, an animation as a sheet for --grid"},
+    {"\xff\xd8\xff", "a JPEG image, which has no transparency: save it as PNG"},
+    {"RIFF", "a WebP image: save it as PNG"},
+    {"BM", "a BMP image: save it as PNG"},
+    {"II*", "a TIFF image: save it as PNG"},
+    {"MM", "a TIFF image: save it as PNG"},
+    {"8BPS", "a Photoshop document: save it as PNG"},
+    {"%PDF", "a PDF document: save its drawing as SVG"},
+    {"AC10", "a DWG drawing: save it as DXF"},
+    {"\x1f\x8b", "compressed: unpack it, of .svgz comes .svg"},
+    {"PK", "an archive: unpack it"},
+    {"", "neither its beginning nor its suffix is that of a font, or of SVG, PNG, DXF, CSV or JSON"},
+};
 
 /* How files begin. Fonts: TrueType, OpenType, Apple's two, collections, WOFF, Type 1 as text and in segments. XML may
  * be in UTF-16. */
@@ -147,6 +186,7 @@ void report_outline(const outline *at, const char *message) {
 
 static void free_outline(outline *removed) {
     free(removed->name);
+    free(removed->image);
     narc_destroy_path(removed->path);
 }
 
@@ -185,16 +225,16 @@ int print_name(FILE *file, const outline_list *outlines, const char *name, int w
 }
 
 void print_ways(FILE *file, const outline_list *outlines) {
-    static const char *const told[] = {[BY_GEOMETRY] = "exactly", [BY_PICTURE] = "as a picture"};
-    for (int way = BY_GEOMETRY; way <= BY_PICTURE; way++) {
+    for (int picture = 0; picture <= 1; picture++) {
         bool any = false;
         for (size_t i = 0; i < outlines->count; i++) {
-            if ((int)outlines->items[i].way != way)
+            const outline *of = &outlines->items[i];
+            if (!of->is_svg || of->is_picture != picture)
                 continue;
             if (any)
-                fprintf(file, ", %s", outlines->items[i].name);
+                fprintf(file, ", %s", of->name);
             else
-                fprintf(file, "SVG read %s: %s", told[way], outlines->items[i].name);
+                fprintf(file, "SVG read %s: %s", picture ? "as a picture" : "exactly", of->name);
             any = true;
         }
         if (any)
@@ -216,9 +256,9 @@ char *name_part(const outline *of, size_t index, size_t count) {
 void free_outlines(outline_list *outlines) {
     cut_outlines(outlines, 0);
     free(outlines->items);
-    while (outlines->found_count)
-        free(outlines->found[--outlines->found_count]);
-    free(outlines->found);
+    while (outlines->file_count)
+        free(outlines->files[--outlines->file_count]);
+    free(outlines->files);
     *outlines = (outline_list){0};
 }
 
@@ -331,7 +371,73 @@ static char *list_ids(const char *file, const char *bytes, size_t size) {
     g_string_free(ids, TRUE);
     return list;
 }
+/* What a drawing has that does not come into its outline as an artist may think. */
+typedef struct surprises {
+    const char *moves; /* the element, or what a style sheet has */
+    bool image;
+    char link[64];
+} surprises;
+
+/* Notes the first place behind `mark` where a text names another file. */
+static void note_link(surprises *found, const char *text, const char *mark) {
+    for (const char *at = text; !found->link[0] && (at = strstr(at, mark));) {
+        at += strlen(mark);
+        at += strspn(at, " '\"");
+        if (*at && *at != '#' && strncmp(at, "data:", 5) != 0 && strncmp(at, "url(", 4) != 0)
+            snprintf(found->link, sizeof found->link, "%.*s", (int)strcspn(at, " '\");"), at);
+    }
+}
+
+static void note_element(GMarkupParseContext *context, const char *element, const char **names, const char **values,
+                         gpointer data, GError **error) {
+    surprises *found = data;
+    (void)context, (void)error;
+    if (strncmp(element, "animate", 7) == 0 || strcmp(element, "set") == 0)
+        found->moves = "animate";
+    for (size_t k = 0; names[k]; k++) {
+        const bool is_link = strcmp(names[k], "href") == 0 || strcmp(names[k], "xlink:href") == 0;
+        const char *value = values[k] + strspn(values[k], " ");
+        if (!is_link)
+            note_link(found, value, "url(");
+        else if (strncmp(value, "data:", 5) == 0)
+            found->image = found->image || strcmp(element, "image") == 0;
+        else if (value[0] && value[0] != '#' && strcmp(element, "a") != 0 && !found->link[0])
+            snprintf(found->link, sizeof found->link, "%s", value);
+    }
+}
+
+static void note_style(GMarkupParseContext *context, const char *text, gsize size, gpointer data, GError **error) {
+    surprises *found = data;
+    (void)error;
+    if (strcmp(g_markup_parse_context_get_element(context), "style") != 0)
+        return;
+    char *style = join_text(text, size, "");
+    note_link(found, style, "url(");
+    note_link(found, style, "@import");
+    if (strstr(style, "@keyframes"))
+        found->moves = "@keyframes";
+    free(style);
+}
+
+/* Warns of them; what is no XML its reader tells. */
+static void glance(const char *file, const char *bytes, size_t size) {
+    const GMarkupParser parser = {.start_element = note_element, .text = note_style};
+    surprises found = {0};
+    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_TREAT_CDATA_AS_TEXT, &found, NULL);
+    g_markup_parse_context_parse(context, bytes, (gssize)size, NULL);
+    g_markup_parse_context_free(context);
+    if (found.moves)
+        warn_at(file, "it moves (%s): what it is before counts; save other moments as drawings of their own",
+                found.moves);
+    if (found.link[0])
+        warn_at(file, "'%s' is another file, which is never loaded: embed it", found.link);
+    if (found.image)
+        warn_at(file,
+                "it holds an image of pixels, which is traced with all else; a PNG file of it has its own pixels");
+}
 #else /* narc_read_svg() tells what is wrong */
+static void glance(const char *file, const char *bytes, size_t size) { (void)file, (void)bytes, (void)size; }
+
 static char warning[1];
 
 static void watch_warnings(void) {}
@@ -359,8 +465,10 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, c
     narc_path *path = out->path;
     switch (kind) {
     case DXF:
-        return narc_read_dxf(bytes, size, &(narc_dxf_request){.layer = how->element, .out_unit = &out->unit}, path,
-                             error);
+        return narc_read_dxf(
+            bytes, size,
+            &(narc_dxf_request){.layer = how->element, .out_unit = &out->unit, .out_open = &out->open_count}, path,
+            error);
     case SVG:
         return narc_read_svg(bytes, size, how, path, error);
     case PNG:
@@ -425,7 +533,16 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         cut_outlines(outlines, outlines->count - 1);
         return;
     }
-    added->way = kind != SVG ? NOT_SVG : exact ? BY_GEOMETRY : BY_PICTURE;
+    if (how->keep_images && (kind == SVG || kind == PNG)) {
+        added->image = memcpy(allocate(size, 1), bytes, size);
+        added->image_size = size;
+    }
+    if (added->open_count && !how->open)
+        warn_at(file,
+                "%zu of its lines are open, and closed by a straight line each; --chain --open keeps them as strokes",
+                added->open_count);
+    added->is_svg = kind == SVG;
+    added->is_picture = kind == PNG || (kind == SVG && !exact);
     if (warning[0])
         warn_at(file, "a part of it, perhaps some text, may be missing: %s", warning);
     if (whole && kind == PNG && element) /* a wall of a tileset */
@@ -483,8 +600,23 @@ static void read_cells(const char *file, const char *bytes, size_t size, sheet_r
     free(name);
 }
 
-static void read_file(const char *file, const reading *how, bool *met, outline_list *outlines) {
+/* Its control chunk stands before the first image. */
+static bool is_animation(const char *bytes, size_t size) {
+    for (size_t at = 8; at + 8 <= size && memcmp(bytes + at + 4, "IDAT", 4) != 0;) {
+        const unsigned char *length = (const unsigned char *)bytes + at;
+        if (memcmp(bytes + at + 4, "acTL", 4) == 0)
+            return true;
+        at += 12 + ((size_t)length[0] << 24 | (size_t)length[1] << 16 | (size_t)length[2] << 8 | length[3]);
+    }
+    return false;
+}
+
+static void read_file(const char *path, const reading *how, bool *met, outline_list *outlines) {
     size_t size;
+    char *file = join_text(path, strlen(path), "");
+    outlines->files =
+        grow(outlines->files, &outlines->file_capacity, outlines->file_count + 1, sizeof *outlines->files);
+    outlines->files[outlines->file_count++] = file;
     char *bytes = try_read_bytes(file, &size);
     if (!bytes)
         return;
@@ -492,8 +624,16 @@ static void read_file(const char *file, const reading *how, bool *met, outline_l
     sheet_reading at = {file, how, outlines};
     if (kind < KIND_COUNT)
         met[kind] = true;
-    if (kind == UNKNOWN)
-        report_at(file, 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, DXF, CSV or JSON");
+    size_t other = 0;
+    while (strncmp(bytes, others[other].bytes, strlen(others[other].bytes)) != 0)
+        other++;
+    if (kind == SVG)
+        glance(file, bytes, size);
+    else if (kind == PNG && is_animation(bytes, size))
+        warn_at(file, "an animation (APNG): its first image counts; save all as a sheet for --grid");
+    const bool may_be = kind == SVG || kind == PNG || kind == DXF || (kind == CSV && kind_of_suffix(file) != CSV);
+    if (kind == UNKNOWN || (may_be && others[other].bytes[0]))
+        report_at(file, 0, "%s", others[other].what);
     else if (kind == FONT)
         read_glyphs(file, bytes, size, how->characters, outlines);
     else if ((kind == SVG || kind == DXF) && how->ids)
@@ -512,14 +652,10 @@ static void read_folder(const char *folder, char **paths, size_t count, const re
     for (size_t k = 0; k < count; k++) {
         const file_kind kind = kind_of_suffix(paths[k]);
         if (kind == SVG || kind == PNG || (kind == FONT && how->characters)) {
-            outlines->found =
-                grow(outlines->found, &outlines->found_capacity, outlines->found_count + 1, sizeof *outlines->found);
-            outlines->found[outlines->found_count++] = paths[k];
             read_file(paths[k], how, met, outlines);
             taken++;
-        } else {
-            free(paths[k]);
         }
+        free(paths[k]);
     }
     free(paths);
     if (taken == 0)

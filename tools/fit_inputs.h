@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "narc_fit.h"
+#include "options.h"
 #include "sheets.h"
 
 typedef struct outline {
@@ -15,15 +16,18 @@ typedef struct outline {
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
     narc_path *path;
-    double unit;                                   /* of a DXF drawing, in metres; 0: unknown */
-    enum { NOT_SVG, BY_GEOMETRY, BY_PICTURE } way; /* an SVG file was read */
+    char *image; /* what a PNG or SVG drawing holds, if that is kept; of a frame its own */
+    size_t image_size;
+    size_t open_count;       /* strokes of a DXF drawing that do not close */
+    double unit;             /* of a DXF drawing, in metres; 0: unknown */
+    bool is_svg, is_picture; /* it was traced: all PNG, some SVG */
 } outline;
 
 typedef struct outline_list {
     outline *items;
     size_t count, capacity;
-    char **found; /* paths of files in folders, which outlines have */
-    size_t found_count, found_capacity;
+    char **files; /* paths of all that were read, which outlines have */
+    size_t file_count, file_capacity;
 } outline_list;
 
 typedef struct reading {
@@ -33,7 +37,14 @@ typedef struct reading {
     bool trace;             /* SVG files are drawn and traced even if they are plain */
     grid cells;             /* of PNG images that are sheets */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
+    bool keep_images;       /* in outlines */
+    bool open;              /* lines of DXF that do not close are meant */
 } reading;
+
+/* The options that tell it, which stand one after the other. */
+enum { CHARACTERS_OPTION, IDS_OPTION, SILHOUETTE_OPTION, THRESHOLD_OPTION, TRACE_OPTION, GRID_OPTION, READING_OPTIONS };
+void name_reading_options(option *first);
+reading take_reading(const option *first);
 
 /* Reads files, and those folders that are named; of these the pictures: each font gives an outline for each character (once, without variation selectors), SVG one for each
  * id, each other file one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file

@@ -14,7 +14,7 @@
 #include "system.h"
 #include "text.h"
 
-static const command *const commands[] = {&fit_command,     &export_command, &scene_command,
+static const command *const commands[] = {&fit_command,     &export_command, &view_command, &scene_command,
                                           &collide_command, &cast_command,   &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

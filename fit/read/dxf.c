@@ -13,12 +13,13 @@
 #include "outline/path.h"
 #include "outline/vector.h"
 #include "read/dxf_entities.h"
+#include "read/ellipse.h"
 
 /* Ends this near, in parts of the drawing's extent, meet. */
 static const double NEAR = 1e-6;
 
-/* What differs from a circle by less is one; of others cubics through a 32nd of half a turn are within 1e-12. */
-static const double ROUND = 1e-9, STEP = PI / 32;
+/* Directions and weights that differ by less are the same. */
+static const double ROUND = 1e-9;
 
 enum { DEEPEST = 16, MOST_PIECES = 1000000, MOST_DEGREE = 3 };
 
@@ -265,28 +266,17 @@ static bool add_piece(reader *r, piece added) {
     return true;
 }
 
-/* An ellipse: center + cos t u + sin t v. */
-static narc_point find_on(narc_point center, narc_point u, narc_point v, double t) {
-    const narc_point way = unit_at(t);
-    return along(along(center, way.x, u), way.y, v);
-}
-
 /* A part of an ellipse in the frame; `middle` and `end`, there too, are those of an arc of at most half a turn. */
-static bool add_ellipse(reader *r, const frame *f, narc_point center, narc_point u, narc_point v, double from,
-                        double to, const narc_point *middle, const narc_point *end) {
-    const narc_point a = place_way(f, u), b = place_way(f, v), c = place(f, center);
-    const double size = dot(a, a) + dot(b, b);
-    const bool round = fabs(dot(a, a) - dot(b, b)) <= ROUND * size && fabs(dot(a, b)) <= ROUND * size;
-    const double steps = fmax(1, ceil(fabs(to - from) / (round ? PI : STEP) - 1e-9)), step = (to - from) / steps;
-    for (double k = 0; k < steps; k++) {
-        const double s = from + k * step, t = s + step, k4 = 4 * tangent(step / 4) / 3;
-        const narc_point p = r->strands[r->strand_count - 1].end,
-                         q = k + 1 < steps || !end ? find_on(c, a, b, t) : place(f, *end);
-        const narc_point none = {0, 0}, back = minus(none, a);
-        const piece added =
-            round ? (piece){2, steps == 1 && middle ? place(f, *middle) : find_on(c, a, b, (s + t) / 2), none, q}
-                  : (piece){3, along(p, k4, find_on(none, b, back, s)), along(q, -k4, find_on(none, b, back, t)), q};
-        if (!add_piece(r, added))
+static bool add_ellipse(reader *r, const frame *f, const ellipse *e, double from, double to, const narc_point *middle,
+                        const narc_point *end) {
+    const ellipse placed = {place(f, e->center), place_way(f, e->u), place_way(f, e->v)};
+    const ellipse_part part = divide_ellipse(&placed, from, to);
+    for (double k = 0; k < part.count; k++) {
+        const narc_point q = k + 1 < part.count || !end ? end_step(&part, k) : place(f, *end);
+        narc_point c[2] = {part.count == 1 && middle ? place(f, *middle) : halve_step(&part, k)};
+        if (!part.round)
+            bend_step(&part, k, r->strands[r->strand_count - 1].end, q, c);
+        if (!add_piece(r, (piece){part.round ? 2 : 3, c[0], c[1], q}))
             return false;
     }
     return true;
@@ -302,22 +292,21 @@ static bool draw_arc(reader *r, const entity *e, frame f, size_t layer) {
     const double from = whole ? 0 : n[3] * PI / 180;
     double to = whole ? 2 * PI : n[4] * PI / 180;
     to += to <= from ? 2 * PI * ceil((from - to) / (2 * PI) + (to == from)) : 0;
-    const narc_point center = {n[0], n[1]}, u = {radius, 0}, v = {0, radius};
-    const narc_point start = place(&f, find_on(center, u, v, from));
-    return begin_strand(r, start, layer) && add_ellipse(r, &f, center, u, v, from, to, NULL, NULL);
+    const ellipse circle = {{n[0], n[1]}, {radius, 0}, {0, radius}};
+    return begin_strand(r, place(&f, find_on(&circle, from)), layer) &&
+           add_ellipse(r, &f, &circle, from, to, NULL, NULL);
 }
 
 static bool draw_ellipse(reader *r, const entity *e, const frame *f, size_t layer) {
     const double *n = e->from.numbers;
-    const narc_point center = {n[0], n[1]}, u = {n[2], n[3]}, side = turned(u);
+    const narc_point u = {n[2], n[3]}, side = turned(u);
     const double up = e->from.up < 0 ? -1 : 1;
-    const narc_point v = {up * n[4] * side.x, up * n[4] * side.y};
+    const ellipse drawn = {{n[0], n[1]}, u, {up * n[4] * side.x, up * n[4] * side.y}};
     if (!(length(u) > 0 && fabs(n[4]) > 0))
         return fail_at(r, NARC_ERROR_SIZE, e->line, n[4], "it has no width:", "ELLIPSE");
     const double turn = n[6] - n[5],
                  to = n[5] + (turn <= 0 ? turn + 2 * PI * ceil(-turn / (2 * PI) + (turn == 0)) : turn);
-    return begin_strand(r, place(f, find_on(center, u, v, n[5])), layer) &&
-           add_ellipse(r, f, center, u, v, n[5], to, NULL, NULL);
+    return begin_strand(r, place(f, find_on(&drawn, n[5])), layer) && add_ellipse(r, f, &drawn, n[5], to, NULL, NULL);
 }
 
 static bool draw_polyline(reader *r, const entity *e, frame f, size_t layer) {
@@ -341,11 +330,12 @@ static bool draw_polyline(reader *r, const entity *e, frame f, size_t layer) {
             continue;
         }
         const narc_curve_arc arc = narc_find_arc(&(narc_drawn_move){.controls = (narc_point[]){p, middle, q}});
-        const narc_point u = {arc.radius, 0}, v = {0, arc.radius}, away = minus(p, arc.center);
+        const ellipse circle = {arc.center, {arc.radius, 0}, {0, arc.radius}};
+        const narc_point away = minus(p, arc.center);
         const double start = narc_atan2(away.y, away.x), turn = 4 * narc_atan2(bulge, 1);
-        if (isinf(arc.radius) ? !add_piece(r, (piece){1, p, p, place(&f, q)})
-                              : !add_ellipse(r, &f, arc.center, u, v, start, start + turn,
-                                             fabs(turn) <= PI * (1 + 1e-9) ? &middle : NULL, &q))
+        if (isinf(arc.radius)
+                ? !add_piece(r, (piece){1, p, p, place(&f, q)})
+                : !add_ellipse(r, &f, &circle, start, start + turn, fabs(turn) <= PI * (1 + 1e-9) ? &middle : NULL, &q))
             return false;
     }
     return true;

@@ -45,8 +45,8 @@ static narc_status begin(const struct source *source, png_image *image) {
     if (width > LONGEST_SIDE || height > LONGEST_SIDE || pixels > MOST_PIXELS) {
         png_image_free(image);
         return narc_fail(source->error, NARC_ERROR_SIZE, 0, pixels,
-                         "an image of %u x %u pixels; at most %d a side and %d in all are read", width, height,
-                         (int)LONGEST_SIDE, (int)MOST_PIXELS);
+                         "an image of %u x %u pixels; at most %d a side and %d in all are read, make it smaller", width,
+                         height, (int)LONGEST_SIDE, (int)MOST_PIXELS);
     }
     return NARC_OK;
 }
@@ -132,11 +132,13 @@ static narc_status load_silhouette(const struct source *source, narc_silhouette 
 /* Between two values that a sample can have: contours then never pass through a sample, where they could touch. */
 static double sample_level(double threshold) { return floor((threshold == 0 ? 0.5 : threshold) * FULL) + 0.5; }
 
-static unsigned find_least(const narc_image *image) {
-    unsigned least = FULL;
-    for (size_t k = 0; k < image->width * image->height; k++)
-        least = image->samples[k] < least ? image->samples[k] : least;
-    return least;
+static void find_range(const narc_image *image, unsigned *least, unsigned *most) {
+    *least = FULL;
+    *most = 0;
+    for (size_t k = 0; k < image->width * image->height; k++) {
+        *least = image->samples[k] < *least ? image->samples[k] : *least;
+        *most = image->samples[k] > *most ? image->samples[k] : *most;
+    }
 }
 
 /* An image that is full throughout. A contour of the samples would cut its corners. */
@@ -163,12 +165,18 @@ narc_status narc_read_png(const void *data, size_t size, const narc_image_reques
         return status;
     const narc_image silhouette = {.samples = samples, .width = image.width, .height = image.height, .pixel = 1};
     const double level = sample_level(how->threshold);
-    const unsigned least = find_least(&silhouette);
+    static const char *const empty[] = {"transparent", "light or transparent", "dark or transparent"};
+    unsigned least, most;
+    find_range(&silhouette, &least, &most);
     const narc_path_mark mark = narc_mark_path(path);
     status = least == FULL ? draw_rectangle(image.width, image.height, path, error)
                            : narc_trace_image(&silhouette, level, path, error);
     if (!status && !narc_is_drawn_since(path, mark))
-        status = narc_fail(error, NARC_ERROR_FORMAT, 0, how->threshold, "no pixel of the image reaches the threshold");
+        status = most == 0 ? narc_fail(error, NARC_ERROR_FORMAT, 0, how->threshold, "the image is %s throughout",
+                                       empty[how->silhouette])
+                           : narc_fail(error, NARC_ERROR_FORMAT, 0, how->threshold,
+                                       "no pixel of the image reaches the threshold %g; the strongest has %.3g",
+                                       how->threshold == 0 ? 0.5 : how->threshold, most / (double)FULL);
     if (status)
         narc_rewind_path(path, mark);
     else if (how->out_whole)

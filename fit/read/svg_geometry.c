@@ -17,7 +17,7 @@
 #include "error.h"
 #include "outline/crossings.h"
 #include "outline/path.h"
-#include "outline/vector.h"
+#include "read/ellipse.h"
 
 /* A point (x, y) goes to x a + y b + c. */
 struct frame {
@@ -108,40 +108,22 @@ static void quadratic_to(struct reader *r, narc_point p, narc_point end) {
     r->pen = end;
 }
 
-/* An ellipse: center + cos t u + sin t v. */
-struct ellipse {
-    narc_point center, u, v;
-};
-
-static narc_point find_on(const struct ellipse *e, double t) {
-    const narc_point way = unit_at(t);
-    return along(along(e->center, way.x, e->u), way.y, e->v);
-}
-
-/* A cubic through a 32nd of half a turn is within 1e-12 of the ellipse. What differs from a circle by less than ROUND is
- * one. */
-static const double STEP = PI / 32, ROUND = 1e-9;
-
 /* The part of an ellipse from one parameter to another, where the pen is, to `end`. */
-static void ellipse_to(struct reader *r, const struct ellipse *e, double from, double to, narc_point end) {
+static void ellipse_to(struct reader *r, const ellipse *e, double from, double to, narc_point end) {
     const struct frame straight = {r->frame.a, r->frame.b, {0, 0}};
-    const narc_point u = place(&straight, e->u), v = place(&straight, e->v);
-    const double size = dot(u, u) + dot(v, v);
-    const bool round = fabs(dot(u, u) - dot(v, v)) <= ROUND * size && fabs(dot(u, v)) <= ROUND * size;
-    const double steps = ceil(fabs(to - from) / (round ? PI : STEP) - 1e-9), step = (to - from) / fmax(1, steps);
-    for (double k = 0; k < steps; k++) {
-        const double s = from + k * step, t = s + step;
-        const narc_point next = k + 1 < steps ? find_on(e, t) : end;
-        if (round) {
-            begin(r);
-            const narc_point middle = place(&r->frame, find_on(e, (s + t) / 2)), q = place(&r->frame, next);
-            note(r, narc_arc_to(r->path, &middle, &q, r->error));
-            r->pen = next;
-            continue;
-        }
-        const double k4 = 4 * tangent(step / 4) / 3;
-        const struct ellipse slope = {{0, 0}, e->v, {-e->u.x, -e->u.y}};
-        cubic_to(r, along(r->pen, k4, find_on(&slope, s)), along(next, -k4, find_on(&slope, t)), next);
+    const ellipse placed = {place(&r->frame, e->center), place(&straight, e->u), place(&straight, e->v)};
+    const ellipse_part part = divide_ellipse(&placed, from, to);
+    narc_point p = place(&r->frame, r->pen);
+    for (double k = 0; k < part.count; k++) {
+        const narc_point q = k + 1 < part.count ? end_step(&part, k) : place(&r->frame, end);
+        narc_point c[2] = {halve_step(&part, k)};
+        begin(r);
+        if (!part.round)
+            bend_step(&part, k, p, q, c);
+        note(r, part.round ? narc_arc_to(r->path, &c[0], &q, r->error)
+                           : narc_cubic_to(r->path, &c[0], &c[1], &q, r->error));
+        p = q;
+        r->pen = end;
     }
 }
 
@@ -283,7 +265,7 @@ static void draw_arc(struct reader *r, double rx, double ry, double degrees, boo
     else if (sweep != (turn > 0))
         turn += sweep ? 2 * PI : -2 * PI;
     const narc_point middle = along(end, 1, half);
-    struct ellipse e = {middle, {rx * x.x, rx * x.y}, {ry * y.x, ry * y.y}};
+    ellipse e = {middle, {rx * x.x, rx * x.y}, {ry * y.x, ry * y.y}};
     e.center = along(along(middle, c.x, e.u), c.y, e.v);
     ellipse_to(r, &e, from, from + turn, end);
 }
@@ -384,7 +366,7 @@ static void draw_points(struct reader *r, const char *text) {
 /* ---------------------------------------------------------------------------- shapes */
 
 static void draw_ellipse(struct reader *r, narc_point c, double rx, double ry, bool backwards) {
-    const struct ellipse e = {c, {rx, 0}, {0, backwards ? -ry : ry}};
+    const ellipse e = {c, {rx, 0}, {0, backwards ? -ry : ry}};
     move_to(r, (narc_point){c.x + rx, c.y});
     ellipse_to(r, &e, 0, 2 * PI, r->first);
     r->begun = false;
@@ -397,7 +379,7 @@ static void draw_rectangle(struct reader *r, narc_point c, narc_point half, doub
     const bool is_round = rx > 0 && ry > 0;
     for (int k = 0; k < 4; k++) {
         const double sx = k == 1 || k == 2 ? -1 : 1, sy = k >= 2 ? -1 : 1;
-        const struct ellipse e = {{c.x + sx * in.x, c.y + sy * in.y}, {rx, 0}, {0, flip * ry}};
+        const ellipse e = {{c.x + sx * in.x, c.y + sy * in.y}, {rx, 0}, {0, flip * ry}};
         const narc_point corner = {c.x + sx * half.x, c.y + sy * flip * half.y};
         const narc_point from = is_round ? find_on(&e, k * PI / 2) : corner;
         const narc_point start = k % 2 ? (narc_point){e.center.x, from.y} : (narc_point){from.x, e.center.y};
@@ -611,8 +593,8 @@ static void draw_shape(struct reader *r, const struct state *state, enum kind ki
         const narc_point way = unit(minus(q, p)), side = turned(way);
         const double beyond = state->cap == 2 ? out : 0;
         const narc_point a = along(p, -beyond, way), b = along(q, beyond, way);
-        const struct ellipse at_b = {b, {-out * side.x, -out * side.y}, {out * way.x, out * way.y}};
-        const struct ellipse at_a = {a, {out * side.x, out * side.y}, {-out * way.x, -out * way.y}};
+        const ellipse at_b = {b, {-out * side.x, -out * side.y}, {out * way.x, out * way.y}};
+        const ellipse at_a = {a, {out * side.x, out * side.y}, {-out * way.x, -out * way.y}};
         move_to(r, along(a, -out, side));
         line_to(r, along(b, -out, side));
         if (state->cap == 1)

@@ -95,11 +95,11 @@ TEST(refuses_huge_images) {
 TEST(refuses_what_has_no_outline) {
     uint16_t none[4] = {0}, some[4] = {30000, 0, 0, 0}, full[4] = {FULL, FULL, FULL, FULL};
     struct png_file file = write_png(gray_alpha_8, 2, 2, full, none);
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel of the image reaches the threshold");
+    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "the image is transparent throughout");
     free(file.bytes);
     file = write_png(gray_8, 2, 2, full, NULL);
     expect_request_error(file.bytes, file.size, (narc_image_request){.silhouette = NARC_SILHOUETTE_DARK},
-                         NARC_ERROR_FORMAT, "no pixel");
+                         NARC_ERROR_FORMAT, "the image is light or transparent throughout");
     for (int k = -1; k <= 3; k += 4)
         expect_request_error(file.bytes, file.size, (narc_image_request){.silhouette = (narc_silhouette)k},
                              NARC_ERROR_ARGUMENT, "there is no silhouette");

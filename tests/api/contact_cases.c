@@ -515,8 +515,10 @@ TEST(ground_that_carries_is_not_all) {
     destroy_few(few);
 }
 
-/* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. */
+/* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. Where trials are few,
+ * one bit or two of each byte. */
 TEST(damaged_bytes_do_no_harm) {
+    const size_t stride = test_trials(10) < 10 ? 7 : 1;
     for (int way = 0; way < 3; way++) {
         struct few *const few = make_few(circle_of(0.5), 6, NULL);
         const narc_pair_filter *const filter = few->step.filter;
@@ -526,7 +528,7 @@ TEST(damaged_bytes_do_no_harm) {
         step_few(few);
         char *const bytes = save_few(few, &size);
         narc_destroy_contacts(few->contacts);
-        for (size_t bit = 0; bit < 8 * size; bit++) {
+        for (size_t bit = 0; bit < 8 * size; bit += stride) {
             const uint32_t *slots;
             const narc_step_result *r;
             size_t count;
@@ -548,7 +550,7 @@ TEST(damaged_bytes_do_no_harm) {
             bytes[bit / 8] ^= (char)(1 << bit % 8);
             narc_destroy_contacts(few->contacts);
         }
-        assert_true(loads > size);
+        assert_true(loads > size / stride);
         few->contacts = NULL;
         free(bytes);
         destroy_few(few);

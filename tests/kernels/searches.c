@@ -459,19 +459,20 @@ TEST(longest_ways_go_by_number) {
 TEST(rays_go_in_any_company) {
     enum { COUNT = 700, RAYS_OF_ALL = 1500, MOST = 3 };
     struct test_random random = test_random_named("company");
+    const size_t ray_count = test_trials(10) < 10 ? 400 : RAYS_OF_ALL;
     struct room room = create_room(&random, NARC_FLOAT64, COUNT, 40);
-    struct test_ray *const rays = make_rays(&random, &room, RAYS_OF_ALL, 40);
-    struct test_ray *const mixed = calloc(RAYS_OF_ALL, sizeof *mixed);
+    struct test_ray *const rays = make_rays(&random, &room, ray_count, 40);
+    struct test_ray *const mixed = calloc(ray_count, sizeof *mixed);
     uint32_t owner[COUNT];
     size_t order[RAYS_OF_ALL];
     for (size_t k = 0; k < COUNT; k++)
         owner[k] = (uint32_t)k / 4;
-    for (size_t k = 0; k < RAYS_OF_ALL; k++) {
+    for (size_t k = 0; k < ray_count; k++) {
         const size_t other = random_below(&random, k + 1);
         order[k] = order[other];
         order[other] = k;
     }
-    for (size_t k = 0; k < RAYS_OF_ALL; k++)
+    for (size_t k = 0; k < ray_count; k++)
         mixed[k] = rays[order[k]];
     const narc_owners owners = {.owner = NARC_ARRAY(owner)};
     const narc_ray_options ways[] = {{.most = MOST},
@@ -481,11 +482,11 @@ TEST(rays_go_in_any_company) {
                                      {.most = 1, .inside = NARC_INSIDE_IGNORES}};
     for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
         const size_t most = ways[way].most;
-        const narc_rays view = view_rays(rays, RAYS_OF_ALL);
+        const narc_rays view = view_rays(rays, ray_count);
         narc_ray_hit *const right = cast_in_room(&room, &view, &ways[way]);
-        for (size_t size = 1; size < RAYS_OF_ALL; size = size < 10 ? size + 1 : 3 * size)
-            for (size_t first = 0; first < RAYS_OF_ALL; first += size) {
-                const size_t left = RAYS_OF_ALL - first, count = left < size ? left : size;
+        for (size_t size = 1; size < ray_count; size = size < 10 ? size + 1 : 3 * size)
+            for (size_t first = 0; first < ray_count; first += size) {
+                const size_t left = ray_count - first, count = left < size ? left : size;
                 const narc_rays part = view_rays(mixed + first, count);
                 narc_ray_hit *const found = cast_in_room(&room, &part, &ways[way]);
                 for (size_t k = 0; k < count * most; k++) {

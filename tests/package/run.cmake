@@ -141,7 +141,7 @@ elseif(STEP MATCHES "^(pkgconfig|example)_")
 # Meson, by each way there is; KIND says which.
 elseif(STEP MATCHES "^meson_")
   find_program(MESON meson)
-  if(NOT MESON OR NOT GENERATOR STREQUAL "Unix Makefiles" OR FLAGS MATCHES "sanitize")
+  if(NOT MESON OR NOT GENERATOR MATCHES "Makefiles|Ninja" OR FLAGS MATCHES "sanitize")
     skip("no meson, or flags that it is not told of")
     return()
   endif()

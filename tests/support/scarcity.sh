@@ -48,7 +48,7 @@ run_out() {
             [ -z "$(find . -name '.narc-*')" ] || miss "$name, allocation $number $on: a temporary file stays"
             rm -f .narc-*
         done
-        number=$((number + 1 + (number > 40 ? number / 8 : 0)))
+        number=$((number + 1 + (number > 24 ? number / 5 : 0)))
     done
     [ $failed -gt 0 ] || miss "$name: no allocation that matters"
     echo "$name: $count allocations, $failed runs ended early"

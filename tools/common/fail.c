@@ -19,6 +19,8 @@ enum { LINE_SIZE = 2048 };
 
 static bool going_on;
 static size_t report_count;
+static told *messages;
+static size_t message_count, message_capacity;
 
 /* _Exit() drops what is still buffered: nothing more gets written. */
 _Noreturn void abandon(void) {
@@ -62,6 +64,12 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     abandon();
 }
 
+static void keep_told(const char *path, size_t line, bool is_error, const char *text) {
+    messages = grow(messages, &message_capacity, message_count + 1, sizeof *messages);
+    messages[message_count++] =
+        (told){join_text(path, strlen(path), ""), line, is_error, join_text(text, strlen(text), "")};
+}
+
 void report_at(const char *path, size_t line_number, const char *format, ...) {
     char line[LINE_SIZE];
     const size_t used = print_place(line, path, line_number);
@@ -70,6 +78,7 @@ void report_at(const char *path, size_t line_number, const char *format, ...) {
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
     print_line(line);
+    keep_told(path, line_number, true, line + used);
     report_count++;
     if (!going_on)
         abandon();
@@ -83,6 +92,12 @@ void warn_at(const char *path, const char *format, ...) {
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
     print_line(line);
+    keep_told(path, 0, false, line + used);
+}
+
+const told *list_told(size_t *out_count) {
+    *out_count = message_count;
+    return messages;
 }
 
 void keep_going(void) { going_on = true; }

@@ -6,6 +6,7 @@
 #ifndef NARC_TOOL_FAIL_H
 #define NARC_TOOL_FAIL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "compiler.h"
@@ -25,6 +26,15 @@ size_t count_reports(void);
 
 /* A warning: "narc: path: message". */
 PRINTF_LIKE(2, 3) void warn_at(const char *path, const char *format, ...);
+
+/* What report_at() and warn_at() told. */
+typedef struct told {
+    const char *path;
+    size_t line; /* 0: none */
+    bool is_error;
+    const char *text;
+} told;
+const told *list_told(size_t *out_count);
 
 /* Ends the command behind an error that was reported. */
 _Noreturn void abandon(void);

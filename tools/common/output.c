@@ -13,17 +13,16 @@
 #include "progress.h"
 #include "system.h"
 
-enum { MAX_OUTPUTS = 4 };
-
-typedef struct output {
-    const char *path;         /* as the user gave it */
+typedef struct output output;
+struct output {
+    output *volatile next;
+    char *path;               /* as the user gave it */
     char *target;             /* the file to replace, symbolic links followed; NULL: written directly */
     char *volatile temporary; /* NULL: nothing to remove. The signal handler reads it. */
-    FILE *file;
-} output;
+    FILE *file;               /* NULL: not opened yet, or written and closed */
+};
 
-static output outputs[MAX_OUTPUTS];
-static size_t output_count;
+static output *volatile first;
 static char **inputs;
 static size_t input_count, input_capacity;
 
@@ -47,10 +46,10 @@ static char *find_target(const char *path) {
 }
 
 void discard_outputs(void) {
-    for (size_t i = 0; i < MAX_OUTPUTS; i++) {
-        if (outputs[i].temporary) {
-            remove_file(outputs[i].temporary);
-            outputs[i].temporary = NULL;
+    for (output *out = first; out; out = out->next) {
+        if (out->temporary) {
+            remove_file(out->temporary);
+            out->temporary = NULL;
         }
     }
 }
@@ -69,48 +68,84 @@ static void check_target(const output *out) {
     for (size_t i = 0; i < input_count; i++)
         if (strcmp(out->target, inputs[i]) == 0)
             fail("%s: this output is one of the inputs", out->path);
-    for (const output *other = outputs; other < out; other++)
+    for (const output *other = first; other; other = other->next)
         if (other->target && strcmp(out->target, other->target) == 0)
             fail("%s: two outputs are the same file", out->path);
 }
 
-FILE *open_output(const char *path) {
-    if (output_count == MAX_OUTPUTS)
-        fail("%s: too many outputs", path);
-    if (output_count == 0)
-        watch_signals(discard_outputs);
-    output *out = &outputs[output_count++];
-    out->path = path;
-    if (strcmp(path, "-") == 0) {
-        out->path = "standard output";
-        out->file = stdout;
-    } else if (is_special(path)) {
-        out->file = open_file(path, "wb");
-    } else if ((out->target = find_target(path))) {
+static output *find_output(const char *path) {
+    output *out = first;
+    while (out && strcmp(out->path, path) != 0)
+        out = out->next;
+    return out;
+}
+
+static output *add_output(const char *path) {
+    output *out = allocate(1, sizeof *out), *volatile *end = &first;
+    *out = (output){.path = join_text(path, strlen(path), "")};
+    if (strcmp(path, "-") != 0 && !is_special(path)) {
+        if (!(out->target = find_target(path)))
+            fail("%s: %s", path, strerror(errno));
         check_target(out);
-        out->file = open_temporary(out->target, &out->temporary);
     }
+    if (!first)
+        watch_signals(discard_outputs);
+    while (*end)
+        end = &(*end)->next;
+    *end = out;
+    return out;
+}
+
+void reserve_output(const char *path) {
+    if (find_output(path))
+        fail("%s: two outputs are the same file", path);
+    add_output(path);
+}
+
+FILE *open_output(const char *path) {
+    output *out = find_output(path);
+    if (!out || out->file || out->temporary)
+        out = add_output(path);
+    out->file = strcmp(path, "-") == 0 ? stdout
+                : out->target          ? open_temporary(out->target, &out->temporary)
+                                       : open_file(path, "wb");
     if (!out->file)
         fail("%s: %s", path, strerror(errno));
     return out->file;
 }
 
 void flush_output(FILE *file) {
-    size_t i = 0;
-    while (i < output_count && outputs[i].file != file)
-        i++;
+    const output *out = first;
+    while (out && out->file != file)
+        out = out->next;
     const bool failed = ferror(file);
-    if ((fflush(file) != 0 || failed) && i < output_count)
-        fail("%s: %s", outputs[i].path, strerror(errno));
+    if ((fflush(file) != 0 || failed) && out)
+        fail("%s: %s", file == stdout ? "standard output" : out->path, strerror(errno));
+}
+
+/* What is written stands; the file has no name yet. */
+static void close_file(output *out) {
+    flush_output(out->file);
+    if (fclose(out->file) != 0)
+        fail("%s: %s", out->path, strerror(errno));
+    out->file = NULL;
+}
+
+void close_output(FILE *file) {
+    for (output *out = first; out; out = out->next)
+        if (out->file == file && file != stdout)
+            close_file(out);
 }
 
 FILE *finish_outputs(void) {
     FILE *report = stdout;
-    for (size_t i = 0; i < output_count; i++) {
-        flush_output(outputs[i].file);
-        if (outputs[i].file != stdout && fclose(outputs[i].file) != 0)
-            fail("%s: %s", outputs[i].path, strerror(errno));
-        report = outputs[i].file == stdout ? stderr : report;
+    for (output *out = first; out; out = out->next) {
+        if (out->file == stdout) {
+            flush_output(stdout);
+            report = stderr;
+        } else if (out->file) {
+            close_file(out);
+        }
     }
     hide_progress();
     return report;
@@ -125,16 +160,27 @@ void finish_report(FILE *file) {
 }
 
 void commit_outputs(void) {
-    for (size_t i = 0; i < output_count; i++) {
-        if (outputs[i].temporary) {
-            if (!replace_file(outputs[i].temporary, outputs[i].target))
-                fail("%s: %s", outputs[i].path, strerror(errno));
-            char *name = outputs[i].temporary;
-            outputs[i].temporary = NULL; /* before a signal finds it freed */
-            free(name);
-        }
-        free(outputs[i].target);
-        outputs[i] = (output){0};
+    while (first) {
+        output *out = first;
+        if (out->temporary && !replace_file(out->temporary, out->target))
+            fail("%s: %s", out->path, strerror(errno));
+        first = out->next; /* before a signal finds it freed */
+        free(out->temporary);
+        free(out->target);
+        free(out->path);
+        free(out);
     }
-    output_count = 0;
+}
+
+char *expand_pattern(const char *pattern, const char *name) {
+    static const char mark[] = "{name}", odd[] = "/\\:*?<>|";
+    const char *found = strstr(pattern, mark);
+    if (!found)
+        return NULL;
+    char *begin = join_text(pattern, (size_t)(found - pattern), name), *path;
+    for (char *c = begin + (found - pattern); *c; c++)
+        *c = strchr(odd, *c) ? '_' : *c;
+    path = join_text(begin, strlen(begin), found + strlen(mark));
+    free(begin);
+    return path;
 }

@@ -16,6 +16,13 @@ void protect_input(const char *path);
 /* Opens an output; "-" is standard output. Two outputs cannot be the same file, and none can be an input. */
 FILE *open_output(const char *path);
 
+/* Of many outputs: says early what is wrong with one that is opened later; it is closed when it is written. */
+void reserve_output(const char *path);
+void close_output(FILE *file);
+
+/* A path with a body's name for {name}, in which what paths cannot have is _, to be freed; NULL: it has no {name}. */
+char *expand_pattern(const char *pattern, const char *name);
+
 /* Writes out what an output has so far, and checks it: after the last line of a file, while the reason why it cannot be
  * written is known. */
 void flush_output(FILE *file);

@@ -103,6 +103,18 @@ _Noreturn void fail_text(const char *path, const narc_error *error) {
     abandon();
 }
 
+void put_json_text(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || *text == '<')
+            fprintf(file, "\\u%04x", (unsigned)*text);
+        else if (*text == '"' || *text == '\\')
+            fprintf(file, "\\%c", *text);
+        else
+            fputc(*text, file);
+    fputc('"', file);
+}
+
 bool parse_number(const char *text, double *out_value) {
     return narc_parse_number(text, strlen(text), out_value) && isfinite(*out_value);
 }

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "lines.h"
 #include "narc_files.h"
@@ -23,6 +24,9 @@ char *read_text(const char *path);
 
 /* The shapes of a file, and a store of them unless `out_store` is NULL. */
 narc_shape_list *read_shapes(const char *path, narc_shapes **out_store);
+
+/* A text as JSON, in quotes, fit for a page too. */
+void put_json_text(FILE *file, const char *text);
 
 /* Ends the command with an error of reading a text, whose index is its line. */
 _Noreturn void fail_text(const char *path, const narc_error *error);

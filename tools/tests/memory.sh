@@ -18,7 +18,7 @@ run_out "fit" 2 "f.json f.png" "$narc" fit points.csv --arcs 4 --out f.json --pi
 # Nor does an input get lost.
 cp shapes.json kept.json
 number=1
-while [ $number -le 60 ]; do
+while [ $number -le 30 ]; do
     once "" "" "$narc" scene $five --density 0.5 --seed 1 --out shapes.json && miss "an output is the input, allocation $number"
     cmp -s shapes.json kept.json || miss "the input is gone, allocation $number"
     cp kept.json shapes.json

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""reports.py NARC - reports as JSON, and an output for each shape or body."""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+NARC = os.path.abspath(sys.argv[1])
+os.chdir(folder := tempfile.mkdtemp())
+os.mkdir("out")
+os.mkdir("in")
+for name, text in {
+        "el.csv": "0,0\n4,0\n4,1\n1,1\n1,3\n0,3\n", "in.csv": "1,2\nx,3\n",
+        "disc.csv": "\n".join(f"{5 + math.cos(k / 50)},{math.sin(k / 50)}" for k in range(315)), "odd.zzz": "?"}.items():
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def narc(code, *arguments):
+    done = subprocess.run([NARC, *arguments], capture_output=True, encoding="utf-8")
+    assert done.returncode == code, (arguments, done)
+    return done
+
+
+def shapes(path):
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)["shapes"]
+
+
+fit = ["fit", "el.csv", "in.csv", "disc.csv", "odd.zzz", "in", "--keep-going", "--report", "json"]
+inputs = json.loads(narc(1, *fit, "--tolerance", "0.1", "--out", "out/{name}.json").stdout)["inputs"]
+assert [at["file"] for at in inputs] == ["el.csv", "in.csv", "disc.csv", "odd.zzz", "in"]
+assert [len(at["errors"]) for at in inputs] == [0, 1, 0, 1, 1] and not any(at["warnings"] for at in inputs)
+assert "is not a number" in inputs[1]["errors"][0] and "a folder without" in inputs[4]["errors"][0]
+(el,), none, (disc,), _, _ = (at["shapes"] for at in inputs)
+assert none == [] and sorted(os.listdir("out")) == ["disc.json", "el.json"]
+assert (disc["kind"], disc["arcs"], disc["way"], disc["out"]) == ("circle", 1, "geometry", "out/disc.json")
+(circle,) = shapes("out/disc.json")
+assert abs(disc["area"] - math.pi * circle["circle"] ** 2) < 1e-6 and 0 <= disc["distance"] <= 0.1 and circle["name"] == "disc"
+assert el["kind"] == "arcs" and el["hull_area"] == 9 and el["area"] >= 9 and len(shapes("out/el.json")[0]["arcs"]) == el["arcs"]
+
+# Parts and chains; the shapes on standard output leave standard error to the report.
+done = narc(0, "fit", "el.csv", "--parts", "2", "--report=json", "--out", "out/{name}.json")
+(el,) = json.loads(done.stdout)["inputs"][0]["shapes"]
+assert (el["kind"], el["parts"], el["area"], el["outline_area"], el["distance"]) == ("parts", 2, 6, 6, 0), el
+assert [shape["name"] for shape in shapes("out/el.json")] == ["el/1", "el/2"]
+done = narc(0, "fit", "el.csv", "--chain", "--tolerance", "0.01", "--report", "json")
+(el,) = json.loads(done.stderr)["inputs"][0]["shapes"]
+assert (el["kind"], el["arcs"], el["edges"], el["out"]) == ("chain", 0, 6, "-") and "chain" in json.loads(done.stdout)["shapes"][0]
+done = narc(2, "fit", "in.csv", "--keep-going", "--arcs", "3", "--report", "json", "--out", "new.json")
+assert json.loads(done.stdout)["inputs"][0]["errors"] and done.stderr.endswith("no outline is left to fit\n")
+
+# Each body a scene; a pattern without a folder, and two bodies in one file, are told before anything is made.
+narc(0, "fit", "el.csv", "disc.csv", "--parts", "2", "--tolerance", "0.2", "--out", "all.json")
+done = narc(0, "export", "all.json", "--to", "godot3", "--out", "out/{name}.tscn", "--tolerance", "0.1", "--report", "json")
+(told,) = json.loads(done.stdout)["inputs"]
+assert [(body["name"], body["out"]) for body in told["bodies"]] == [("el", "out/el.tscn"), ("disc", "out/disc.tscn")], told
+for name, pieces in ("el", told["bodies"][0]["pieces"]), ("disc", 1):
+    with open(f"out/{name}.tscn", encoding="utf-8") as file:
+        assert file.read().count('type="CollisionShape2D"') == pieces
+kept = sorted(os.listdir("out"))
+assert "absent/el.json: No such file" in narc(2, "fit", "el.csv", "--arcs", "3", "--out", "absent/{name}.json").stderr
+with open("twins.json", "w", encoding="utf-8") as file:
+    json.dump({"shapes": [{"name": "a:b", "circle": 1}, {"name": "a?b", "circle": 1}]}, file)
+assert "two outputs are the same file" in narc(2, "export", "twins.json", "--to", "svg", "--out", "out/{name}.svg").stderr
+assert "--report must be json" in narc(2, "export", "all.json", "--to", "svg", "--report", "xml").stderr
+assert sorted(os.listdir("out")) == kept and not os.path.exists("new.json")
+
+os.chdir("/")
+shutil.rmtree(folder)
+print("all checks passed")
