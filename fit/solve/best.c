@@ -21,8 +21,10 @@ struct depth {
 };
 static const struct depth FIRST = {60, 1e-7}, SECOND = {40, 1e-6}, EXCHANGE = {16, 1e-5}, LAST = {60, 1e-8};
 
-/* Who has no hope to be among so many of the best that were found before goes on no further. */
-enum { RANKED_FIRST = 3, RANKED_SECOND = 2 };
+/* Who has no hope to be among so many of the best that were found before goes on no further: with this times the gain of
+ * its last step, or less in a quick search, which also makes exchanges in the best chain alone. */
+enum { RANKED_FIRST = 3, RANKED_SECOND = 2, RANKED_QUICK = 1 };
+static const double HOPE = 100, QUICK_HOPE = 5;
 
 /* Steps take time in proportion to the cube of the arcs or so: of more arcs there are fewer. */
 static unsigned count_steps(struct depth depth, size_t arcs) {
@@ -229,7 +231,8 @@ static bool refine_all(narc_search *search, struct pool *source, struct depth de
 }
 
 static void exchange_best(narc_search *search, const narc_effort *effort, struct pool *best) {
-    for (size_t k = 0; k < EXCHANGERS && k < best->count && search->problem.count > 3; k++) {
+    const size_t exchangers = effort->quick ? 1 : EXCHANGERS;
+    for (size_t k = 0; k < exchangers && k < best->count && search->problem.count > 3; k++) {
         narc_candidate item = best->items[k];
         for (size_t round = 0; round < effort->exchanges && try_exchanges(search, &item); round++) {
         }
@@ -250,15 +253,16 @@ static bool search_all(narc_search *search, const narc_effort *effort, const nar
     struct pool first = {.room = effort->starts, .items = items};
     struct pool near = {.room = count_near(effort->starts), .items = first.items + first.room};
     struct pool second = {.room = count_best(effort->starts), .items = near.items + near.room};
+    const size_t ranked = effort->quick ? RANKED_QUICK : RANKED_FIRST;
     for (size_t k = 0; k < known_count; k++)
         (known[k].count == search->problem.count ? enter_whole : enter_splits)(search, &known[k], &near, best);
     if (best->count && narc_is_perfect(&search->problem, best->items[0].value))
         return true;
     if (!search->progress->cancelled && first.room && !enter_starts(search, effort->round, &first))
         return false;
-    if (!search->progress->cancelled && refine_all(search, &near, FIRST, RANKED_FIRST, &second) &&
-        refine_all(search, &first, FIRST, RANKED_FIRST, &second) &&
-        refine_all(search, &second, SECOND, RANKED_SECOND, best))
+    if (!search->progress->cancelled && refine_all(search, &near, FIRST, ranked, &second) &&
+        refine_all(search, &first, FIRST, ranked, &second) &&
+        refine_all(search, &second, SECOND, effort->quick ? RANKED_QUICK : RANKED_SECOND, best))
         exchange_best(search, effort, best);
     for (size_t k = 0; k < second.count; k++) /* what a cancelled search has found so far */
         enter(best, &second.items[k]);
@@ -277,6 +281,7 @@ narc_status narc_find_best(const narc_problem *problem, const narc_effort *effor
     const narc_status status = narc_open_search(&search, problem, progress, error);
     if (status != NARC_OK)
         return status;
+    search.hope = effort->quick ? QUICK_HOPE : HOPE;
     narc_candidate *items =
         malloc((effort->starts + count_near(effort->starts) + count_best(effort->starts)) * sizeof *items);
     struct pool best = {.room = MOST_RANKED, .items = out_best->items};

@@ -36,8 +36,7 @@ static const double BOX_TURN = 0.3, BOX_LENGTH = 1, LEAST_BOX = 1e-5;
  * are so many times as many. The caller is asked whether to go on after some steps. */
 enum { PATIENCE = 2, BARE_STEPS = 4, STEPS_OF_A_REPORT = 8 };
 
-/* After some steps, those that follow a whole one gain at most this times as much, together. */
-static const double HOPE = 100;
+/* After so many steps those that follow a whole one gain at most some times as much, together. */
 enum { HOPEFUL_STEPS = 2 };
 
 /* A bound on an arc: it turns by more than nothing, and not by too much, and its radius is neither too large nor too
@@ -468,7 +467,7 @@ void narc_refine(narc_search *search, narc_candidate *best, unsigned steps, doub
         const double gained = best->value - next.value;
         idle = gained < gain * best->value ? idle + 1 : 0;
         *best = next;
-        if (step >= HOPEFUL_STEPS && share == 1 && best->value - HOPE * gained > target)
+        if (step >= HOPEFUL_STEPS && share == 1 && best->value - search->hope * gained > target)
             break;
     }
 }

@@ -33,6 +33,7 @@ typedef struct narc_search {
     narc_programme programme;
     narc_quadratic quadratic;
     narc_progress *progress;
+    double hope; /* of narc_refine(): how many times its last gain a chain may still gain */
 } narc_search;
 
 narc_status narc_open_search(narc_search *search, const narc_problem *problem, narc_progress *progress,
