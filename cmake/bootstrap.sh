@@ -55,7 +55,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs" CMAKE_GEN
 
 # ---------------------------------------------------------------------------- packages
 library_packages="gcc libc6-dev ninja-build cmake pkg-config libsleef-dev"
-fit_packages="g++ libfreetype-dev librsvg2-dev libdxflib-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
+fit_packages="g++ libfreetype-dev librsvg2-dev libdxflib-dev libpng-dev libcjson-dev"
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libccd-dev libgeos-dev"
