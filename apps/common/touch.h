@@ -101,19 +101,27 @@ static inline touch_end meet_arcs(const touch_grain *a, const touch_grain *b, do
 /* As find_touch(), of whatever touches. */
 void find_any_touch(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature, touch *out);
 
-/* `x`, `y` is where B is from A, `feature` what touches, as of narc_contact. Of what is not there nothing is set.
- *
- * Most contacts are of two arcs, one of which has no edges beside it: these touch in one point, and the two circles
- * tell it in a few flops. A law's loop has that without a call. */
-static inline void find_touch(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature,
-                              touch *out) {
+/* Most contacts are of two arcs, one of which has no edges beside it: these touch in one point, and the two circles
+ * tell it in a few flops. A law's loop has that without a call. `x`, `y` is where B is from A, `feature` what touches, as of
+ * narc_contact. False: it is none of these. */
+static inline bool find_point(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature,
+                              touch_end *out) {
     const touch_side *s = &a->sides[feature & 0x3f], *r = &b->sides[feature >> 8 & 0x3f];
     if ((feature & (NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8)) != 0 || (s->has_edge && r->has_edge) ||
-        signbit(r->radius)) {
+        signbit(r->radius))
+        return false;
+    *out = meet_arcs(a, b, x, y, s, r);
+    return true;
+}
+
+/* Of all contacts. Of what is not there nothing is set. */
+static inline void find_touch(const touch_grain *a, const touch_grain *b, double x, double y, unsigned feature,
+                              touch *out) {
+    touch_end end;
+    if (find_point(a, b, x, y, feature, &end))
+        put_point(end, out);
+    else
         find_any_touch(a, b, x, y, feature, out);
-        return;
-    }
-    put_point(meet_arcs(a, b, x, y, s, r), out);
 }
 
 /* A contact of a part of A with a part of B: where each is from the centre of A, and a number that no other part has. */

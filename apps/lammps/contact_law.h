@@ -169,12 +169,13 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
 }
 
 /* At the deepest end. */
-[[gnu::noinline]] inline void add_cohesion(const ContactLaw &law, const Contact &c, Force &sum) {
+[[gnu::noinline]] inline Force add_cohesion(const ContactLaw &law, Contact c, Force sum) {
     const double beyond = std::min(c.end.depth, 0.0) + law.range, gap = beyond / law.range;
     const double arm_a[2] = {c.end.x, c.end.y}, arm_b[2] = {c.end.x - c.way_x, c.end.y - c.way_y};
     const double pull = law.cohesion * gap;
     add_force(sum, pull * c.end.normal_x, pull * c.end.normal_y, arm_a, arm_b);
     sum.energy -= law.cohesion * (0.5 * gap * beyond + std::max(c.end.depth, 0.0));
+    return sum;
 }
 
 /* The force of a contact. `slip` is its memory; it moves on by `step` of time, and not at all if `step` is 0.
@@ -254,7 +255,7 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
     if (law.rolling > 0)
         add_rolling(law, c, stiffening, push, step, slip.angle, sum);
     if (law.cohesion > 0 && c.leads)
-        add_cohesion(law, c, sum);
+        sum = add_cohesion(law, c, sum);
     sum.point_x = x;
     sum.point_y = y;
     sum.normal_x = normal_x;

@@ -236,9 +236,24 @@ void FixNarcShapes::number_rows() {
 
 narc_bodies FixNarcShapes::bodies() {
     rows.resize(row_atom.size());
-    for (size_t row = 0, i = 0; row < rows.size(); i++)
-        for (size_t part = 0; part < form(static_cast<int>(i)).parts.size(); part++)
-            rows[row++] = body(static_cast<int>(i), part);
+    row_outline.resize(rows.size());
+    for (int row = 0, i = 0; row < static_cast<int>(rows.size()); i++) {
+        const unsigned index = form_index(i);
+        const std::vector<narc_lammps::Part> &parts = forms[index].parts;
+        const double *x = atom->x[i], *mu = atom->mu[i], scale = atom->radius[i] / forms[index].reach;
+        narc_body *body = &rows[static_cast<size_t>(row)];
+        touch_grain *outline = &row_outline[static_cast<size_t>(row)];
+        row += static_cast<int>(parts.size());
+        for (uint32_t part = 0; part < parts.size(); part++) {
+            body[part] = {x[0],
+                          x[1],
+                          static_cast<float>(mu[0]),
+                          static_cast<float>(mu[1]),
+                          static_cast<float>(scale),
+                          first_part[index] + part};
+            outline[part] = {parts[part].sides.data(), parts[part].sides.size(), mu[0], mu[1], scale};
+        }
+    }
     narc_bodies bodies;
     narc_view_bodies(rows.data(), rows.size(), &bodies);
     return bodies;

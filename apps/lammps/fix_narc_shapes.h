@@ -70,6 +70,7 @@ class FixNarcShapes : public Fix {
     void number_rows();
     narc_bodies bodies();
     std::vector<uint32_t> row_atom, first_row; /* the atom of a row, an atom's first row */
+    std::vector<touch_grain> row_outline;      /* as bodies() has found it */
     size_t row_part(uint32_t row) const { return row - first_row[row_atom[row]]; }
 
     narc_shapes *store = nullptr;

@@ -265,10 +265,8 @@ void PairNarc::find_contacts() {
     contact.b = {v_b[0], v_b[1], atom->omega[b][2]};
     const double mass_a = atom->rmass[a], mass_b = atom->rmass[b];
     contact.mass = mass_a * mass_b / (mass_a + mass_b);
-    if (atom->mask[a] & frozen)
-        contact.mass = mass_b;
-    if (atom->mask[b] & frozen)
-        contact.mass = mass_a;
+    if ((atom->mask[a] | atom->mask[b]) & frozen)
+        contact.mass = atom->mask[b] & frozen ? mass_a : mass_b;
     contact.radius = 0;
     if (by.hertz || by.rolling > 0) {
         const double radius_a = shapes->equal_radius(a), radius_b = shapes->equal_radius(b);
@@ -312,31 +310,39 @@ void PairNarc::apply_discs(double step) {
 /* What the library has found may be apart after all. The contacts of two grains follow each other: those of one surface are
  * one, and if what bears its load changes the spring goes along. */
 void PairNarc::apply_others(double step) {
+    const uint32_t *row_a = first.data() + disc_pairs, *row_b = second.data() + disc_pairs;
+    const uint32_t *row_atom = shapes->row_atom.data();
+    const touch_grain *outlines = shapes->row_outline.data();
     for (size_t k = 0, next; k < found_count; k = next) {
-        const uint32_t *row_a = &first[disc_pairs], *row_b = &second[disc_pairs];
-        const int a = static_cast<int>(shapes->row_atom[row_a[contacts[k].pair]]);
-        const int b = static_cast<int>(shapes->row_atom[row_b[contacts[k].pair]]);
+        const uint32_t pair = contacts[k].pair, p = row_a[pair], q = row_b[pair], a = row_atom[p], b = row_atom[q];
+        const int i = static_cast<int>(a), j = static_cast<int>(b);
         const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
-        parts.clear();
-        for (next = k; next < found_count; next++) {
-            const uint32_t pair = contacts[next].pair, p = row_a[pair], q = row_b[pair];
-            if (shapes->row_atom[p] != static_cast<uint32_t>(a) || shapes->row_atom[q] != static_cast<uint32_t>(b))
+        for (next = k + 1; next < found_count; next++)
+            if (row_atom[row_a[contacts[next].pair]] != a || row_atom[row_b[contacts[next].pair]] != b)
                 break;
-            parts.push_back(
-                {shapes->outline(a, shapes->row_part(p)), shapes->outline(b, shapes->row_part(q)), x, y, p, q, {}});
+        touch_end end;
+        if (next == k + 1 && find_point(&outlines[p], &outlines[q], x, y, contacts[k].feature, &end)) {
+            apply_contact(static_cast<uint32_t>(disc_pairs) + pair, i, j,
+                          {end, end.depth, 1, true, nullptr, x, y, {}, {}, 0, 0}, step);
+            continue;
+        }
+        parts.clear();
+        for (size_t m = k; m < next; m++) {
+            const uint32_t r = row_a[contacts[m].pair], s = row_b[contacts[m].pair];
+            parts.push_back({outlines[r], outlines[s], x, y, r, s, {}});
             touch_parts &now = parts.back();
-            find_touch(&now.a, &now.b, x, y, contacts[next].feature, &now.at);
+            find_touch(&now.a, &now.b, x, y, contacts[m].feature, &now.at);
             if (!(now.at.depth > -range))
                 now.at.count = 0;
         }
         narc_lammps::Springs *of_pairs = &springs[disc_pairs];
         if (parts.size() > 1)
-            narc_lammps::join_contacts(parts, [&](size_t i) { return &of_pairs[contacts[k + i].pair]; });
-        for (size_t i = 0; i < parts.size(); i++) {
-            const touch &at = parts[i].at;
+            narc_lammps::join_contacts(parts, [&](size_t m) { return &of_pairs[contacts[k + m].pair]; });
+        for (size_t m = 0; m < parts.size(); m++) {
+            const touch &at = parts[m].at;
             if (at.count > 0)
                 apply_contact(
-                    static_cast<uint32_t>(disc_pairs) + contacts[k + i].pair, a, b,
+                    static_cast<uint32_t>(disc_pairs) + contacts[k + m].pair, i, j,
                     {at.end[0], at.depth, at.part, at.leads, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0}, step);
         }
     }

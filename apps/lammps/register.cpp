@@ -4,7 +4,6 @@
  */
 #include "register.h"
 
-#include "compute_narc_atom.h"
 #include "compute_narc_contact.h"
 #include "fix_narc_shapes.h"
 #include "fix_nve_narc.h"
@@ -35,6 +34,5 @@ void narc_lammps::register_styles(LAMMPS *lammps) {
     (*lammps->modify->fix_map)["narc/shapes"] = make_fix<FixNarcShapes>;
     (*lammps->modify->fix_map)["narc/nve"] = make_fix<FixNVENarc>;
     (*lammps->modify->fix_map)["wall/narc"] = make_fix<FixWallNarc>;
-    (*lammps->modify->compute_map)["narc/atom"] = make_compute<ComputeNarcAtom>;
     (*lammps->modify->compute_map)["narc/contact"] = make_compute<ComputeNarcContact>;
 }

@@ -34,18 +34,19 @@ typedef vm detour(const struct call *call, const struct pair_indices *indices, i
                   vm open, int32_t number);
 
 /* Settles pairs of a kind, of those with pieces in the lanes `open`, and returns the others. */
-typedef vm settling(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS]);
+typedef vm settling(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k, vm open,
+                    vf margin, const vf item[FIELDS]);
 
 /* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
 typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
-    detour *take;     /* if call->boxes: what comes before all else */
-    triage *settle;   /* what is answered as it is set up; all others go to stage `first` */
-    settling *beside; /* if call->concave: what of them is answered at once, */
-    dropping *drop;   /* and what goes no further; or NULL */
-    int fields;       /* what travels from there on */
+    detour *take;             /* if call->boxes: what comes before all else */
+    triage *settle;           /* what is answered as it is set up; all others go to stage `first` */
+    settling *beside, *above; /* if call->concave: what of them is answered at once, circles, and boxes and capsules, */
+    dropping *drop;           /* and what goes no further; or NULL */
+    int fields;               /* what travels from there on */
     stage *const *stages;
     int first;
     int edged; /* where pairs with edges may begin instead, or 0 */
@@ -163,6 +164,7 @@ struct pieces_met {
     bool fetches;    /* so they are asked for ahead: of B, or of A */
     bool fetches_b;
     int tried, dropped; /* so many may have been dropped, and were */
+    int asked, settled; /* the same of boxes and capsules on edges */
 };
 
 INLINE bool begins_with_piece(const struct call *call, narc_index_column body, narc_index_column shape) {
@@ -199,6 +201,19 @@ INLINE vm drop_some(const struct call *call, dropping *drop, const struct pair_i
     met->tried += COUNT_BITS(vm_bits(open));
     met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
     return kept;
+}
+
+/* To settle pairs by their forms is worth a try if one in four is. */
+INLINE vm settle_some(const struct call *call, const struct course *course, struct queue *queues,
+                      const struct pair_indices *indices, int k, vm open, vf margin, const vf item[FIELDS],
+                      struct pieces_met *met) {
+    if (!course->above || !call->concave || call->batch->shapes->box_count == 0 || !vm_any(open) ||
+        (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
+        return open;
+    const vm left = course->above(call, queues, indices, k, open, margin, item);
+    met->asked += COUNT_BITS(vm_bits(open));
+    met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
+    return left;
 }
 
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
@@ -244,7 +259,8 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces)) {
                 if (course->beside && call->concave && vm_any(open))
-                    open = course->beside(call, queues, open, circles.margin, item);
+                    open = course->beside(call, queues, &indices, k, open, circles.margin, item);
+                open = settle_some(call, course, queues, &indices, k, open, circles.margin, item, &met);
                 open = drop_some(call, course->drop, &indices, k, open, item, &met);
             }
             if (queues && vm_any(open)) {

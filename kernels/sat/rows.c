@@ -24,6 +24,7 @@
 #include "piece/beside.inl"
 #include "piece/circles_beside.inl"
 #include "piece/concave_detour.inl"
+#include "piece/edges_below.inl"
 #include "piece/pieces.inl"
 #include "sat/answers.inl"
 #include "sat/search.inl"
@@ -53,10 +54,31 @@ static void answer_rows(const struct call *call, struct queue *queues, int begin
     answer_settled(call, queues, begin, false);
 }
 
-static vm settle_circles(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS]) {
+NOINLINE vm settle_circles(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
+                           vm open, vf margin, const vf item[FIELDS]) {
+    (void)indices, (void)k;
     const vm left = settle_circles_beside(call, queues, open, margin, item);
     if (queues[ANSWER].count >= FLUSH)
         run_stage(call, answer_rows, queues, ANSWER);
+    return left;
+}
+
+static void answer_settled_rows(const struct call *call, struct queue *queues) {
+    const bool edges = call->question->kind == MANIFOLD_ROWS;
+    if (queues[ANSWER].count >= FLUSH)
+        run_stage(call, answer_rows, queues, ANSWER);
+    if (edges && queues[ANSWER_EDGES].count >= FLUSH)
+        run_stage(call, call->question->edges, queues, ANSWER_EDGES);
+}
+
+NOINLINE vm settle_above(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
+                         vm open, vf margin, const vf item[FIELDS]) {
+    const vm left = settle_above_edges(call, queues, indices, k, open, margin, item);
+    answer_settled_rows(call, queues);
+    if (queues[DECIDE].count >= FLUSH) {
+        run_stage(call, NARC_NAMED(search).stages[DECIDE], queues, DECIDE);
+        answer_settled_rows(call, queues);
+    }
     return left;
 }
 
@@ -91,6 +113,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
                                   .beside = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_circles : NULL,
+                                  .above = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_above : NULL,
                                   .drop = drops ? drop_beside : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,

@@ -344,6 +344,68 @@ TEST(test_circles_at_junctions) {
     }
 }
 
+/* Lines, and corners and arcs between them that turn to one side, many of them hardly. */
+static struct ground_bodies *begin_lines(struct test_random *random, size_t bodies) {
+    struct ground_bodies *g = begin_chain(0, 0, random_between(random, -PI, PI));
+    const size_t lines = 1 + random_below(random, 3);
+    for (size_t k = 0; k < lines; k++) {
+        walk_line(&g->walk, random_log_between(random, 0.3, 4));
+        const double turn = random_below(random, 3) ? random_log_between(random, 1e-5, 1e-3) : 0.15;
+        walk_arc(&g->walk, random_below(random, 2) ? 0 : random_log_between(random, 0.1, 2), turn);
+    }
+    walk_line(&g->walk, 1);
+    walk_arc(&g->walk, 0, 0);
+    place_chain(g, NULL, bodies, ENTRIES * bodies);
+    return g;
+}
+
+/* Boxes and capsules on edges and near their ends, a side along them or nearly, or a corner. Between the normals of an edge
+ * and of a side there may be that of the next edge. */
+TEST(test_sides_on_edges) {
+    enum { BODIES = 200 };
+    struct test_random random = test_random_named("sides on edges");
+    for (size_t round = 0; round < test_trials(120); round++) {
+        struct ground_bodies *g = begin_lines(&random, BODIES);
+        for (uint32_t k = 0; k < BODIES; k++) {
+            const double x = random_log_between(&random, 0.05, 1), y = random_log_between(&random, 0.05, 1);
+            const double radius = random_below(&random, 2) ? 0 : random_log_between(&random, 0.02, 1);
+            const struct shape capsule = {.count = 2,
+                                          .arcs = {{x, 0, y, -PI / 2, PI / 2}, {-x, 0, y, PI / 2, 3 * PI / 2}}};
+            const struct shape box = box_of(2 * (x + radius), 2 * (y + radius), radius);
+            const struct shape shape = random_below(&random, 3) ? box : capsule;
+            const narc_arc *near = &g->chain.arcs[1 + random_below(&random, g->chain.count - 1)];
+            const double c = cos(near->start), s = sin(near->start), sign = random_below(&random, 2) ? 1 : -1;
+            const double length = hypot(near->center_x - near[-1].center_x, near->center_y - near[-1].center_y);
+            const double tilt = random_below(&random, 4)   ? sign * random_log_between(&random, 1e-8, 1e-3)
+                                : random_below(&random, 2) ? random_between(&random, -PI, PI)
+                                                           : 0;
+            const double turned = near->start + (double)random_below(&random, 4) * PI / 2 + tilt;
+            const double back = random_below(&random, 2)
+                                    ? random_between(&random, 0, length)
+                                    : (x + radius) * (1 + sign * random_log_between(&random, 1e-7, 1));
+            struct body body = turned_body(turned, 1);
+            body.shape = scene_add_shape(&g->scene, &shape);
+            double reach = 0; /* towards the edge */
+            for (size_t i = 0; i < shape.count; i++) {
+                const narc_arc *arc = &shape.arcs[i];
+                reach = fmax(reach, arc->radius - cos(turned - near->start) * arc->center_x +
+                                        sin(turned - near->start) * arc->center_y);
+            }
+            const double above =
+                reach + near->radius + (random_below(&random, 2) ? sign : 1) * random_log_between(&random, 1e-8, x + y);
+            body.x = near->center_x + above * c + back * s;
+            body.y = near->center_y + above * s - back * c;
+            const uint32_t mover = scene_add_body(&g->scene, body);
+            for (uint32_t e = 0; e < g->entry_count; e++)
+                scene_add_pair(&g->scene, (e + k) % 2 ? e : mover, (e + k) % 2 ? mover : e);
+        }
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        check_formula(g, &right);
+        free(right.rows);
+        end_chain(g);
+    }
+}
+
 /* In a vector with a circle on a run there are pairs of others: nothing is read behind the last shape of all. */
 TEST(test_last_shape_beside_runs) {
     enum { PAIRS = 64 };

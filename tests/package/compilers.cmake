@@ -53,11 +53,17 @@ list(REMOVE_ITEM files methods/kernels.c)
 foreach(file IN LISTS files)
   compile(${file})
 endforeach()
-file(GLOB files RELATIVE "${SOURCE}" "${SOURCE}/kernels/*.c" "${SOURCE}/kernels/*/*.c"
+file(GLOB kernels RELATIVE "${SOURCE}" "${SOURCE}/kernels/*.c" "${SOURCE}/kernels/*/*.c"
   "${SOURCE}/methods/kernels.c")
+# All for AVX2. What another instruction set has of its own is the header that rows.c has, too.
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^NARC_ISA\\(([a-z0-9]+), .*\"([^\"]*)\"\\)$" matched "${line}")
   separate_arguments(flags UNIX_COMMAND "${CMAKE_MATCH_2}")
+  if(NOT CMAKE_MATCH_1 STREQUAL "avx2")
+    set(files kernels/sat/rows.c)
+  else()
+    set(files ${kernels})
+  endif()
   foreach(file IN LISTS files)
     compile(${file} ${flags} -DNARC_ISA_NAME=${CMAKE_MATCH_1} "-DNARC_SIMD=\"simd/${CMAKE_MATCH_1}.h\"")
   endforeach()

@@ -5,6 +5,7 @@ set(toolchain "${CMAKE_TOOLCHAIN_FILE}")
 if(toolchain)
   get_filename_component(toolchain "${toolchain}" ABSOLUTE BASE_DIR "${PROJECT_SOURCE_DIR}")
 endif()
+find_program(PKG_CONFIG_EXECUTABLE pkg-config) # a build without SLEEF has not looked for it
 set(package_script ${CMAKE_COMMAND} "-DSOURCE=${PROJECT_SOURCE_DIR}" "-DBUILD=${PROJECT_BINARY_DIR}" "-DWORK=${work}"
   "-DCONFIG=$<CONFIG>" "-DC_COMPILER=${CMAKE_C_COMPILER}" "-DFLAGS=${CMAKE_C_FLAGS}" "-DGENERATOR=${CMAKE_GENERATOR}"
   "-DTOOLCHAIN=${toolchain}" "-DSLEEF=${NARC_SLEEF}" "-DPKG_CONFIG=${PKG_CONFIG_EXECUTABLE}")
