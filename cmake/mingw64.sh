@@ -72,9 +72,6 @@ sed "s|/usr/$host|$prefix|" /usr/$host/lib/pkgconfig/zlib.pc >"$prefix/lib/pkgco
 by_cmake cjson -DCMAKE_C_FLAGS=-DCJSON_HIDE_SYMBOLS -DENABLE_CUSTOM_COMPILER_FLAGS=OFF -DENABLE_CJSON_TEST=OFF -DBUILD_SHARED_AND_STATIC_LIBS=OFF
 by_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF
 by_cmake freetype -DFT_DISABLE_HARFBUZZ=ON -DFT_DISABLE_BROTLI=ON -DFT_DISABLE_BZIP2=ON -DFT_DISABLE_PNG=ON
-by_cmake nlopt -DNLOPT_PYTHON=OFF -DNLOPT_OCTAVE=OFF -DNLOPT_MATLAB=OFF -DNLOPT_GUILE=OFF -DNLOPT_SWIG=OFF -DNLOPT_CXX=OFF
 by_configure pixman . pixman --disable-gtk --disable-libpng
 by_configure cairo . src --disable-ft --disable-fc --disable-ps --disable-pdf --disable-gobject --disable-trace --disable-interpreter
-by_configure coinutils CoinUtils src --without-blas --without-lapack --without-glpk F77=unavailable
-by_configure clp Clp src --without-blas --without-lapack --without-glpk F77=unavailable
 touch "$prefix/complete"

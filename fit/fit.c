@@ -103,6 +103,10 @@ static narc_status check_request(const narc_path *path, const narc_fit_request *
         return narc_fail(error, NARC_ERROR_COUNT, 0, request->starts, "%u starts, but the most is %d", request->starts,
                          MOST_STARTS);
     }
+    if (request->quick && request->starts) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->starts, "a quick fit chooses its starts, not %u",
+                         request->starts);
+    }
     if (!(request->min_radius >= 0 && isfinite(request->min_radius))) {
         return narc_fail(error, NARC_ERROR_SIZE, 0, request->min_radius, "the least radius %g is not a length",
                          request->min_radius);
@@ -513,6 +517,7 @@ static void begin_round(struct job *job, size_t index) {
     const size_t quick = count_quick_rounds(job->request->starts);
     narc_clear_ladder(&job->ladder);
     job->ladder.starts = index < quick ? 1u << index : index == quick ? 0 : USUAL_STARTS;
+    job->ladder.quick = job->request->quick;
     job->ladder.round = index < quick ? 0 : (unsigned)(index - quick);
 }
 

@@ -25,8 +25,7 @@
  * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
  * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On an
  * error the outputs are untouched. Where memory runs out it is NARC_ERROR_MEMORY, except in narc_read_svg(): librsvg
- * and GLib end the process. (What CLP, which a fit uses, has of memory when it runs out is not released.) Units and
- * directions are those of narc_shapes.h: y points up, counter-clockwise.
+ * and GLib end the process. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
  *
  * Example
  *
@@ -235,7 +234,8 @@ typedef struct narc_fit_request {
                            corner is an arc of radius 0. Not for polygons and the paper's route */
     bool keep_origin;   /* arcs keep the path's coordinates, in double precision, and result.origin is 0, 0. A store
                            rounds them more far from there; a bounding shape is larger by that */
-    unsigned starts;    /* of the local search; 0: the usual number, 56 or less. The best is kept of searches from 1, 2,
+    bool quick; /* a short search, for editors: areas are mostly within 1 % of the usual ones. `starts` must be 0 */
+    unsigned starts; /* of the local search; 0: the usual number, 56 or less. The best is kept of searches from 1, 2,
                            4, 8, 16 and 32 starts, as far as that is not more than `starts`, and from 56 on of the usual
                            one and others of its size, starts / 56 in all. So more take longer, often find better, and
                            never worse; 56 or more never find worse than 0 does */

@@ -24,7 +24,7 @@
 static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
-    "                [--min-radius R] [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
+    "                [--min-radius R] [--quick|--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
     "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
@@ -62,8 +62,8 @@ static const char HELP[] =
     "                  perimeter     with --bound only: the shape's perimeter\n"
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
-    "  --edges         straight edges may stand between arcs, as in parts that smooth arcs do not reach\n"
-    "  --no-edges      not in these either, nor plain shapes with a tolerance\n"
+    "  --edges         straight edges may stand between arcs; the default of --parts\n"
+    "  --no-edges      not in parts either, nor plain shapes with a tolerance\n"
     "  --polygon       to compare: a bounding polygon of least area\n"
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
 static const char MORE_HELP[] =
@@ -80,6 +80,7 @@ static const char MORE_HELP[] =
     "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
     "                  1e-9 to 0.1, default 2e-5\n"
     "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
+    "  --quick         a short search: areas are mostly within 1 % of the usual ones\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
     "  --keep-origin   the shapes keep the input's coordinates\n"
     "  --chain         instead of convex shapes: the outline itself as closed chains, within\n"
@@ -112,6 +113,7 @@ enum {
     READING,
     FLATNESS = READING + READING_OPTIONS,
     MIN_RADIUS,
+    QUICK,
     STARTS,
     CHAIN,
     OPEN,
@@ -140,11 +142,12 @@ static void check_combinations(const option *options) {
     exclude(&options[POLYGON], &options[PAPER], families);
     exclude(&options[NO_EDGES], &options[EDGES], families);
     exclude(&options[NO_EDGES], &options[POLYGON], families);
+    exclude(&options[QUICK], &options[STARTS], "a quick search chooses its starts");
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
     for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    static const int of_hulls[] = {ARCS,    PARTS, BOUND,    APPROXIMATE, OBJECTIVE,   EDGES,
-                                   POLYGON, PAPER, FLATNESS, STARTS,      KEEP_ORIGIN, NO_EDGES};
+    static const int of_hulls[] = {ARCS,  PARTS,    BOUND, APPROXIMATE, OBJECTIVE,   EDGES,   POLYGON,
+                                   PAPER, FLATNESS, QUICK, STARTS,      KEEP_ORIGIN, NO_EDGES};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
         exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
     if (options[OPEN].value && !options[CHAIN].value)
@@ -157,8 +160,8 @@ static void check_combinations(const option *options) {
         return;
     if (!options[PARTS].value)
         fail("--arcs or --tolerance is missing");
-    static const int of_fits[] = {BOUND,   APPROXIMATE, OBJECTIVE, EDGES,      NO_EDGES,
-                                  POLYGON, PAPER,       FLATNESS,  MIN_RADIUS, STARTS};
+    static const int of_fits[] = {BOUND, APPROXIMATE, OBJECTIVE,  EDGES, NO_EDGES, POLYGON,
+                                  PAPER, FLATNESS,    MIN_RADIUS, QUICK, STARTS};
     for (size_t k = 0; k < sizeof of_fits / sizeof of_fits[0]; k++)
         if (options[of_fits[k]].value)
             fail("%s is for fits: --parts alone, without --arcs or --tolerance, cuts the outline exactly",
@@ -191,7 +194,8 @@ static narc_fit_request make_request(const option *options) {
     static const narc_fit_family families[] = {
         [EDGES] = NARC_FIT_EDGES, [POLYGON] = NARC_FIT_POLYGON, [PAPER] = NARC_FIT_PAPER};
     check_combinations(options);
-    narc_fit_request request = {.goal = choose_goal(options), .family = NARC_FIT_N_ARC};
+    const bool edges = options[PARTS].value && !options[NO_EDGES].value; /* cuts are straight */
+    narc_fit_request request = {.goal = choose_goal(options), .family = edges ? NARC_FIT_EDGES : NARC_FIT_N_ARC};
     for (int k = EDGES; k <= PAPER; k++)
         request.family = options[k].value ? families[k] : request.family;
     if (options[ARCS].value) {
@@ -201,6 +205,7 @@ static narc_fit_request make_request(const option *options) {
     request.tolerance = number_option(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0", 0);
     request.min_radius = number_option(&options[MIN_RADIUS], DBL_MIN, DBL_MAX, "more than 0", 0);
     request.keep_origin = options[KEEP_ORIGIN].value;
+    request.quick = options[QUICK].value;
     if (options[STARTS].value)
         request.starts = (unsigned)whole_option(&options[STARTS], 1, 10000);
     return request;
@@ -237,7 +242,7 @@ static double measure_extent(const outline *of) {
 typedef struct fitting {
     narc_fit_request request;
     size_t parts;       /* at most; 0: the hull */
-    bool no_edges;      /* also in parts that smooth arcs do not come near */
+    bool no_edges;      /* no plain shapes either */
     double flatness;    /* relative to an outline's extent; 0: the usual one */
     narc_shapes *store; /* takes what a file must be able to bring there */
     stage at;
@@ -266,12 +271,6 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
         request.family = family;
         if (status == NARC_ERROR_NO_SOLUTION && may_be_plain)
             status = narc_fit_path(paths[how->at.part], &request, fit, error);
-        if (status == NARC_ERROR_NO_SOLUTION && how->parts && !how->no_edges && request.family == NARC_FIT_N_ARC) {
-            request.family = NARC_FIT_EDGES;
-            status = narc_fit_path(paths[how->at.part], &request, fit, error);
-            request.family = NARC_FIT_N_ARC;
-            out->unasked += status == NARC_OK && fit->edge_count > 0;
-        }
         if (status != NARC_OK || narc_add_shape(how->store, fit->arcs, fit->arc_count, NULL, error) != NARC_OK)
             return false;
         out->distance = fmax(out->distance, fit->max_distance);
@@ -478,10 +477,6 @@ static void print_parts(FILE *file, const outline_list *outlines, const collider
         fprintf(file, " %5zu %5zu %5zu %11.6g %12.6g %8.5f %12.4g %8.2f\n", f->count, arcs, edges, f->area,
                 f->outline_area, f->area / f->outline_area, f->distance, f->seconds);
     }
-    for (size_t i = 0; i < outlines->count; i++)
-        if (fits[i].unasked)
-            fprintf(file, "smooth arcs do not come near enough, straight edges do: %zu of the parts of %s\n",
-                    fits[i].unasked, outlines->items[i].name);
 }
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
@@ -633,6 +628,7 @@ static void run(int argc, char **argv) {
                                [NO_EDGES] = {"--no-edges", false, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
+                               [QUICK] = {"--quick", false, NULL},
                                [STARTS] = {"--starts", true, NULL},
                                [CHAIN] = {"--chain", false, NULL},
                                [OPEN] = {"--open", false, NULL},

@@ -15,7 +15,6 @@ typedef struct collider {
     size_t count;
     /* Of parts: the area that all cover, that of the outline, how far they are from it at most. */
     double area, outline_area, distance;
-    size_t unasked; /* how many of them have edges that were not asked for */
     double seconds;
 } collider;
 

@@ -13,26 +13,31 @@
 #include "outline/vector.h"
 #include "solve/starts.h"
 
-/* Rounds of quadratic programming and the gain that is worth another: from each start, from the best quarter, after an
+/* Steps of quadratic programming and the gain that is worth another: from each start, from the best quarter, after an
  * exchange, and for the best. */
 struct depth {
-    unsigned rounds;
+    unsigned steps;
     double gain;
 };
-static const struct depth FIRST = {1, 1e-3}, SECOND = {1, 1e-6}, EXCHANGE = {2, 1e-5}, LAST = {10, 1e-7};
+static const struct depth FIRST = {60, 1e-7}, SECOND = {40, 1e-6}, EXCHANGE = {16, 1e-5}, LAST = {60, 1e-8};
 
-/* Steps take time in proportion to the cube of the arcs or so: of more arcs there are fewer rounds. */
-static unsigned count_rounds(struct depth depth, size_t arcs) {
-    return arcs <= 8 ? depth.rounds : (unsigned)((8 * depth.rounds + arcs - 1) / arcs);
+/* Who has no hope to be among so many of the best that were found before goes on no further: with this times the gain of
+ * its last step, or less in a quick search, which also makes exchanges in the best chain alone. */
+enum { RANKED_FIRST = 3, RANKED_SECOND = 2, RANKED_QUICK = 1 };
+static const double HOPE = 100, QUICK_HOPE = 5;
+
+/* Steps take time in proportion to the cube of the arcs or so: of more arcs there are fewer. */
+static unsigned count_steps(struct depth depth, size_t arcs) {
+    return arcs <= 8 ? depth.steps : (unsigned)((8 * depth.steps + arcs - 1) / arcs);
 }
 
-static void refine(narc_search *search, narc_candidate *item, struct depth depth) {
-    narc_refine(search, item, count_rounds(depth, search->problem.count), depth.gain);
+static void refine(narc_search *search, narc_candidate *item, struct depth depth, double target) {
+    narc_refine(search, item, count_steps(depth, search->problem.count), depth.gain, target);
 }
 
 /* An exchange tries all pairs of a junction that seems needed least and an arc that seems to need another most, so many
  * of each, and goes on from the best few. The best few chains are treated so as long as it helps. */
-enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 2 };
+enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 3 };
 
 /* Chains of fewer arcs are split in all places, others where another arc is wanted most. */
 enum { SPLIT_EVERYWHERE = 8 };
@@ -144,7 +149,7 @@ static bool try_exchanges(narc_search *search, narc_candidate *best) {
     }
     const double value = best->value;
     for (size_t k = 0; k < promising.count; k++) {
-        refine(search, &promising.items[k], EXCHANGE);
+        refine(search, &promising.items[k], EXCHANGE, value);
         if (promising.items[k].value < best->value)
             *best = promising.items[k];
         if (!narc_advance(search->progress, search->problem.count))
@@ -215,9 +220,9 @@ static void enter_splits(narc_search *search, const narc_chain *known, struct po
     }
 }
 
-static bool refine_all(narc_search *search, struct pool *source, struct depth depth, struct pool *target) {
+static bool refine_all(narc_search *search, struct pool *source, struct depth depth, size_t rank, struct pool *target) {
     for (size_t k = 0; k < source->count; k++) {
-        refine(search, &source->items[k], depth);
+        refine(search, &source->items[k], depth, target->count > rank ? target->items[rank].value : INFINITY);
         enter(target, &source->items[k]);
         if (!narc_advance(search->progress, search->problem.count))
             return false;
@@ -226,7 +231,8 @@ static bool refine_all(narc_search *search, struct pool *source, struct depth de
 }
 
 static void exchange_best(narc_search *search, const narc_effort *effort, struct pool *best) {
-    for (size_t k = 0; k < EXCHANGERS && k < best->count && search->problem.count > 3; k++) {
+    const size_t exchangers = effort->quick ? 1 : EXCHANGERS;
+    for (size_t k = 0; k < exchangers && k < best->count && search->problem.count > 3; k++) {
         narc_candidate item = best->items[k];
         for (size_t round = 0; round < effort->exchanges && try_exchanges(search, &item); round++) {
         }
@@ -247,20 +253,22 @@ static bool search_all(narc_search *search, const narc_effort *effort, const nar
     struct pool first = {.room = effort->starts, .items = items};
     struct pool near = {.room = count_near(effort->starts), .items = first.items + first.room};
     struct pool second = {.room = count_best(effort->starts), .items = near.items + near.room};
+    const size_t ranked = effort->quick ? RANKED_QUICK : RANKED_FIRST;
     for (size_t k = 0; k < known_count; k++)
         (known[k].count == search->problem.count ? enter_whole : enter_splits)(search, &known[k], &near, best);
     if (best->count && narc_is_perfect(&search->problem, best->items[0].value))
         return true;
     if (!search->progress->cancelled && first.room && !enter_starts(search, effort->round, &first))
         return false;
-    if (!search->progress->cancelled && refine_all(search, &near, FIRST, &second) &&
-        refine_all(search, &first, FIRST, &second) && refine_all(search, &second, SECOND, best))
+    if (!search->progress->cancelled && refine_all(search, &near, FIRST, ranked, &second) &&
+        refine_all(search, &first, FIRST, ranked, &second) &&
+        refine_all(search, &second, SECOND, effort->quick ? RANKED_QUICK : RANKED_SECOND, best))
         exchange_best(search, effort, best);
     for (size_t k = 0; k < second.count; k++) /* what a cancelled search has found so far */
         enter(best, &second.items[k]);
     if (!search->progress->cancelled && best->count) {
         narc_candidate last = best->items[0];
-        refine(search, &last, LAST);
+        refine(search, &last, LAST, INFINITY);
         enter(best, &last);
         narc_advance(search->progress, search->problem.count);
     }
@@ -273,10 +281,11 @@ narc_status narc_find_best(const narc_problem *problem, const narc_effort *effor
     const narc_status status = narc_open_search(&search, problem, progress, error);
     if (status != NARC_OK)
         return status;
+    search.hope = effort->quick ? QUICK_HOPE : HOPE;
     narc_candidate *items =
         malloc((effort->starts + count_near(effort->starts) + count_best(effort->starts)) * sizeof *items);
     struct pool best = {.room = MOST_RANKED, .items = out_best->items};
-    const bool searched = items && search_all(&search, effort, known, known_count, items, &best) && !search.no_memory;
+    const bool searched = items && search_all(&search, effort, known, known_count, items, &best);
     free(items);
     narc_close_search(&search);
     out_best->count = best.count;

@@ -22,6 +22,7 @@ typedef struct narc_effort {
     size_t starts;    /* sets of normals, of chains with an arc less, that the local search sets out from */
     size_t exchanges; /* in a row, from each of the best few */
     uint64_t round;   /* which random sets of normals */
+    bool quick;       /* only what is nearest to the best goes on */
 } narc_effort;
 
 /* The most pieces of work that narc_find_best() counts. */

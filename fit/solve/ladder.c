@@ -20,12 +20,15 @@ static size_t least_count(narc_fit_family family) { return family == NARC_FIT_ED
  * Fewer arcs have fewer ways to be placed; and fewer starts of many arcs, whose searches take long. The first start, on
  * the sides of a bounding polygon, is always there: chains that only grow from fewer arcs stay behind it. */
 enum { FEW_ARCS = 8, STARTS_OF_OTHERS = 36 };
-static const size_t STARTS[FEW_ARCS + 1] = {8, 8, 8, 8, 12, 20, 32, 44, USUAL_STARTS};
+static const size_t STARTS[FEW_ARCS + 1] = {8, 8, 8, 8, 12, 12, 24, 32, USUAL_STARTS};
+static const size_t QUICK_STARTS[FEW_ARCS + 1] = {2, 2, 2, 4, 4, 4, 6, 6, 10};
 
 static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *rung) {
     const size_t n = rung->count, starts = ladder->starts;
     if (starts)
         return (narc_effort){n <= MANY_ARCS ? starts : (starts + 3) / 4, .exchanges = 1, .round = ladder->round};
+    if (ladder->quick)
+        return (narc_effort){n <= FEW_ARCS ? QUICK_STARTS[n] : 1, .exchanges = n <= MANY_ARCS, .quick = true};
     const bool plain = rung->family == NARC_FIT_N_ARC && rung->goal == NARC_FIT_BOUND_AREA;
     const size_t most = plain ? USUAL_STARTS : STARTS_OF_OTHERS;
     return n <= FEW_ARCS    ? (narc_effort){.starts = STARTS[n] < most ? STARTS[n] : most, .exchanges = 1}

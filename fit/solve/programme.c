@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * programme.c - linear programmes through the C interface of COIN CLP.
+ * programme.c - linear programmes as quadratic ones with a little curvature, around where the last one ended: the solution
+ * of the first is mostly a corner already that is the linear programme's (its multipliers tell), and if not, the next
+ * ones end at one (the proximal point method, which ends after a few programmes where all rows are linear).
  */
 #include "solve/programme.h"
 
@@ -8,58 +10,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <coin/Clp_C_Interface.h>
+/* Of the first programme, around 0, and of those around the last solution. The less curvature the further a step goes,
+ * and the more is lost in roundings. */
+static const double CURVATURE = 1e-5, LESS_CURVATURE = 1e-7;
+enum { STEPS = 10 };
 
-#include "solve/guard.h"
-
-/* Rows hold to this, in units of the outline's radius. What is left over is repaired exactly afterwards. */
-static const double FEASIBLE = 1e-9;
-
-/* The GNU C library takes a block of this size from the system, and when it is released keeps as much free memory from
- * then on. Otherwise each programme's memory would come from the system and go back: a sixth of a fit's time. */
-enum { LARGE_BLOCK = 1 << 21 };
-
-static void make_model(void *context) {
-    narc_programme *programme = context;
-    programme->model = Clp_newModel();
-    Clp_setLogLevel(programme->model, 0);
-    Clp_setPrimalTolerance(programme->model, FEASIBLE);
-    /* All lengths are near 1. With its own scaling CLP may end at what is an optimum of the scaled problem only. */
-    Clp_scaling(programme->model, 0);
-}
+/* A step that moves by less has ended. */
+static const double STILL = 1e-9;
 
 bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
     *programme = (narc_programme){.columns = columns, .row_capacity = row_capacity};
-    const size_t entries = row_capacity * columns, longer = columns > row_capacity ? columns : row_capacity;
-    double **const arrays[] = {&programme->objective, &programme->lower,     &programme->upper,   &programme->solution,
-                               &programme->row_lower, &programme->row_upper, &programme->entries, &programme->packed};
-    const size_t sizes[] = {columns, columns, columns, columns, row_capacity, row_capacity, entries, entries};
-    const size_t size =
-        (4 * columns + 2 * row_capacity + 2 * entries) * sizeof(double) + (entries + longer + 1) * sizeof(int);
-    double *next = programme->memory = malloc(size > LARGE_BLOCK ? size : LARGE_BLOCK);
-    if (!next)
-        return false;
-    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; next += sizes[k++])
-        *arrays[k] = next;
-    programme->packed_index = (int *)next;
-    programme->packed_start = programme->packed_index + entries;
-    if (!narc_call_guarded(make_model, programme)) {
+    const size_t entries = row_capacity * columns;
+    double **const arrays[] = {&programme->objective, &programme->lower,     &programme->upper,
+                               &programme->solution,  &programme->row_lower, &programme->entries};
+    const size_t sizes[] = {columns, columns, columns, columns, row_capacity, entries};
+    const size_t size = (4 * columns + row_capacity + entries) * sizeof(double);
+    double *next = programme->memory = malloc(size + columns * sizeof *programme->listed);
+    if (!next || !narc_open_quadratic(&programme->quadratic, columns, row_capacity)) {
         narc_close_programme(programme);
         return false;
     }
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; next += sizes[k++])
+        *arrays[k] = next;
+    programme->listed = (size_t *)next;
     narc_clear_programme(programme);
     return true;
 }
 
 void narc_close_programme(narc_programme *programme) {
     free(programme->memory);
-    if (programme->model)
-        Clp_deleteModel(programme->model);
+    narc_close_quadratic(&programme->quadratic);
     *programme = (narc_programme){0};
 }
 
 void narc_clear_programme(narc_programme *programme) {
-    programme->rows = programme->loaded = 0;
+    programme->rows = programme->loaded = programme->equations = 0;
     for (size_t k = 0; k < programme->columns; k++) {
         programme->objective[k] = 0;
         programme->lower[k] = -INFINITY;
@@ -67,78 +52,80 @@ void narc_clear_programme(narc_programme *programme) {
     }
 }
 
-double *narc_add_row(narc_programme *programme, double lower, double upper) {
+double *narc_add_row(narc_programme *programme, double lower, bool is_equation) {
     if (programme->rows == programme->row_capacity)
         return NULL;
     double *row = programme->entries + programme->rows * programme->columns;
     memset(row, 0, programme->columns * sizeof *row);
-    programme->row_lower[programme->rows] = lower;
-    programme->row_upper[programme->rows++] = upper;
+    programme->row_lower[programme->rows++] = lower;
+    programme->equations += is_equation;
     return row;
 }
 
-/* CLP takes its matrix by columns, without zeros. */
 static void load_columns(narc_programme *programme) {
-    int used = 0;
-    for (size_t column = 0; column < programme->columns; column++) {
-        programme->packed_start[column] = used;
-        for (size_t row = 0; row < programme->rows; row++) {
-            const double entry = programme->entries[row * programme->columns + column];
-            if (entry != 0) {
-                programme->packed[used] = entry;
-                programme->packed_index[used++] = (int)row;
-            }
+    narc_quadratic *const q = &programme->quadratic;
+    q->count = q->rows = 0;
+    q->equations = programme->equations;
+    for (size_t c = 0; c < programme->columns; c++) {
+        programme->solution[c] = programme->lower[c];
+        if (programme->lower[c] < programme->upper[c]) {
+            q->lower[q->count] = programme->lower[c];
+            q->upper[q->count] = programme->upper[c];
+            programme->listed[q->count++] = c;
         }
     }
-    programme->packed_start[programme->columns] = used;
-    Clp_loadProblem(programme->model, (int)programme->columns, (int)programme->rows, programme->packed_start,
-                    programme->packed_index, programme->packed, programme->lower, programme->upper,
-                    programme->objective, programme->row_lower, programme->row_upper);
+    memset(q->hessian, 0, q->count * q->count * sizeof *q->hessian);
 }
 
-/* Rows that come later it takes by rows. */
-static void add_rows(narc_programme *programme) {
-    int used = 0;
-    const size_t added = programme->rows - programme->loaded;
-    for (size_t k = 0; k < added; k++) {
-        programme->packed_start[k] = used;
-        const double *row = programme->entries + (programme->loaded + k) * programme->columns;
-        for (size_t column = 0; column < programme->columns; column++) {
-            if (row[column] != 0) {
-                programme->packed[used] = row[column];
-                programme->packed_index[used++] = (int)column;
-            }
-        }
+/* Columns without room are 0 (their bounds are, wherever entries are not). */
+static void load_rows(narc_programme *programme) {
+    narc_quadratic *const q = &programme->quadratic;
+    for (; programme->loaded < programme->rows; programme->loaded++) {
+        const double *const entries = programme->entries + programme->loaded * programme->columns;
+        double *const row = narc_add_quadratic_row(q, -programme->row_lower[programme->loaded]);
+        for (size_t k = 0; k < q->count; k++)
+            row[k] = entries[programme->listed[k]];
     }
-    programme->packed_start[added] = used;
-    Clp_addRows(programme->model, (int)added, programme->row_lower + programme->loaded,
-                programme->row_upper + programme->loaded, programme->packed_start, programme->packed_index,
-                programme->packed);
 }
 
-/* With rows added, the dual method goes on from the last solution. */
-static void solve_model(void *context) {
-    narc_programme *programme = context;
-    Clp_Simplex *model = programme->model;
-    if (programme->loaded == 0)
-        load_columns(programme);
-    else
-        add_rows(programme);
-    programme->loaded = programme->rows;
-    Clp_dual(model, 0);
-    if (Clp_status(model) != 0)
-        Clp_primal(model, 0);
+/* The objective with so much curvature around a place. */
+static void set_objective(narc_programme *programme, double curvature, const double *around) {
+    narc_quadratic *const q = &programme->quadratic;
+    for (size_t k = 0; k < q->count; k++) {
+        q->hessian[k * q->count + k] = curvature;
+        q->gradient[k] = programme->objective[programme->listed[k]] - (around ? curvature * around[k] : 0);
+    }
+}
+
+static void take_solution(narc_programme *programme) {
+    for (size_t k = 0; k < programme->quadratic.count; k++)
+        programme->solution[programme->listed[k]] = programme->quadratic.solution[k];
 }
 
 bool narc_solve_programme(narc_programme *programme) {
-    if (!narc_call_guarded(solve_model, programme)) {
-        programme->no_memory = true;
-        programme->model = NULL; /* CLP leaves it half changed: to delete it may release memory twice */
-        return false;
+    narc_quadratic *const q = &programme->quadratic;
+    const bool is_first = programme->loaded == 0;
+    if (is_first) {
+        load_columns(programme);
+        set_objective(programme, CURVATURE, NULL);
     }
-    if (Clp_status(programme->model) != 0)
+    load_rows(programme);
+    if (!(is_first ? narc_solve_quadratic : narc_solve_more_rows)(q))
         return false;
-    memcpy(programme->solution, Clp_primalColumnSolution(programme->model),
-           programme->columns * sizeof *programme->solution);
+    take_solution(programme);
+    for (unsigned step = 0; step < STEPS; step++) {
+        set_objective(programme, 0, NULL);
+        if (narc_is_linear_optimum(q))
+            break;
+        set_objective(programme, LESS_CURVATURE, q->solution);
+        if (!narc_solve_quadratic(q))
+            return false;
+        double moved = 0;
+        for (size_t k = 0; k < q->count; k++)
+            moved = fmax(moved, fabs(q->solution[k] - programme->solution[programme->listed[k]]));
+        take_solution(programme);
+        if (moved < STILL)
+            break;
+    }
     return true;
 }

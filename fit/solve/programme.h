@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * programme.h - a linear programme, solved by COIN CLP. Internal.
+ * programme.h - a small linear programme. Internal.
  */
 #ifndef NARC_FIT_PROGRAMME_H
 #define NARC_FIT_PROGRAMME_H
@@ -8,19 +8,20 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Least objective.x with lower <= x <= upper and, for each row, row_lower <= row.x <= row_upper. Bounds may be
- * infinite. */
+#include "solve/quadratic.h"
+
+/* Least objective.x with lower <= x <= upper and, for each row, row.x >= row_lower, or equal: rows that are equations
+ * come first. Bounds may be infinite. */
 typedef struct narc_programme {
     size_t columns, rows;
-    void *memory;                            /* of all arrays */
-    double *objective, *lower, *upper;       /* of the columns */
-    double *row_lower, *row_upper, *entries; /* entries[row * columns + column] */
-    size_t row_capacity, loaded;             /* rows that the model has */
+    void *memory;                      /* of all arrays */
+    double *objective, *lower, *upper; /* of the columns */
+    double *row_lower, *entries;       /* entries[row * columns + column] */
+    size_t equations;                  /* the first rows */
+    size_t row_capacity, loaded;       /* rows that the solver has */
     double *solution;
-    void *model; /* a Clp_Simplex */
-    int *packed_index, *packed_start;
-    double *packed;
-    bool no_memory; /* CLP had none: the programme can only be closed */
+    narc_quadratic quadratic; /* solves it: of the columns with room between their bounds, which are listed */
+    size_t *listed;
 } narc_programme;
 
 /* Memory for `columns` columns and at most `row_capacity` rows; false if there is none. */
@@ -31,9 +32,9 @@ void narc_close_programme(narc_programme *programme);
 void narc_clear_programme(narc_programme *programme);
 
 /* A new row of zeros, to be filled in; NULL if there is no room. */
-double *narc_add_row(narc_programme *programme, double lower, double upper);
+double *narc_add_row(narc_programme *programme, double lower, bool is_equation);
 
-/* Fills in `solution`. False if there is none (or no end of it), or no memory. It may be called again with more rows;
+/* Fills in `solution`. False if there is none, or no end of it. It may be called again with more rows;
  * objective and bounds stay until the programme is cleared. */
 bool narc_solve_programme(narc_programme *programme);
 

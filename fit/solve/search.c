@@ -36,7 +36,9 @@ narc_status narc_open_search(narc_search *search, const narc_problem *problem, n
     search->rows = malloc(sizeof *search->rows);
     if (!search->intervals || !search->rows ||
         !narc_open_programme(&search->programme, narc_make_layout(problem->count).count,
-                             2 + problem->count + MAX_ROWS)) {
+                             2 + problem->count + MAX_ROWS) ||
+        !narc_open_quadratic(&search->quadratic, narc_make_layout(problem->count).count,
+                             2 + 4 * problem->count + MAX_ROWS)) {
         narc_close_search(search);
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory to fit %zu arcs to %zu corners",
                          problem->count, problem->hull->count);
@@ -48,6 +50,7 @@ void narc_close_search(narc_search *search) {
     free(search->intervals);
     free(search->rows);
     narc_close_programme(&search->programme);
+    narc_close_quadratic(&search->quadratic);
     *search = (narc_search){0};
 }
 
@@ -75,7 +78,7 @@ static void set_columns(narc_search *search, const narc_chain *chain) {
 /* The programme's row for a condition, which is linear as long as the normals stay. */
 static void add_condition(narc_search *search, const narc_chain *chain, const narc_row *row) {
     const narc_layout layout = narc_make_layout(chain->count);
-    double *entries = narc_add_row(&search->programme, 0, INFINITY);
+    double *entries = narc_add_row(&search->programme, 0, false);
     if (!entries)
         return;
     const double value = narc_evaluate_row(&search->problem, chain, row, entries);
@@ -121,10 +124,8 @@ double narc_settle(narc_search *search, narc_chain *chain) {
 
 /* One step from a chain: the programme, again with more rows where its solution goes too far for lack of them. */
 static bool make_step(narc_search *search, const narc_chain *chain, narc_candidate *out_next) {
-    if (search->no_memory)
-        return false;
     set_columns(search, chain);
-    double *x = narc_add_row(&search->programme, 0, 0), *y = narc_add_row(&search->programme, 0, 0);
+    double *x = narc_add_row(&search->programme, 0, true), *y = narc_add_row(&search->programme, 0, true);
     narc_derive_gap(chain, x, y);
     narc_list_rows(&search->problem, chain, ROWS_OF_A_PROGRAMME, search->intervals, search->rows);
     size_t built = 0;
@@ -133,10 +134,8 @@ static bool make_step(narc_search *search, const narc_chain *chain, narc_candida
         for (; built < search->rows->count; built++)
             add_condition(search, chain, &search->rows->items[built]);
         narc_candidate next;
-        if (!narc_solve_programme(&search->programme) || !take_solution(search, chain, &next.chain)) {
-            search->no_memory = search->programme.no_memory;
+        if (!narc_solve_programme(&search->programme) || !take_solution(search, chain, &next.chain))
             return found;
-        }
         const size_t count = narc_make_profile(&next.chain, search->problem.hull, search->intervals);
         const double distance = search->programme.solution[narc_make_layout(chain->count).distance];
         narc_add_violated(&search->problem, search->intervals, count, distance + SLACK, search->rows);

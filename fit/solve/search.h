@@ -9,6 +9,7 @@
 
 #include "model/rows.h"
 #include "solve/programme.h"
+#include "solve/quadratic.h"
 
 /* Counts the work of a fit, for the caller's progress function. */
 typedef struct narc_progress {
@@ -21,6 +22,8 @@ typedef struct narc_progress {
 /* Adds pieces of finished work; 0 only asks the caller. False if the caller wants no more. */
 bool narc_advance(narc_progress *progress, size_t pieces);
 
+enum { NARC_MOST_VARIABLES = 3 * MAX_CHAIN + 3 };
+
 /* What is searched for, and the memory for it. The hull is scaled and placed so that its corners are within 1 of the
  * origin. */
 typedef struct narc_search {
@@ -28,8 +31,9 @@ typedef struct narc_search {
     narc_interval *intervals;
     narc_row_list *rows;
     narc_programme programme;
+    narc_quadratic quadratic;
     narc_progress *progress;
-    bool no_memory; /* ran out: what is found from then on counts for nothing */
+    double hope; /* of narc_refine(): how many times its last gain a chain may still gain */
 } narc_search;
 
 narc_status narc_open_search(narc_search *search, const narc_problem *problem, narc_progress *progress,
@@ -49,9 +53,9 @@ bool narc_fit_normals(narc_search *search, const double *angles, narc_candidate 
 /* The same with the normals of a chain that fits. The result is no worse than that chain, apart from rounding. */
 bool narc_improve(narc_search *search, const narc_chain *chain, narc_candidate *out_best);
 
-/* Goes on from a chain, with its normals too, by sequential quadratic programming: rounds that gain less than `gain`,
- * as a part of the value, are few. */
-void narc_refine(narc_search *search, narc_candidate *best, unsigned rounds, double gain);
+/* Goes on from a chain, with its normals too, by sequential quadratic programming: steps that gain less than `gain`, as
+ * a part of the value, are few. It ends early where the last gain leaves no hope for the value `target`. */
+void narc_refine(narc_search *search, narc_candidate *best, unsigned steps, double gain, double target);
 
 /* Moves a placed chain out until it bounds, if it must, and returns its value. */
 double narc_settle(narc_search *search, narc_chain *chain);

@@ -3,7 +3,7 @@
  * memory.c - whichever allocation fails, one or all from it on, readers and fits end with NARC_ERROR_MEMORY and leave
  * their outputs as they were, or with what they give otherwise, and lose no memory. (librsvg ends the process.) The
  * argument: a font.
- * CLP, NLopt, FreeType, libpng and cJSON run out too.
+ * FreeType, libpng and cJSON run out too.
  */
 #include <png.h>
 #include <stdio.h>
@@ -82,7 +82,7 @@ static void fail_all(const char *name, operation *operate, const void *input) {
                 fail_msg("%s, allocation %zu of %zu: an output is touched", name, denied, count);
             failures += outcome.status != NARC_OK;
             release(&outcome);
-            if (live_blocks != live && operate != fit_path) /* CLP loses what it has where its next allocation fails */
+            if (live_blocks != live)
                 fail_msg("%s, allocation %zu of %zu: %zd blocks are lost", name, denied, count,
                          (ptrdiff_t)(live_blocks - live));
         }

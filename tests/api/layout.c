@@ -169,7 +169,8 @@ static void check_pointers(void) {
     LAYOUT(narc_parts, 32, AT(paths, 0) && AT(count, 8) && AT(distance, 16) && AT(area, 24));
     LAYOUT(narc_fit_request, 64,
            AT(arc_count, 0) && AT(tolerance, 8) && AT(family, 16) && AT(goal, 20) && AT(flatness, 24) &&
-               AT(min_radius, 32) && AT(keep_origin, 40) && AT(starts, 44) && AT(progress, 48) && AT(context, 56));
+               AT(min_radius, 32) && AT(keep_origin, 40) && AT(quick, 41) && AT(starts, 44) && AT(progress, 48) &&
+               AT(context, 56));
     LAYOUT(narc_fit_result, 2672,
            AT(arcs, 0) && AT(arc_count, 2560) && AT(edge_count, 2568) && AT(origin, 2576) && AT(area, 2592) &&
                AT(perimeter, 2600) && AT(hull_area, 2608) && AT(hull_perimeter, 2616) && AT(max_distance, 2624) &&

@@ -196,12 +196,12 @@ printf '0,0\n4,0\n4,4\n0,4\n0,0\n' >fits/ring.csv
 crossing ring "contour 0: it ends where it begins" --open
 
 # Parts of the same: they are resolved, or have no area.
-works "parts of a bow-tie" fit fits/cross.csv --parts 4 --tolerance 0.05 --edges --starts 1 --out parts.json
+works "parts of a bow-tie" fit fits/cross.csv --parts 4 --tolerance 0.05 --starts 1 --out parts.json
 check "parts of a bow-tie: its area" is cross 6 8
 check "parts of a bow-tie: two" test "$(value cross 2)" = 2
-works "parts of a spike" fit fits/spike.csv --parts 4 --tolerance 0.1 --edges --starts 1 --out parts.json
+works "parts of a spike" fit fits/spike.csv --parts 4 --tolerance 0.1 --starts 1 --out parts.json
 check "parts of a spike: the area without it" is spike 6 100
-works "parts that overlap" fit fits/two.csv --parts 4 --tolerance 0.1 --edges --starts 1 --out parts.json
+works "parts that overlap" fit fits/two.csv --parts 4 --tolerance 0.1 --starts 1 --out parts.json
 check "parts that overlap: the area of both" is two 6 28
 fails "parts of a line" "narc: fits/line.csv: its lines enclose no area" fit fits/line.csv --parts 4 --tolerance 0.05 \
     --out new.json
@@ -249,7 +249,7 @@ fails "exact parts: too few" "narc: fits/frame.csv: it takes 4 convex parts, mor
 fails "exact parts of a bow-tie" "narc: fits/cross.csv: contour 0, piece 0 crosses" fit fits/cross.csv --parts 3 --out new.json
 
 # Parts: the frame is four boxes; three cannot do it.
-works "parts" fit fits/frame.csv fits/square.csv --parts 9 --tolerance 0.1 --edges --starts 1 --out parts.json \
+works "parts" fit fits/frame.csv fits/square.csv --parts 9 --tolerance 0.1 --starts 1 --out parts.json \
     --picture parts.svg
 check "parts: 4 of the frame" test "$(value frame 2)" = 4
 check "parts: 1 of the square" test "$(value square 2)" = 1
@@ -258,22 +258,21 @@ check "parts: area" is frame 5 12
 check "parts: the outline's area" is frame 6 12
 check "parts: distance" less "$(value frame 8)" 0.1
 check "parts: a picture" grep -q "</svg>" parts.svg
-works "parts with arcs" fit fits/frame.csv --parts 4 --arcs 4 --edges --approximate --starts 1 --out some.json
+works "parts with arcs" fit fits/frame.csv --parts 4 --arcs 4 --approximate --starts 1 --out some.json
 check "parts with arcs: 4" test "$(value frame 2)" = 4
 fails "too few parts" "narc: fits/frame.csv: the tolerance .* 3 parts" fit fits/frame.csv --parts 3 --tolerance 0.1 \
     --out new.json
 
-# One tolerance for cuts, laps and shapes, told in the user's numbers. Parts that smooth arcs do not reach get edges.
+# One tolerance for cuts, laps and shapes, told in the user's numbers. Parts have edges.
 printf '0,0\n9,0\n9,1\n1,1\n1,9\n0,9\n' >fits/hook.csv
 for goal in --bound --approximate; do
-    works "a tolerance of parts, $goal" fit fits/hook.csv --parts 9 --tolerance 0.05 $goal --edges --starts 1 --out some.json
+    works "a tolerance of parts, $goal" fit fits/hook.csv --parts 9 --tolerance 0.05 $goal --starts 1 --out some.json
     check "a tolerance of parts, $goal: kept" less "$(value hook 8)" 0.0500001
     fails "a tolerance too small, $goal" "narc: fits/hook.csv: the tolerance 0.005 is too small for parts and their shapes, 0.01" \
-        fit fits/hook.csv --parts 9 --tolerance 0.005 $goal --edges --out new.json
+        fit fits/hook.csv --parts 9 --tolerance 0.005 $goal --out new.json
 done
-works "edges that were not asked for" fit fits/hook.csv --parts 9 --tolerance 0.03 --starts 1 --out some.json
-check "edges that were not asked for: kept" less "$(value hook 8)" 0.0300001
-check "edges that were not asked for: told" grep -q "^smooth arcs .*: [12] of the parts of hook$" out.txt
+works "edges of parts" fit fits/hook.csv --parts 9 --tolerance 0.03 --starts 1 --out some.json
+check "edges of parts: some" less 0 "$(value hook 4)"
 fails "edges that are not wanted" "narc: fits/hook.csv: part 1, whose shape has a share of the tolerance 0.03: up to 32" \
     fit fits/hook.csv --parts 9 --tolerance 0.03 --no-edges --starts 1 --out new.json
 

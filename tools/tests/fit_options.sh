@@ -60,6 +60,7 @@ for option in "--arcs 4" --bound --approximate "--objective area" --edges --poly
     "--starts 3" --keep-origin; do
     nofit "a chain and ${option% *}" "narc: --chain and ${option% *} exclude" --chain $option
 done
+nofit "quick and starts" "narc: --quick and --starts exclude" --arcs 4 --quick --starts 3
 nofit "no edges and edges" "narc: --no-edges and --edges exclude" --arcs 4 --edges --no-edges --parts 3
 nofit "no edges without parts" "narc: --no-edges is for --parts and --tolerance" --arcs 4 --no-edges
 nofit "a word that is no UTF-8" "narc: --objective must be .* not '?x'" --arcs 4 --objective "$(printf '\377x')"

@@ -138,17 +138,17 @@ static PyObject *describe_fit(const narc_fit_result *result) {
                          "seconds", result->seconds, "edge_count", (Py_ssize_t)result->edge_count);
 }
 
-/* fit(outline, arc_count, tolerance, family, goal, flatness, min_radius, keep_origin, starts): (arcs, numbers by name) */
+/* fit(outline, arc_count, tolerance, family, goal, flatness, min_radius, keep_origin, quick, starts): (arcs, numbers by name) */
 static PyObject *fit(PyObject *self, PyObject *given) {
     PyObject *outline;
     Py_ssize_t count;
-    int family, goal, keep;
+    int family, goal, keep, quick;
     bool stopped = false;
     narc_fit_request request = {.progress = go_on, .context = &stopped};
     narc_error error = {0};
     (void)self;
-    if (!PyArg_ParseTuple(given, "OndiiddpI", &outline, &count, &request.tolerance, &family, &goal, &request.flatness,
-                          &request.min_radius, &keep, &request.starts))
+    if (!PyArg_ParseTuple(given, "OndiiddppI", &outline, &count, &request.tolerance, &family, &goal, &request.flatness,
+                          &request.min_radius, &keep, &quick, &request.starts))
         return NULL;
     const narc_path *const path = PyCapsule_GetPointer(outline, PATH);
     narc_fit_result *const result = path ? malloc(sizeof *result) : NULL;
@@ -158,6 +158,7 @@ static PyObject *fit(PyObject *self, PyObject *given) {
     request.family = (narc_fit_family)family;
     request.goal = (narc_fit_goal)goal;
     request.keep_origin = keep != 0;
+    request.quick = quick != 0;
     PyThreadState *const state = PyEval_SaveThread();
     const narc_status status = narc_fit_path(path, &request, result, &error);
     PyEval_RestoreThread(state);

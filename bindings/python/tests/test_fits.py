@@ -62,6 +62,13 @@ def test_few_arcs_serve_where_they_can():
     assert round_box.arcs["radius"].min() >= 0.2
 
 
+def test_a_quick_fit_is_near():
+    usual, quick = narc.fit(L_SHAPE, 6), narc.fit(L_SHAPE, 6, quick=True)
+    assert area(L_SHAPE) < quick.area < 1.02 * usual.area
+    with pytest.raises(narc.Error, match="quick fit"):
+        narc.fit(L_SHAPE, 6, quick=True, starts=2)
+
+
 def test_contours_come_back():
     outline = narc.Outline([circle(), circle(radius=1.0)[::-1]])
     assert [len(c) for c in outline.contours()] == [400, 400] and "contours 2" in repr(outline)
