@@ -27,7 +27,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in 11 minutes of processor time. dem cases: piles of discs and long grains,
-             packings, simple shear, hoppers besides. apps/dem/README.md says what they mean
+             a gas, packings, simple shear, hoppers besides. apps/dem/README.md says what they mean
   python     the Python package: a wheel and pictures of its examples in out/python/, installed into the environment
              build/python and tested
   bench-web  the example's engine in WebAssembly beside Rapier, Box2D 3, Planck, Matter and detect-collisions from npm, in node:

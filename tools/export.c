@@ -18,18 +18,22 @@
 #include "options.h"
 #include "output.h"
 #include "report.h"
+#include "sheets.h"
+#include "system.h"
 #include "text.h"
 #include "turn.h"
 
 static const char HELP[] =
     "usage: narc export SHAPES --to FORMAT [--tolerance T] [--scale S] [--y-down] [--origin NAME]\n"
-    "                   [--out FILE] [--dry-run] [--report json]\n"
+    "                   [--image FILE] [--grid WxH] [--out FILE] [--dry-run] [--report json]\n"
     "\n"
     "Writes shapes as the files of editors and engines. Shapes NAME/1, NAME/2 ... are one body NAME.\n"
     "\n"
     "  SHAPES          a shapes file\n"
     "  --to FORMAT     tmx, tmj      a map of Tiled, with a layer of collision objects for each body\n"
+    "                  tsj           a tileset of Tiled, each body the collision of its tile\n"
     "                  godot, godot3 a scene (.tscn) of Godot 4 or 3, with a StaticBody2D for each\n"
+    "                  tres, tres3   a shape as a resource of its own, with {name} in --out\n"
     "                  phaser        PhysicsEditor's JSON, as Phaser 3 gives it to matter-js\n"
     "                  box2d         R.U.B.E.'s JSON; polygons have at most 8 corners\n"
     "                  libgdx        Physics Body Editor's JSON; the same\n"
@@ -42,11 +46,14 @@ static const char MORE_HELP[] =
     "  --y-down        y points down in box2d, libgdx and dxf too, as it does in the others\n"
     "  --origin NAME   where each body's origin is: input (the default, in the coordinates of what was\n"
     "                  fitted), center or bottom (the middle of its bounding box, or of its lower side)\n"
+    "  --image FILE    of tsj: the sheet, with --grid; or with {name} in it the image of each body; from the\n"
+    "                  folder of the output\n"
+    "  --grid WxH      of tsj: the sheet's cells, in pixels; body NAME-3 is that of cell 3\n"
     "  --out FILE      the file to write; left out or -: standard output; with {name} in it one for each body\n"
     "  --dry-run       nothing is written but the table of bodies, pieces and corners\n"
     "  --report json   instead of the table JSON\n";
 
-enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, REPORT, OPTIONS };
+enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, REPORT, IMAGE, GRID, OPTIONS };
 typedef enum origin { INPUT, CENTER, BOTTOM, ORIGINS } origin;
 static const char *const origin_names[ORIGINS] = {"input", "center", "bottom"};
 
@@ -56,6 +63,9 @@ typedef struct exporting {
     double tolerance, scale;
     bool y_down;
     origin origin;
+    const char *folder, *image; /* of the output; of tiles, maybe with {name}, from there */
+    grid cells;
+    bool each; /* body has a file of its own */
 } exporting;
 
 /* In parts of a piece's size: what is nearer is the same to engines, whose numbers are single precision. */
@@ -390,9 +400,13 @@ static void place_body(export_body *of, const exporting *how) {
     const double low = how->y_down ? box.max_y : box.min_y;
     const narc_point offset =
         how->origin == INPUT
-            ? (narc_point){s * of->origin.x, up * of->origin.y}
+            ? (narc_point){s * of->origin.x, up * of->origin.y + of->height}
             : (narc_point){-(box.min_x + box.max_x) / 2, -(how->origin == CENTER ? (box.min_y + box.max_y) / 2 : low)};
     export_body placed = {.name = of->name,
+                          .image = of->image,
+                          .tile = of->tile,
+                          .width = of->width,
+                          .height = of->height,
                           .box = {shorten(box.min_x + offset.x, size), shorten(box.min_y + offset.y, size),
                                   shorten(box.max_x + offset.x, size), shorten(box.max_y + offset.y, size)}};
     for (size_t k = 0; k < of->count; k++) {
@@ -412,6 +426,36 @@ static void place_body(export_body *of, const exporting *how) {
     *of = placed;
 }
 
+/* The size of a PNG file in its header. */
+static void measure_png(const exporting *how, const char *image, unsigned *width, unsigned *height) {
+    size_t size;
+    char *path = join_text(how->folder, folder_length(how->folder), image);
+    unsigned char *bytes = (unsigned char *)read_bytes(path, &size);
+    if (size < 24 || memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) != 0)
+        fail_at(path, 0, "--image must be PNG, whose size tilesets have");
+    *width = (unsigned)bytes[16] << 24 | (unsigned)bytes[17] << 16 | (unsigned)bytes[18] << 8 | bytes[19];
+    *height = (unsigned)bytes[20] << 24 | (unsigned)bytes[21] << 16 | (unsigned)bytes[22] << 8 | bytes[23];
+    free(bytes);
+    free(path);
+}
+
+/* Of a sheet NAME-3 is tile 3; of images each body the next one. */
+static void choose_tile(export_body *of, size_t number, const exporting *how) {
+    const char *dash = strrchr(of->name, '-');
+    uint64_t tile = number;
+    if (how->cells.width && !(dash && parse_whole(dash + 1, 1000000000, &tile)))
+        fail_at(how->path, 0,
+                "shape '%s' is no cell of a sheet: these are NAME-0, NAME-1 ..., as narc fit --grid names them",
+                of->name);
+    of->tile = (unsigned)tile;
+    of->width = (unsigned)how->cells.width;
+    of->height = (unsigned)how->cells.height;
+    if (!how->cells.width) {
+        of->image = expand_pattern(how->image, of->name);
+        measure_png(how, of->image, &of->width, &of->height);
+    }
+}
+
 static exported make_bodies(const exporting *how, const narc_shape_list *shapes) {
     exported made = {.box = EMPTY_BOX};
     size_t *parts = allocate(shapes->count, sizeof *parts);
@@ -427,7 +471,14 @@ static exported make_bodies(const exporting *how, const narc_shape_list *shapes)
             const piece part = outline_shape(&shapes->items[parts[i]], body->origin, how);
             add_piece(body, &part);
         }
+        if (how->to->tiles)
+            choose_tile(body, made.count, how);
         place_body(body, how);
+        if (how->to->one && (body->count > 1 || (made.count > 0 && !how->each)))
+            fail_at(
+                how->path, 0,
+                "a file of %s holds one shape: '%s' has %zu pieces; --to godot takes all, {name} in --out each body",
+                how->to->name, body->name, body->count);
         made.box = join_boxes(made.box, body->box);
         made.count++;
     }
@@ -478,7 +529,10 @@ static void write_bodies(const exported *what, const export_format *to, const ch
     for (size_t i = 0; i < what->count; i++) {
         char *path = expand_pattern(out, what->bodies[i].name);
         FILE *file = open_output(path ? path : out);
-        const exported alone = {&what->bodies[i], 1, 1, what->bodies[i].box};
+        exported alone = *what;
+        alone.bodies += i;
+        alone.count = 1;
+        alone.box = alone.bodies->box;
         to->write(file, path ? &alone : what);
         close_output(file);
         free(path);
@@ -506,6 +560,18 @@ static origin find_origin(const char *name) {
     return found;
 }
 
+static void check_tiles(const exporting *how) {
+    if (!how->to->tiles && (how->image || how->cells.width))
+        fail("--image and --grid are for tsj: %s has no images", how->to->name);
+    if (!how->to->tiles)
+        return;
+    if (!how->image || (!how->cells.width && !strstr(how->image, "{name}")))
+        fail("a tileset has images: --image must name that of a sheet, with its --grid, or have {name} for one of each "
+             "body");
+    if (how->scale != 1 || how->origin != INPUT)
+        fail("a tileset has the pixels of its images: --scale and --origin cannot change them");
+}
+
 static void run(int argc, char **argv) {
     option options[OPTIONS] = {[TO] = {"--to", true, NULL},
                                [TOLERANCE] = {"--tolerance", true, NULL},
@@ -514,21 +580,32 @@ static void run(int argc, char **argv) {
                                [ORIGIN] = {"--origin", true, NULL},
                                [OUT] = {"--out", true, NULL},
                                [DRY_RUN] = {"--dry-run", false, NULL},
-                               [REPORT] = {"--report", true, NULL}};
+                               [REPORT] = {"--report", true, NULL},
+                               [IMAGE] = {"--image", true, NULL},
+                               [GRID] = {"--grid", true, NULL}};
     const char **files = allocate((size_t)argc + 1, sizeof *files);
     if (parse_options(argc, argv, options, OPTIONS, "SHAPES", files) > 1)
         fail("unexpected argument '%s'", narc_make_excerpt(files[1]).text);
     const export_format *to = find_format(required_option(&options[TO]));
+    const char *out = options[OUT].value ? options[OUT].value : "-";
     const exporting how = {.path = files[0],
                            .to = to,
                            .tolerance = number_option(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0", 0),
                            .scale = number_option(&options[SCALE], 1e-9, 1e9, "from 1e-9 to 1e9", 1),
                            .y_down = to->y_down || options[Y_DOWN].value,
-                           .origin = find_origin(options[ORIGIN].value)};
-    const char *out = options[OUT].value ? options[OUT].value : "-";
+                           .origin = find_origin(options[ORIGIN].value),
+                           .folder = out,
+                           .image = options[IMAGE].value,
+                           .cells = parse_grid(options[GRID].value),
+                           .each = strstr(out, "{name}")};
+    check_tiles(&how);
     const bool json = wants_json(&options[REPORT]);
     narc_shape_list *shapes = read_shapes(files[0], NULL);
     exported made = make_bodies(&how, shapes);
+    if (to->tiles && how.cells.width) {
+        made.sheet = how.image;
+        measure_png(&how, how.image, &made.sheet_width, &made.sheet_height);
+    }
     FILE *report = stdout;
     if (!options[DRY_RUN].value) {
         write_bodies(&made, to, out);

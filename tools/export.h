@@ -36,12 +36,16 @@ typedef struct export_body {
     size_t count, capacity;
     narc_point origin; /* of its first shape, in the coordinates of the input */
     narc_aabb box;
+    const char *image; /* of a tile; on a sheet NULL */
+    unsigned tile, width, height;
 } export_body;
 
 typedef struct exported {
     export_body *bodies;
     size_t count, capacity;
     narc_aabb box;
+    const char *sheet; /* of tiles: one image of all; NULL: each has its own */
+    unsigned sheet_width, sheet_height;
 } exported;
 
 typedef struct export_format {
@@ -49,6 +53,7 @@ typedef struct export_format {
     bool y_down;
     unsigned keeps;      /* kinds of pieces; ARCS: arcs in outlines, loops and lines */
     size_t most_corners; /* of an outline; 0: any number */
+    bool one, tiles;     /* a file holds one piece; bodies are tiles of images */
     void (*write)(FILE *file, const exported *what);
 } export_format;
 

@@ -191,38 +191,45 @@ static void write_tmx(FILE *file, const exported *what) {
     fputs("</map>\n", file);
 }
 
+static cJSON *put_layer(cJSON *layer, double id, const char *name) {
+    put_text(layer, "type", "objectgroup");
+    put_number(layer, "id", id);
+    put_text(layer, "name", name);
+    put_text(layer, "draworder", "topdown");
+    put(layer, "visible", cJSON_CreateTrue());
+    put_number(layer, "opacity", 1);
+    put_number(layer, "x", 0);
+    put_number(layer, "y", 0);
+    return put_list(layer, "objects");
+}
+
+static void put_objects(cJSON *list, const export_body *body, size_t *next) {
+    for (size_t k = 0; k < body->count; k++) {
+        const piece *p = &body->pieces[k];
+        const bool plain = p->kind & (CIRCLE | BOX);
+        cJSON *object = put_object(list, NULL);
+        put_number(object, "id", (double)(*next)++);
+        put_text(object, "name", p->name);
+        put_text(object, "type", "");
+        put_number(object, "rotation", 0);
+        put(object, "visible", cJSON_CreateTrue());
+        put_number(object, "x", plain ? p->low.x : 0);
+        put_number(object, "y", plain ? p->low.y : 0);
+        put_number(object, "width", plain ? p->width : 0);
+        put_number(object, "height", plain ? p->height : 0);
+        if (p->kind == CIRCLE)
+            put(object, "ellipse", cJSON_CreateTrue());
+        else if (!plain)
+            put_vectors(object, p->kind == LINE ? "polyline" : "polygon", p);
+    }
+}
+
 static void write_tmj(FILE *file, const exported *what) {
     cJSON *map = open_json(), *layers = put_list(map, "layers");
     size_t objects = 1;
     for (size_t i = 0; i < what->count; i++) {
         const export_body *body = &what->bodies[i];
-        cJSON *layer = put_object(layers, NULL), *list = put_list(layer, "objects");
-        put_text(layer, "type", "objectgroup");
-        put_number(layer, "id", (double)i + 1);
-        put_text(layer, "name", body->name);
-        put_text(layer, "draworder", "topdown");
-        put(layer, "visible", cJSON_CreateTrue());
-        put_number(layer, "opacity", 1);
-        put_number(layer, "x", 0);
-        put_number(layer, "y", 0);
-        for (size_t k = 0; k < body->count; k++) {
-            const piece *p = &body->pieces[k];
-            const bool plain = p->kind & (CIRCLE | BOX);
-            cJSON *object = put_object(list, NULL);
-            put_number(object, "id", (double)objects++);
-            put_text(object, "name", p->name);
-            put_text(object, "type", "");
-            put_number(object, "rotation", 0);
-            put(object, "visible", cJSON_CreateTrue());
-            put_number(object, "x", plain ? p->low.x : 0);
-            put_number(object, "y", plain ? p->low.y : 0);
-            put_number(object, "width", plain ? p->width : 0);
-            put_number(object, "height", plain ? p->height : 0);
-            if (p->kind == CIRCLE)
-                put(object, "ellipse", cJSON_CreateTrue());
-            else if (!plain)
-                put_vectors(object, p->kind == LINE ? "polyline" : "polygon", p);
-        }
+        put_objects(put_layer(put_object(layers, NULL), (double)i + 1, body->name), body, &objects);
     }
     put_text(map, "type", "map");
     put_text(map, "version", "1.10");
@@ -239,16 +246,55 @@ static void write_tmj(FILE *file, const exported *what) {
     close_json(file, map);
 }
 
+static void put_image(cJSON *to, const char *image, unsigned width, unsigned height) {
+    put_text(to, "image", image);
+    put_number(to, "imagewidth", width);
+    put_number(to, "imageheight", height);
+}
+
+static void write_tsj(FILE *file, const exported *what) {
+    cJSON *set = open_json(), *tiles = put_list(set, "tiles");
+    unsigned width = 0, height = 0;
+    for (size_t i = 0; i < what->count; i++) {
+        const export_body *body = &what->bodies[i];
+        cJSON *tile = put_object(tiles, NULL);
+        size_t objects = 1;
+        put_number(tile, "id", body->tile);
+        if (body->image)
+            put_image(tile, body->image, body->width, body->height);
+        put_objects(put_layer(put_object(tile, "objectgroup"), 2, ""), body, &objects);
+        width = body->width > width ? body->width : width;
+        height = body->height > height ? body->height : height;
+    }
+    const unsigned columns = what->sheet ? what->sheet_width / width : 0;
+    put_text(set, "type", "tileset");
+    put_text(set, "version", "1.10");
+    put_text(set, "name", "colliders");
+    put_number(set, "tilewidth", width);
+    put_number(set, "tileheight", height);
+    put_number(set, "columns", columns);
+    put_number(set, "tilecount", what->sheet ? columns * (what->sheet_height / height) : (double)what->count);
+    put_number(set, "margin", 0);
+    put_number(set, "spacing", 0);
+    if (what->sheet)
+        put_image(set, what->sheet, what->sheet_width, what->sheet_height);
+    close_json(file, set);
+}
+
 /* ---------------------------------------------------------------------------- Godot */
 
+/* A resource of a scene, or with number 0 a file of its own. */
 static void put_godot_shape(FILE *file, const piece *p, size_t number, bool is_3) {
     static const char *const types[] = {
         [CIRCLE] = "Circle", [CAPSULE] = "Capsule", [BOX] = "Rectangle", [OUTLINE] = "ConvexPolygon"};
     const char *type = p->kind & (LOOP | LINE) ? "ConcavePolygon" : types[p->kind];
     const char *array = is_3 ? "PoolVector2Array" : "PackedVector2Array";
-    fprintf(file,
-            is_3 ? "[sub_resource type=\"%sShape2D\" id=%zu]\n" : "[sub_resource type=\"%sShape2D\" id=\"%zu\"]\n",
-            type, number);
+    if (number == 0)
+        fprintf(file, "[gd_resource type=\"%sShape2D\" format=%d]\n\n[resource]\n", type, is_3 ? 2 : 3);
+    else
+        fprintf(file,
+                is_3 ? "[sub_resource type=\"%sShape2D\" id=%zu]\n" : "[sub_resource type=\"%sShape2D\" id=\"%zu\"]\n",
+                type, number);
     if (p->kind & (CIRCLE | CAPSULE))
         fprintf(file, "radius = %.10g\n", p->radius);
     if (p->kind == CAPSULE)
@@ -307,6 +353,8 @@ static void write_scene(FILE *file, const exported *what, bool is_3) {
 
 static void write_godot(FILE *file, const exported *what) { write_scene(file, what, false); }
 static void write_godot_3(FILE *file, const exported *what) { write_scene(file, what, true); }
+static void write_tres(FILE *file, const exported *what) { put_godot_shape(file, what->bodies->pieces, 0, false); }
+static void write_tres_3(FILE *file, const exported *what) { put_godot_shape(file, what->bodies->pieces, 0, true); }
 
 /* ---------------------------------------------------------------------------- engines */
 
@@ -471,15 +519,18 @@ static void write_dxf(FILE *file, const exported *what) {
 
 /* clang-format off */
 const export_format export_formats[] = {
-    {"tmx",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, write_tmx},
-    {"tmj",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, write_tmj},
-    {"godot",  true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, write_godot},
-    {"godot3", true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, write_godot_3},
-    {"phaser", true,  CIRCLE | OUTLINE,                               0, write_phaser},
-    {"box2d",  false, CIRCLE | OUTLINE | LOOP | LINE,                 8, write_box2d},
-    {"libgdx", false, CIRCLE | OUTLINE,                               8, write_libgdx},
-    {"svg",    true,  CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, write_svg},
-    {"dxf",    false, CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, write_dxf},
-    {NULL,     false, 0,                                              0, NULL},
+    {"tmx",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, false, false, write_tmx},
+    {"tmj",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, false, false, write_tmj},
+    {"tsj",    true,  CIRCLE | BOX | OUTLINE | LOOP | LINE,           0, false, true,  write_tsj},
+    {"godot",  true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, false, false, write_godot},
+    {"godot3", true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, false, false, write_godot_3},
+    {"tres",   true,  OUTLINE | LOOP | LINE,                          0, true,  false, write_tres},
+    {"tres3",  true,  OUTLINE | LOOP | LINE,                          0, true,  false, write_tres_3},
+    {"phaser", true,  CIRCLE | OUTLINE,                               0, false, false, write_phaser},
+    {"box2d",  false, CIRCLE | OUTLINE | LOOP | LINE,                 8, false, false, write_box2d},
+    {"libgdx", false, CIRCLE | OUTLINE,                               8, false, false, write_libgdx},
+    {"svg",    true,  CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, false, false, write_svg},
+    {"dxf",    false, CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, false, false, write_dxf},
+    {NULL,     false, 0,                                              0, false, false, NULL},
 };
 /* clang-format on */

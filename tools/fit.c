@@ -49,6 +49,7 @@ static const char HELP[] =
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists; or the frames of\n"
     "                                TexturePacker or Aseprite, whose image is beside it\n"
+    "                  Tiled, R.U.B.E., PhysicsEditor: the collision objects in their files\n"
     "                  folders       the SVG and PNG files in them\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"

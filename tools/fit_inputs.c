@@ -11,6 +11,7 @@
 
 #include "fail.h"
 #include "names.h"
+#include "objects.h"
 #include "progress.h"
 #include "system.h"
 #include "text.h"
@@ -592,6 +593,11 @@ static void take_outline(const char *name, const char *png, size_t size, void *c
     read_outline(at->file, PNG, png, size, at->how, name, at->outlines);
 }
 
+static narc_path *begin_outline(const char *name, void *context) {
+    const sheet_reading *at = context;
+    return add_outline(at->outlines, at->file, 0, make_shape_name(name, strlen(name)))->path;
+}
+
 static void read_cells(const char *file, const char *bytes, size_t size, sheet_reading *at) {
     size_t stem;
     const char *base = base_name(file, &stem);
@@ -640,7 +646,8 @@ static void read_file(const char *path, const reading *how, bool *met, outline_l
         read_elements(file, kind, bytes, size, how, outlines);
     else if (kind == PNG && how->cells.width)
         read_cells(file, bytes, size, &at);
-    else if (kind != JSON || !read_sheet(file, bytes, size, take_outline, &at))
+    else if ((kind != JSON && kind != SVG) || (!read_objects(file, bytes, size, begin_outline, &at) &&
+                                               (kind != JSON || !read_sheet(file, bytes, size, take_outline, &at))))
         read_outline(file, kind, bytes, size, how, NULL, outlines);
     free(bytes);
 }

@@ -175,10 +175,11 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
     patches = PolyCollection(grains, edgecolors="#666666", linewidths=0.3, facecolors="#c6dbef")
     if color != "none":
         values = fields[color][is_grain].astype(float)
-        patches.set(array=values, cmap="YlOrRd", clim=(0, top or values.max() or 1))
+        top = top or np.quantile(values, 0.99) or values.max() or 1  # a few grains alone are not worth all colours
+        patches.set(array=values, cmap="YlOrRd", clim=(0, top))
         patches.set_facecolors(None)
         figure.colorbar(patches, cax=figure.add_axes([0.03, 0.75 * below, 0.4, 0.15 * below]), orientation="horizontal",
-                        label=color)
+                        label=color, extend="max" if values.max() > top else "neither")
     axes.add_collection(patches)
     if forces:
         centres = {body: fields["centre"][k, :2] for k, body in enumerate(fields["id"]) if is_grain[k]}

@@ -12,11 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Does neither of two bodies move? */
-static bool are_at_rest(const narc_contact_step *s, uint32_t a, uint32_t b) {
-    enum { AT_REST = NARC_STATIC | NARC_ASLEEP };
+static inline bool is_at_rest(const narc_contact_step *s, uint32_t body) {
     const narc_broad_phase *const broad = s->contacts->broad;
-    return broad->has_filter && broad->kinds[a] & AT_REST && broad->kinds[b] & AT_REST;
+    return broad->has_filter && broad->kinds[body] & (NARC_STATIC | NARC_ASLEEP);
 }
 
 /* Bodies that are not listed as moved may have any number as their shape: it is no shape, until its pairs are asked. */
@@ -100,59 +98,80 @@ static inline unsigned find_stale(unsigned flags, unsigned marks) {
     return old | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
 }
 
-static inline bool is_stale(const pair_view *v, size_t k, uint32_t slot) {
-    return slot == UINT32_MAX || find_stale(v->flags[slot], v->marks[k]);
-}
-
 static inline bool is_ground(const pair_view *v, size_t k) {
     return !(v->marks[k] & NARC_SENSOR) && (v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE));
 }
 
-/* What is known of a pair with ground while it is planned. OF_OLD: it must be asked, whatever has moved. OF_OTHER: so must
- * all ground of the body, as a pair was ground, or is no sensor's any more. OF_HELD: what is kept of it still counts. */
-enum { OF_CHANGED = 1, OF_OLD = 2, OF_BARE = 4, OF_KEPT = 8, OF_MOVING = 16, OF_OTHER = 32, OF_HELD = 64 };
+/* Was a pair ground that is none, or no sensor's? */
+static inline bool was_ground(const pair_view *v, size_t k) {
+    const uint32_t slot = slot_of(v, k);
+    return slot != UINT32_MAX && (v->changed[v->b[k]] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
+}
 
-/* The pairs first .. end - 1 of one body, some with ground: these are listed, and what is kept of them and may decide, if
- * something has changed. */
-static void list_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end) {
+/* What is known of a pair with ground while it is planned. OF_OLD: it must be asked, whatever has moved. OF_OTHER: so must
+ * all ground of the body, as a pair was ground, or is no sensor's any more. OF_HELD: what is kept of it still counts.
+ * OF_FIRST: it is the first one of its body. */
+enum {
+    OF_CHANGED = 1,
+    OF_OLD = 2,
+    OF_BARE = 4,
+    OF_KEPT = 8,
+    OF_MOVING = 16,
+    OF_OTHER = 32,
+    OF_HELD = 64,
+    OF_FIRST = 128
+};
+
+static inline unsigned look_at_ground(const pair_view *v, size_t k, uint32_t slot, unsigned changed_a) {
+    const unsigned changed_b = v->changed[v->b[k]], moves = changed_b ? OF_MOVING : 0u;
+    if (slot == UINT32_MAX)
+        return OF_OLD | OF_CHANGED | OF_BARE | moves;
+    const unsigned flags = v->flags[slot], bare = v->state[slot] & NARC_TOUCHING ? 0u : OF_BARE;
+    if (find_stale(flags, v->marks[k]) || (changed_a | changed_b) & NARC_RESHAPED)
+        return OF_OLD | OF_CHANGED | bare | moves;
+    return (changed_a | changed_b ? OF_CHANGED : 0u) | (flags & NARC_SLOT_KEPT ? OF_KEPT : 0u) | bare | moves;
+}
+
+/* Of the pairs from `first` on, those of one body: these with ground are listed, and what is kept of them and may decide, if
+ * something has changed. Returns the end. */
+static size_t list_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t count) {
     narc_contacts *const c = s->contacts;
     const uint32_t a = v->a[first];
-    const size_t planned = c->work_count;
+    size_t k = first;
+    while (k < count && v->a[k] == a && !is_ground(v, k))
+        k++;
+    if (k == count || v->a[k] != a)
+        return k;
     const unsigned keeps =
         s->step->recycling > 0 ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
+    narc_pair_work *const work = c->work + c->work_count;
+    size_t listed = 0;
     unsigned any = 0;
-    for (size_t k = first; k < end; k++) {
-        const uint32_t b = v->b[k], slot = slot_of(v, k);
-        const unsigned moved = v->changed[a] | v->changed[b];
-        unsigned what;
-        if (!is_ground(v, k)) { /* it may have been */
-            const bool other =
-                slot != UINT32_MAX && (v->changed[b] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
-            any |= other ? OF_OTHER | OF_CHANGED : 0;
-            continue;
+    for (size_t i = first; i < k; i++)
+        any |= was_ground(v, i) ? OF_OTHER | OF_CHANGED : 0u;
+    do {
+        if (listed == 0 || is_ground(v, k)) {
+            const uint32_t slot = slot_of(v, k);
+            const unsigned what = look_at_ground(v, k, slot, v->changed[a]);
+            any |= what;
+            work[listed++] = (narc_pair_work){(uint32_t)k, slot, what};
+        } else {
+            any |= was_ground(v, k) ? OF_OTHER | OF_CHANGED : 0u;
         }
-        if (is_stale(v, k, slot) || moved & NARC_RESHAPED)
-            what = OF_OLD | OF_CHANGED;
-        else
-            what = (moved ? OF_CHANGED : 0u) | (v->flags[slot] & NARC_SLOT_KEPT ? OF_KEPT : 0u);
-        what |= slot == UINT32_MAX || !(v->state[slot] & NARC_TOUCHING) ? OF_BARE : 0u;
-        what |= v->changed[b] ? OF_MOVING : 0u;
-        any |= what;
-        c->work[c->work_count++] = (narc_pair_work){(uint32_t)k, slot, what};
-    }
-    if (!(any & OF_CHANGED)) {
-        c->work_count = planned;
-        return;
-    }
-    c->work[planned].what |= any & OF_OTHER;
-    for (size_t i = planned; i < c->work_count; i++) {
-        const narc_pair_work *const work = &c->work[i];
+    } while (++k < count && v->a[k] == a);
+    if (!(any & OF_CHANGED))
+        return k;
+    work->what |= (any & OF_OTHER) | OF_FIRST;
+    c->work_count += listed;
+    for (size_t i = 0; i < listed; i++) {
         if (s->step->ahead.base)
-            c->ground_margins[work->pair] = narc_find_margin(s, a, v->b[work->pair]);
-        c->known[c->ground_count] = work->slot;
-        c->ground_asked[c->ground_count] = work->pair;
-        c->ground_count += (work->what & keeps) == keeps;
+            c->ground_margins[work[i].pair] = narc_find_margin(s, a, v->b[work[i].pair]);
+        if ((work[i].what & keeps) != keeps)
+            continue;
+        c->known[c->ground_count] = work[i].slot;
+        c->ground_asked[c->ground_count++] = work[i].pair;
     }
+    return k;
 }
 
 /* May all further rows of a slot follow? */
@@ -188,18 +207,19 @@ static bool do_all_follow(const narc_contact_step *s, size_t first, size_t end) 
 static size_t plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end, size_t to) {
     narc_pair_work *const work = s->contacts->work;
     const uint32_t a = v->a[work[first].pair];
-    const bool follows = s->step->recycling > 0 && do_all_follow(s, first, end);
-    bool apart = true, holds = true;
+    const bool follows = s->step->recycling > 0 && do_all_follow(s, first, end), rests = is_at_rest(s, a);
+    unsigned all = OF_HELD | OF_BARE;
     for (size_t i = first; i < end; i++)
-        holds = holds && (work[i].what & OF_HELD) && (work[i].what & OF_BARE);
-    for (size_t i = first; i < end && apart && !follows && !holds; i++)
+        all &= work[i].what;
+    bool apart = all == OF_BARE; /* one that touches is better asked */
+    for (size_t i = first; i < end && apart && !follows; i++)
         apart = are_apart(v, a, v->b[work[i].pair]);
-    const unsigned planned = follows ? NARC_FOLLOW : apart && !holds ? NARC_APART : NARC_ASK_GROUND;
+    const unsigned planned = follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
     for (size_t i = first; i < end; i++) {
         const narc_pair_work one = work[i];
-        const unsigned what = are_at_rest(s, a, v->b[one.pair]) ? NARC_REST : planned;
+        const unsigned what = rests && is_at_rest(s, v->b[one.pair]) ? NARC_REST : planned;
         work[to] = (narc_pair_work){one.pair, one.slot, what};
-        to += what != NARC_ASK_GROUND || !(one.what & OF_HELD) || !(one.what & OF_BARE);
+        to += what != NARC_ASK_GROUND || (one.what & (OF_HELD | OF_BARE)) != (OF_HELD | OF_BARE);
     }
     return to;
 }
@@ -218,7 +238,7 @@ static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
         c->work[at].what |= OF_HELD;
     }
     for (size_t i = 0, end; i < c->work_count; i = end) {
-        for (end = i + 1; end < c->work_count && v->a[c->work[end].pair] == v->a[c->work[i].pair];)
+        for (end = i + 1; end < c->work_count && !(c->work[end].what & OF_FIRST);)
             end++;
         to = plan_ground(s, v, i, end, to);
     }
@@ -286,13 +306,8 @@ void narc_plan_ground(const narc_contact_step *s) {
         c->flags[slot] |= NARC_SLOT_STALE;
     if (has_ground && !s->list->kept)
         note_lost_ground(s);
-    for (size_t k = 0, end; k < count && has_ground && c->changed; k = end) {
-        bool ground = false;
-        for (end = k; end < count && v.a[end] == v.a[k]; end++)
-            ground = ground || is_ground(&v, end);
-        if (ground)
-            list_ground(s, &v, k, end);
-    }
+    for (size_t k = 0; k < count && has_ground && c->changed;)
+        k = list_ground(s, &v, k, count);
     if (NARC_PIECES)
         plan_all_ground(s, &v);
 }
@@ -312,7 +327,8 @@ void narc_clear_row(narc_contacts *c, uint32_t slot) {
 static void mark_slot(const narc_contact_step *s, size_t k) {
     const narc_contacts *const c = s->contacts;
     const uint32_t slot = c->order[k];
-    c->marks[slot] = (uint8_t)(s->list->marks[k] | (are_at_rest(s, c->a[slot], c->b[slot]) ? NARC_RESTS : 0u));
+    c->marks[slot] =
+        (uint8_t)(s->list->marks[k] | (is_at_rest(s, c->a[slot]) && is_at_rest(s, c->b[slot]) ? NARC_RESTS : 0u));
 }
 
 /* The marks of a new list in which pairs that were there are as they were: those of other slots. Bodies of new pairs are

@@ -10,7 +10,7 @@
 #include "fuzz.h"
 #include "narc_files.h"
 
-static const enum format { SHAPES, CSV, JSON, SVG, PNG, FONT } format = FUZZ_READER;
+static const enum format { SHAPES, CSV, JSON, SVG, PNG, DXF, FONT } format = FUZZ_READER;
 
 static void compare_lists(const narc_shape_list *a, const narc_shape_list *b) {
     assert_int_equal(a->count, b->count);
@@ -73,6 +73,8 @@ static narc_status read_path(const uint8_t *data, size_t size, narc_path *path, 
         return narc_read_svg(data, size, &request, path, error);
     case PNG:
         return narc_read_png(data, size, &request, path, error);
+    case DXF:
+        return narc_read_dxf(data, size, NULL, path, error);
     case FONT:
         return read_font(data, size, path, error);
     default:
@@ -114,7 +116,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     free(png);
     finish_any_bytes(status, &error,
                      1u << NARC_ERROR_FORMAT | 1u << NARC_ERROR_NOT_FINITE | 1u << NARC_ERROR_SIZE |
-                         1u << NARC_ERROR_INDEX,
+                         1u << NARC_ERROR_INDEX | 1u << NARC_ERROR_RADIUS,
                      SIZE_MAX, path);
     return 0;
 }

@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * objects.c - collision objects in the files of editors.
+ *
+ * Tiled's XML becomes the JSON that Tiled itself writes, and is read as that.
+ */
+#include "objects.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+#include "json.h"
+#include "text.h"
+#include "turn.h"
+
+#if NARC_SVG
+#include <glib.h>
+#endif
+
+typedef struct objects {
+    const char *file;
+    begin_object *begin;
+    void *context;
+    size_t count;
+} objects;
+
+static const cJSON *get(const cJSON *of, const char *key) { return cJSON_GetObjectItemCaseSensitive(of, key); }
+static double number(const cJSON *of, const char *key) {
+    const cJSON *item = get(of, key);
+    return cJSON_IsNumber(item) ? item->valuedouble : 0;
+}
+static const char *word(const cJSON *of, const char *key) {
+    const cJSON *item = get(of, key);
+    return cJSON_IsString(item) ? item->valuestring : "";
+}
+
+/* ---------------------------------------------------------------------------- drawing */
+
+/* Where an object's own coordinates are: turned about a place, y up or down. */
+typedef struct place {
+    double x, y, cosine, sine, up;
+} place;
+
+static narc_point put(const place *at, double x, double y) {
+    return (narc_point){at->x + at->cosine * x - at->sine * y, at->up * (at->y + at->sine * x + at->cosine * y)};
+}
+
+static narc_path *begin_path(objects *to, const char *name, size_t number, size_t count) {
+    char part[24] = "";
+    if (count > 1)
+        snprintf(part, sizeof part, "/%zu", number + 1);
+    char *whole = join_text(name, strlen(name), part);
+    narc_path *path = to->begin(whole, to->context);
+    free(whole);
+    to->count++;
+    return path;
+}
+
+static void check(const objects *of, const char *name, narc_status status, const narc_error *error) {
+    if (status)
+        fail_at(of->file, 0, "'%s': %s", narc_make_excerpt(name).text, error->message);
+}
+
+/* Points as {x, y}, or as one list of each. */
+static void draw_points(objects *to, const char *name, narc_path *path, const cJSON *points, const place *at) {
+    const cJSON *xs = get(points, "x"), *ys = get(points, "y"), *x = xs ? xs->child : points->child,
+                *y = ys ? ys->child : NULL;
+    for (bool first = true; x && (!ys || y); x = x->next, y = y ? y->next : NULL, first = false) {
+        const narc_point p = ys ? put(at, x->valuedouble, y->valuedouble) : put(at, number(x, "x"), number(x, "y"));
+        narc_error error;
+        check(to, name, first ? narc_move_to(path, &p, &error) : narc_line_to(path, &p, &error), &error);
+    }
+}
+
+/* Cubics through a 32nd of half a turn; a circle is two arcs. */
+static void draw_ellipse(objects *to, const char *name, narc_path *path, const place *at, double rx, double ry) {
+    const bool round = rx == ry;
+    const int count = round ? 2 : 64;
+    const double step = FULL_TURN / count, reach = 4 * tan(step / 4) / 3;
+    narc_error error;
+    narc_point end = put(at, rx, 0);
+    check(to, name, narc_move_to(path, &end, &error), &error);
+    for (int k = 0; k < count; k++) {
+        const double s = k * step, t = s + step, a = s + step / 2;
+        end = put(at, rx * cos(t), ry * sin(t));
+        const narc_point middle = put(at, rx * cos(a), ry * sin(a)),
+                         p = put(at, rx * (cos(s) - reach * sin(s)), ry * (sin(s) + reach * cos(s))),
+                         q = put(at, rx * (cos(t) + reach * sin(t)), ry * (sin(t) - reach * cos(t)));
+        check(to, name, round ? narc_arc_to(path, &middle, &end, &error) : narc_cubic_to(path, &p, &q, &end, &error),
+              &error);
+    }
+}
+
+/* ---------------------------------------------------------------------------- Tiled */
+
+/* Text, points, insertion points and tiles are none. */
+static bool is_drawn(const cJSON *object) {
+    return !get(object, "text") && !get(object, "point") && !get(object, "gid") &&
+           (get(object, "polygon") || get(object, "polyline") ||
+            number(object, "width") * number(object, "height") > 0);
+}
+
+/* The objects of a layer or a tile, whose lower side is y = 0 if it has a height. */
+static void draw_group(objects *to, const cJSON *group, const char *name, double height) {
+    const cJSON *list = get(group, "objects"), *object;
+    size_t count = 0, done = 0;
+    cJSON_ArrayForEach(object, list) { count += is_drawn(object) && !*word(object, "name"); }
+    cJSON_ArrayForEach(object, list) {
+        if (!is_drawn(object))
+            continue;
+        const char *own = word(object, "name");
+        narc_path *path = *own ? begin_path(to, own, 0, 1) : begin_path(to, name, done++, count);
+        const double turn = number(object, "rotation") * FULL_TURN / 360, w = number(object, "width"),
+                     h = number(object, "height");
+        const place at = {number(group, "offsetx") + number(object, "x"),
+                          number(group, "offsety") + number(object, "y") - height, cos(turn), sin(turn), -1};
+        const cJSON *points = get(object, "polygon") ? get(object, "polygon") : get(object, "polyline");
+        if (points) {
+            draw_points(to, own, path, points, &at);
+        } else if (get(object, "ellipse")) {
+            const narc_point center = put(&at, w / 2, h / 2);
+            draw_ellipse(to, own, path, &(place){center.x, -center.y, at.cosine, at.sine, -1}, w / 2, h / 2);
+        } else {
+            narc_error error;
+            for (int k = 0; k < 4; k++) {
+                const narc_point p = put(&at, k == 1 || k == 2 ? w : 0, k >= 2 ? h : 0);
+                check(to, own, k ? narc_line_to(path, &p, &error) : narc_move_to(path, &p, &error), &error);
+            }
+        }
+    }
+}
+
+static void draw_tiles(objects *to, const cJSON *tileset) {
+    const cJSON *tile;
+    cJSON_ArrayForEach(tile, get(tileset, "tiles")) {
+        char name[32];
+        const double own = number(tile, "imageheight");
+        snprintf(name, sizeof name, "tile-%.0f", number(tile, "id"));
+        draw_group(to, get(tile, "objectgroup"), name, own > 0 ? own : number(tileset, "tileheight"));
+    }
+}
+
+static void draw_layers(objects *to, const cJSON *of) {
+    const cJSON *layer;
+    cJSON_ArrayForEach(layer, get(of, "layers")) {
+        draw_group(to, layer, *word(layer, "name") ? word(layer, "name") : "objects", 0);
+        draw_layers(to, layer);
+    }
+}
+
+#if NARC_SVG
+/* The elements that are open: for each the JSON that it becomes; NULL: nothing. */
+typedef struct xml_reading {
+    cJSON *root, *open[32];
+    size_t depth;
+} xml_reading;
+
+static cJSON *sure(cJSON *item) {
+    if (!item)
+        fail("not enough memory for objects");
+    return item;
+}
+
+static cJSON *add_to_list(cJSON *to, const char *key) {
+    cJSON *list = cJSON_GetObjectItemCaseSensitive(to, key), *item = sure(cJSON_CreateObject());
+    cJSON_AddItemToArray(list ? list : sure(cJSON_AddArrayToObject(to, key)), item);
+    return item;
+}
+
+static void start_element(GMarkupParseContext *context, const char *element, const char **names, const char **values,
+                          gpointer data, GError **error) {
+    static const struct {
+        const char *element, *key; /* of a list that it is an item of; NULL: of an object */
+    } known[] = {{"objectgroup", "layers"}, {"group", "layers"},     {"layer", "layers"}, {"object", "objects"},
+                 {"tile", "tiles"},         {"tileset", "tilesets"}, {"polygon", NULL},   {"polyline", NULL},
+                 {"ellipse", NULL},         {"point", NULL},         {"text", NULL},      {"image", NULL}};
+    xml_reading *at = data;
+    cJSON *to = at->depth && at->depth <= 32 ? at->open[at->depth - 1] : NULL, *made = NULL;
+    (void)context, (void)error;
+    if (at->depth == 0)
+        at->root = made = sure(cJSON_CreateObject());
+    for (size_t k = 0; k < sizeof known / sizeof known[0] && to; k++) {
+        if (strcmp(element, known[k].element) != 0)
+            continue;
+        const bool of_tile = strcmp(element, "objectgroup") == 0 && get(to, "id") && !get(to, "layers") &&
+                             at->depth >= 2 && get(at->open[at->depth - 2], "tiles");
+        made = known[k].key && !of_tile ? add_to_list(to, known[k].key) : sure(cJSON_AddObjectToObject(to, element));
+    }
+    for (size_t k = 0; names[k] && made; k++) {
+        double value;
+        if (strcmp(names[k], "points") == 0) { /* x,y x,y */
+            cJSON *list = sure(cJSON_CreateArray());
+            for (const char *c = values[k]; *c; c += *c == ' ') {
+                cJSON *point = sure(cJSON_CreateObject());
+                sure(cJSON_AddNumberToObject(point, "x", g_ascii_strtod(c, (char **)&c)));
+                c += *c == ',';
+                const char *before = c;
+                sure(cJSON_AddNumberToObject(point, "y", g_ascii_strtod(c, (char **)&c)));
+                cJSON_AddItemToArray(list, point);
+                if (c == before)
+                    break;
+            }
+            cJSON_ReplaceItemInObjectCaseSensitive(to, element, list);
+            made = NULL;
+        } else if (strcmp(names[k], "name") != 0 && parse_number(values[k], &value)) {
+            sure(cJSON_AddNumberToObject(made, names[k], value));
+        } else {
+            sure(cJSON_AddStringToObject(made, names[k], values[k]));
+        }
+    }
+    if (made && to && strcmp(element, "image") == 0) /* of a tile: its own size */
+        sure(cJSON_AddNumberToObject(to, "imageheight", number(made, "height")));
+    if (at->depth < 32)
+        at->open[at->depth] = made;
+    at->depth++;
+}
+
+static void end_element(GMarkupParseContext *context, const char *element, gpointer data, GError **error) {
+    (void)context, (void)element, (void)error;
+    ((xml_reading *)data)->depth--;
+}
+
+static cJSON *read_xml(const char *bytes, size_t size) {
+    const char *start = bytes;
+    while (*start && strncmp(start, "<map", 4) != 0 && strncmp(start, "<tileset", 8) != 0 &&
+           strncmp(start, "<svg", 4) != 0)
+        start++;
+    if (!*start || strncmp(start, "<svg", 4) == 0)
+        return NULL;
+    const GMarkupParser parser = {.start_element = start_element, .end_element = end_element};
+    xml_reading at = {0};
+    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_DEFAULT_FLAGS, &at, NULL);
+    const bool done = g_markup_parse_context_parse(context, bytes, (gssize)size, NULL);
+    g_markup_parse_context_free(context);
+    if (done && at.root) {
+        sure(cJSON_AddStringToObject(at.root, "type", strncmp(start, "<map", 4) == 0 ? "map" : "tileset"));
+        return at.root;
+    }
+    cJSON_Delete(at.root);
+    return NULL;
+}
+#else
+static cJSON *read_xml(const char *bytes, size_t size) {
+    (void)bytes, (void)size;
+    return NULL;
+}
+#endif
+
+/* ---------------------------------------------------------------------------- engines */
+
+/* R.U.B.E.: a body's fixtures are a circle, polygon or chain each, around the body's position. */
+static void draw_rube(objects *to, const cJSON *root) {
+    const cJSON *body, *fixture;
+    cJSON_ArrayForEach(body, get(root, "body")) {
+        const cJSON *list = get(body, "fixture"), *position = get(body, "position");
+        const double turn = number(body, "angle");
+        const place at = {number(position, "x"), number(position, "y"), cos(turn), sin(turn), 1};
+        const char *name = *word(body, "name") ? word(body, "name") : "body";
+        size_t done = 0;
+        cJSON_ArrayForEach(fixture, list) {
+            narc_path *path = begin_path(to, name, done++, (size_t)cJSON_GetArraySize(list));
+            const cJSON *circle = get(fixture, "circle"), *center = get(circle, "center"),
+                        *polygon = get(fixture, "polygon") ? get(fixture, "polygon") : get(fixture, "chain");
+            const narc_point p = put(&at, number(center, "x"), number(center, "y"));
+            if (circle)
+                draw_ellipse(to, name, path, &(place){p.x, p.y, 1, 0, 1}, number(circle, "radius"),
+                             number(circle, "radius"));
+            else if (get(polygon, "vertices"))
+                draw_points(to, name, path, get(polygon, "vertices"), &at);
+        }
+    }
+}
+
+/* PhysicsEditor: bodies by their names; a fixture is a circle, or a list of convex polygons. */
+static void draw_fixtures(objects *to, const cJSON *body, bool draws, size_t *count) {
+    const cJSON *fixture, *polygon;
+    const place at = {0, 0, 1, 0, -1};
+    const size_t all = *count;
+    *count = 0;
+    cJSON_ArrayForEach(fixture, get(body, "fixtures")) {
+        const cJSON *circle = get(fixture, "circle");
+        if (circle && draws) {
+            narc_path *path = begin_path(to, body->string, *count, all);
+            draw_ellipse(to, body->string, path, &(place){number(circle, "x"), number(circle, "y"), 1, 0, -1},
+                         number(circle, "radius"), number(circle, "radius"));
+        }
+        *count += circle != NULL;
+        cJSON_ArrayForEach(polygon, get(fixture, "vertices")) {
+            if (draws)
+                draw_points(to, body->string, begin_path(to, body->string, *count, all), polygon, &at);
+            *count += 1;
+        }
+    }
+}
+
+bool read_objects(const char *file, const char *bytes, size_t size, begin_object *begin, void *context) {
+    objects to = {file, begin, context, 0};
+    char *text = join_text(bytes, size, "");
+    narc_error error;
+    cJSON *root = NULL;
+    bool known = false;
+    if (narc_clean_text(text, size, &error) == NARC_OK)
+        root = text[strspn(text, " \t\r\n")] == '<' ? read_xml(text, strlen(text)) : NULL;
+    if (!root && text[0] != '<' && narc_parse_json(text, &root, &error) != NARC_OK)
+        root = NULL;
+    const char *type = word(root, "type");
+    if (strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0) {
+        const cJSON *tileset;
+        known = true;
+        draw_layers(&to, root);
+        draw_tiles(&to, root);
+        cJSON_ArrayForEach(tileset, get(root, "tilesets")) { draw_tiles(&to, tileset); }
+    } else if (cJSON_IsArray(get(root, "body"))) {
+        known = true;
+        draw_rube(&to, root);
+    } else if (cJSON_IsObject(root)) {
+        const cJSON *body;
+        cJSON_ArrayForEach(body, root) {
+            size_t count = 0;
+            if (!cJSON_IsArray(get(body, "fixtures")))
+                continue;
+            known = true;
+            draw_fixtures(&to, body, false, &count);
+            draw_fixtures(&to, body, true, &count);
+        }
+    }
+    if (known && to.count == 0)
+        report_at(file, 0, "it has no collision objects");
+    cJSON_Delete(root);
+    free(text);
+    return known;
+}

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""objects.py NARC SVG - collision objects of Tiled, R.U.B.E. and PhysicsEditor come in as they went out, and as they are known;
+tilesets, resources and DXF go out."""
+import json
+import math
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+NARC, SVG = os.path.abspath(sys.argv[1]), sys.argv[2:] != ["OFF"]
+os.chdir(folder := tempfile.mkdtemp())
+
+
+def narc(code, *arguments):
+    done = subprocess.run([NARC, *arguments], capture_output=True, encoding="utf-8")
+    assert done.returncode == code, (arguments, done)
+    return done
+
+
+def write(name, value):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(value if isinstance(value, str) else json.dumps(value))
+
+
+def fitted(file, *options):
+    """Names to kind, area and middle of the box of what a file has."""
+    report = json.loads(narc(0, "fit", file, "--parts", "1", "--out", "fitted.json", "--report", "json", *options).stdout)
+    with open("fitted.json", encoding="utf-8") as made:
+        origins = {shape["name"]: shape["origin"] for shape in json.load(made)["shapes"]}
+    return {shape["name"]: (shape["kind"], shape["area"], origins[shape["name"]]) for shape in report["inputs"][0]["shapes"]}
+
+
+def same(found, known):
+    assert sorted(found) == sorted(known), (found, known)
+    for name, (kind, area, middle) in known.items():
+        assert (found[name][0] == "circle") == (kind == "circle") and abs(found[name][1] - area) < 1e-3 and math.dist(found[name][2], middle) < 1e-3, (name, found[name])
+
+
+# What went out comes in: a circle, a box, a triangle of a compound with its box.
+write("shapes.json", {"shapes": [
+    {"name": "disc", "circle": 1.5, "origin": [3, 4]}, {"name": "box", "box": {"width": 4, "height": 2}, "origin": [1, -7]},
+    {"name": "house/1", "polygon": [[-2, -1], [2, -1], [0, 2]], "origin": [20, 5]}, {"name": "house/2", "box": {"width": 2, "height": 3}, "origin": [20, 1]}]})
+KNOWN = {"disc": ("circle", 2.25 * math.pi, [3, 4]), "box": ("box", 8, [1, -7]), "house/1": ("polygon", 6, [20, 5]), "house/2": ("box", 6, [20, 1])}
+for form in ("tmj", "box2d", "phaser", *(["tmx"] if SVG else [])):
+    narc(0, "export", "shapes.json", "--to", form, "--tolerance", "1e-5", "--out", "out." + form)
+    same(fitted("out." + form), KNOWN)
+
+# Tiled's own: turned about the upper left corner, clockwise; ellipses; tiles, whose lower left corner is 0, 0; what is no outline.
+TILESET = {"type": "tileset", "tileheight": 32, "tilewidth": 32, "tiles": [
+    {"id": 3, "objectgroup": {"objects": [
+        {"id": 1, "name": "", "x": 4, "y": 8, "width": 8, "height": 4, "rotation": 90}, {"id": 2, "name": "", "x": 1, "y": 1, "width": 6, "height": 6, "ellipse": True},
+        {"id": 3, "name": "spot", "x": 1, "y": 1, "point": True}]}},
+    {"id": 5, "imageheight": 16, "objectgroup": {"objects": [{"id": 1, "name": "roof", "x": 2, "y": 10, "polygon": [{"x": 0, "y": 0}, {"x": 6, "y": 0}, {"x": 3, "y": -6}]}]}}]}
+TILES = {"tile-3/1": ("box", 32, [2, 20]), "tile-3/2": ("circle", 9 * math.pi, [4, 28]), "roof": ("polygon", 18, [5, 8])}
+write("set.tsj", TILESET)
+write("map.tmj", {"type": "map", "tilesets": [TILESET, {"source": "other.tsj"}], "layers": [{"type": "group", "layers": [
+    {"type": "objectgroup", "name": "walls", "offsetx": 10, "objects": [{"x": 0, "y": 5, "width": 2, "height": 4, "name": ""}, {"x": 1, "y": 2, "gid": 4, "width": 9, "height": 9}]}]}]})
+same(fitted("set.tsj"), TILES)
+same(fitted("map.tmj"), {**TILES, "walls": ("box", 8, [11, -7])})
+write("oval.tmj", {"type": "map", "layers": [{"name": "oval", "objects": [{"x": 0, "y": 0, "width": 8, "height": 4, "rotation": 30, "ellipse": True}]}]})
+narc(0, "fit", "oval.tmj", "--chain", "--tolerance", "1e-3", "--out", "oval.json")
+with open("oval.json", encoding="utf-8") as file:
+    turn = math.radians(30)
+    x, y = 4 * math.cos(turn) - 2 * math.sin(turn), -(4 * math.sin(turn) + 2 * math.cos(turn))
+    for arc in json.load(file)["shapes"][0]["chain"]["arcs"]:
+        u = arc["center"][0] + arc["radius"] * math.cos(arc["start"]) - x
+        v = arc["center"][1] + arc["radius"] * math.sin(arc["start"]) - y
+        along, aside = u * math.cos(turn) - v * math.sin(turn), u * math.sin(turn) + v * math.cos(turn)
+        assert abs(math.hypot(along / 4, aside / 2) - 1) < 1e-3, arc
+if SVG:
+    write("set.tsx", """<?xml version="1.0" encoding="UTF-8"?>
+<tileset version="1.10" name="set" tilewidth="32" tileheight="32" tilecount="8" columns="4"><image source="a.png" width="128" height="64"/>
+ <tile id="3"><objectgroup draworder="index" id="2"><object id="1" x="4" y="8" width="8" height="4" rotation="90"/>
+  <object id="2" x="1" y="1" width="6" height="6"><ellipse/></object><object id="3" name="spot" x="1" y="1"><point/></object></objectgroup></tile>
+ <tile id="5"><image source="b.png" width="16" height="16"/><objectgroup><object id="1" name="roof" x="2" y="10"><polygon points="0,0 6,0 3,-6"/></object></objectgroup></tile>
+</tileset>""")
+    same(fitted("set.tsx"), TILES)
+write("none.tmj", {"type": "map", "layers": []})
+assert narc(2, "fit", "none.tmj", "--arcs", "3").stderr == "narc: none.tmj: it has no collision objects\n"
+write("wrong.json", {"type": "map", "layers": [{"objects": [{"polygon": [{"x": 1e300, "y": 0}]}]}]})
+assert narc(2, "fit", "wrong.json", "--arcs", "3").stderr.startswith("narc: wrong.json: ")
+for odd in "[]", "{", '{"type": 1}', '{"body": {}}', '{"type": "map", "layers": 7}', '{"a": {"fixtures": [{"vertices": [1]}]}}':
+    write("odd.json", odd)
+    assert narc(2, "fit", "odd.json", "--arcs", "3").stderr.count("\n") == 1
+
+
+# Tilesets: of a sheet by its cells, of images by their names; and in again.
+def png(name, width, height):
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + b"".join(b"\0\xff" if x % 16 >= 4 and y % 16 >= 8 and (x >= 16 or y >= 16) else bytes(2) for x in range(width)) for y in range(height))
+    with open(name, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 4, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+os.mkdir("art")
+png("art/sheet.png", 48, 32)
+narc(0, "fit", "art/sheet.png", "--grid", "16x16", "--tolerance", "0.3", "--out", "cells.json")
+narc(0, "export", "cells.json", "--to", "tsj", "--image", "sheet.png", "--grid", "16x16", "--tolerance", "0.1", "--out", "art/sheet.tsj")
+with open("art/sheet.tsj", encoding="utf-8") as file:
+    made = json.load(file)
+assert (made["image"], made["imagewidth"], made["columns"], made["tilecount"], made["tileheight"]) == ("sheet.png", 48, 3, 6, 16), made
+assert [tile["id"] for tile in made["tiles"]] == [1, 2, 3, 4, 5] and "image" not in made["tiles"][0]
+for name, (kind, area, middle) in fitted("art/sheet.tsj").items():
+    assert kind in ("box", "polygon") and abs(area - 96) < 8 and math.dist(middle, [10, 4]) < 0.5, (name, kind, area, middle)
+png("art/crate.png", 32, 16)
+narc(0, "fit", "art/crate.png", "--tolerance", "0.3", "--out", "crate.json")
+narc(0, "export", "crate.json", "--to", "tsj", "--image", "{name}.png", "--tolerance", "0.1", "--out", "art/crates.tsj")
+with open("art/crates.tsj", encoding="utf-8") as file:
+    (tile,) = json.load(file)["tiles"]
+assert (tile["id"], tile["image"], tile["imagewidth"], tile["imageheight"]) == (0, "crate.png", 32, 16), tile
+for message, *options in (("a tileset has images: --image must name", "--to", "tsj"), ("a tileset has images", "--to", "tsj", "--image", "a.png"),
+                          ("--image and --grid are for tsj", "--to", "svg", "--grid", "2x2"), ("a tileset has the pixels", "--to", "tsj", "--image", "{name}.png", "--scale", "2"),
+                          ("crate.json: shape 'crate' is no cell of a sheet", "--to", "tsj", "--image", "art/sheet.png", "--grid", "16x16"),
+                          ("absent/crate.png: No such file", "--to", "tsj", "--image", "absent/{name}.png"), ("crate.json: --image must be PNG", "--to", "tsj", "--image", "{name}.json")):
+    assert narc(2, "export", "crate.json", "--tolerance", "1", *options).stderr.startswith("narc: " + message), message
+
+# A Godot resource for each body; one of two pieces has none.
+write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}}, {"name": "b", "circle": 1}]})
+for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Pool")):
+    narc(0, "export", "plain.json", "--to", form, "--tolerance", "0.1", "--out", "{name}." + form)
+    with open("a." + form, encoding="utf-8") as file:
+        text = file.read()
+    assert re.fullmatch(r'\[gd_resource type="ConvexPolygonShape2D" %s\]\n\n\[resource\]\npoints = %sVector2Array\(([-\d., ]*)\)\n\n' % words, text), text
+    assert "a file of %s holds one shape" % form in narc(2, "export", "shapes.json", "--to", form, "--tolerance", "0.1", "--out", "{name}.x").stderr
+    assert "a file of %s holds one shape" % form in narc(2, "export", "plain.json", "--to", form, "--tolerance", "0.1").stderr
+godot = shutil.which("godot3-server")
+if not godot:
+    print("skipped: Godot 3, without godot3-server")
+else:
+    os.mkdir("game")
+    shutil.copy("b.tres3", "game/b.tres")
+    write("game/project.godot", "config_version=4\n")
+    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tvar shape = load('res://b.tres')\n\tprint('SHAPE ', shape.get_class(), ' ', shape.points.size())\n\tquit()\n")
+    listed = subprocess.run([godot, "--path", "game", "-s", "list.gd"], capture_output=True, text=True, timeout=120, env={**os.environ, "HOME": folder})
+    assert re.search(r"^SHAPE ConvexPolygonShape2D \d+$", listed.stdout, re.M), listed
+
+# DXF: layers and arcs come back; a spline with weights is named.
+narc(0, "export", "shapes.json", "--to", "dxf", "--out", "out.dxf")
+if "without dxflib" not in subprocess.run([NARC, "fit", "out.dxf", "--arcs", "3"], capture_output=True, encoding="utf-8").stderr:
+    same(fitted("out.dxf", "--ids", "disc,box"), {name: KNOWN[name] for name in ("disc", "box")})
+    narc(0, "fit", "out.dxf", "--ids", "*", "--parts", "4", "--out", "layers.json")
+    spline = "0\nSPLINE\n8\na\n70\n4\n71\n2\n72\n6\n73\n3\n74\n0\n40\n0\n40\n0\n40\n0\n40\n1\n40\n1\n40\n1\n" + "".join(f"10\n{x}\n20\n{y}\n30\n0\n41\n{w}\n" for x, y, w in ((0, 0, 1), (4, 0, 2), (4, 4, 1)))
+    write("spline.dxf", "0\nSECTION\n2\nENTITIES\n" + spline + "0\nENDSEC\n0\nEOF\n")
+    assert re.match(r"spline.dxf:\d+: .*its control points have weights", narc(2, "fit", "spline.dxf", "--arcs", "3").stderr)
+
+os.chdir("/")
+shutil.rmtree(folder)
+print("all checks passed")
