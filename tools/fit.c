@@ -19,12 +19,17 @@
 #include "picture_fits.h"
 #include "progress.h"
 #include "report.h"
+#include "system.h"
 #include "text.h"
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
-    "                [--min-radius R] [--quick|--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
+    "                [--min-radius R] [--quick|--starts N] [--jobs N] [--keep-origin] [--keep-going]\n"
+    "                [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
     "                [--out shapes.json]\n"
     "                [--picture FILE]\n"
@@ -82,6 +87,8 @@ static const char MORE_HELP[] =
     "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
     "  --quick         a short search: areas are mostly within 1 % of the usual ones\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
+    "  --jobs N        how many outlines are fitted at a time, each as it would be alone; default:\n"
+    "                  one for each core. Ctrl-C leaves what is done\n"
     "  --keep-origin   the shapes keep the input's coordinates\n"
     "  --chain         instead of convex shapes: the outline itself as closed chains, within\n"
     "                  --tolerance, of the fewest arcs and edges; --smooth: they join without\n"
@@ -115,6 +122,7 @@ enum {
     MIN_RADIUS,
     QUICK,
     STARTS,
+    JOBS,
     CHAIN,
     OPEN,
     SMOOTH,
@@ -146,8 +154,8 @@ static void check_combinations(const option *options) {
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
     for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    static const int of_hulls[] = {ARCS,  PARTS,    BOUND, APPROXIMATE, OBJECTIVE,   EDGES,   POLYGON,
-                                   PAPER, FLATNESS, QUICK, STARTS,      KEEP_ORIGIN, NO_EDGES};
+    static const int of_hulls[] = {ARCS,  PARTS,    BOUND, APPROXIMATE, OBJECTIVE, EDGES,       POLYGON,
+                                   PAPER, FLATNESS, QUICK, STARTS,      JOBS,      KEEP_ORIGIN, NO_EDGES};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
         exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
     if (options[OPEN].value && !options[CHAIN].value)
@@ -214,15 +222,30 @@ static narc_fit_request make_request(const option *options) {
 /* ---------------------------------------------------------------------------- fits */
 
 typedef struct stage {
-    size_t done, total; /* outlines */
-    size_t part, parts; /* of the outline */
+    const char *name;   /* of the outline */
+    size_t part, parts; /* of it */
 } stage;
+
+static int count_cores(void) {
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+static size_t fitted, to_fit; /* outlines */
 
 static bool tell_progress(size_t done, size_t total, void *context) {
     const stage *at = context;
     const double part = ((double)at->part + (total ? (double)done / (double)total : 0)) / (double)at->parts;
-    show_share("fitting", ((double)at->done + part) / (double)at->total);
-    return true;
+#pragma omp critical(progress)
+    {
+        char what[160];
+        snprintf(what, sizeof what, "fitting %.140s", at->name);
+        show_share(what, fmin(1, ((double)fitted + part) / (double)to_fit));
+    }
+    return !was_interrupted();
 }
 
 /* The larger side of an outline's bounding box; 0 if it has none, which fitting then tells. */
@@ -407,6 +430,8 @@ static bool cut_exactly(fitting *how, const outline *of, collider *out, narc_err
 }
 
 static bool fit_outline(fitting *how, const outline *of, collider *out, narc_error *error) {
+    if (narc_create_shapes(NULL, &how->store) != NARC_OK)
+        fail("not enough memory for a store of shapes");
     narc_fit_request request = how->request;
     const double begin = seconds_now();
     request.flatness = how->flatness > 0 ? how->flatness * measure_extent(of) : 0;
@@ -416,25 +441,70 @@ static bool fit_outline(fitting *how, const outline *of, collider *out, narc_err
                       : how->parts ? fit_parts(how, of, request, out, error)
                                    : fit_each(how, &(narc_path *){of->path}, request, out, error);
     out->seconds = seconds_now() - begin;
+    narc_destroy_shapes(how->store);
     if (!done)
         free(out->fits);
     return done;
 }
 
-static collider *fit_outlines(outline_list *outlines, fitting how) {
-    collider *fits = allocate(outlines->count, sizeof *fits);
-    size_t kept = 0;
-    if (narc_create_shapes(NULL, &how.store) != NARC_OK)
-        fail("not enough memory for a store of shapes");
-    for (how.at.total = outlines->count; how.at.done < how.at.total; how.at.done++) {
+/* Each outline by itself: what comes out is the same whatever is fitted at the same time. Without keep_going() the first
+ * that fails ends the command, and those behind it are not begun. */
+static collider *fit_outlines(outline_list *outlines, const fitting *how, int jobs) {
+    typedef struct outcome {
+        collider fits;
+        enum { NOT_BEGUN, FAILED, FITTED } state;
         narc_error error;
-        if (fit_outline(&how, &outlines->items[how.at.done], &fits[kept], &error))
-            keep_outline(outlines, how.at.done, kept++);
-        else
-            report_outline(&outlines->items[how.at.done], error.message);
+    } outcome;
+    const size_t count = outlines->count;
+    (void)jobs; /* without OpenMP */
+    outcome *outcomes = allocate(count, sizeof *outcomes);
+    size_t first_failed = count;
+    for (size_t k = 0; k < count; k++)
+        outcomes[k].state = NOT_BEGUN;
+    fitted = 0;
+    to_fit = count;
+    hear_interrupts(true);
+#pragma omp parallel for schedule(dynamic) num_threads(jobs)
+    for (size_t k = 0; k < count; k++) {
+        size_t failed;
+#pragma omp atomic read
+        failed = first_failed;
+        if (was_interrupted() || (k > failed && !goes_on()))
+            continue;
+        fitting own = *how;
+        outcome *at = &outcomes[k];
+        own.at.name = outlines->items[k].name;
+        const bool done = fit_outline(&own, &outlines->items[k], &at->fits, &at->error);
+        if (was_interrupted()) { /* what it has so far is less than it would be */
+            if (done)
+                free(at->fits.fits);
+            continue;
+        }
+        at->state = done ? FITTED : FAILED;
+#pragma omp critical(progress)
+        {
+            fitted++;
+            first_failed = !done && k < first_failed ? k : first_failed;
+        }
+    }
+    hear_interrupts(false);
+    collider *fits = allocate(count, sizeof *fits);
+    size_t kept = 0, left = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (outcomes[k].state == FAILED)
+            report_outline(&outlines->items[k], outcomes[k].error.message);
+        left += outcomes[k].state == NOT_BEGUN;
+        if (outcomes[k].state != FITTED)
+            continue;
+        fits[kept] = outcomes[k].fits;
+        keep_outline(outlines, k, kept++);
+    }
+    free(outcomes);
+    if (left) {
+        keep_going();
+        report_at("Ctrl-C", 0, "%zu of %zu outlines are not fitted", left, count);
     }
     cut_outlines(outlines, kept);
-    narc_destroy_shapes(how.store);
     return fits;
 }
 
@@ -593,8 +663,8 @@ static void write_all(const outline_list *outlines, const collider *fits, const 
     free(shapes);
 }
 
-static void make_shapes(outline_list *outlines, fitting how, const wanted *to) {
-    collider *fits = fit_outlines(outlines, how);
+static void make_shapes(outline_list *outlines, const fitting *how, int jobs, const wanted *to) {
+    collider *fits = fit_outlines(outlines, how, jobs);
     check_any(outlines, to);
     size_t count;
     narc_named_shape *shapes = name_shapes(outlines, fits, &count);
@@ -630,6 +700,7 @@ static void run(int argc, char **argv) {
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [QUICK] = {"--quick", false, NULL},
                                [STARTS] = {"--starts", true, NULL},
+                               [JOBS] = {"--jobs", true, NULL},
                                [CHAIN] = {"--chain", false, NULL},
                                [OPEN] = {"--open", false, NULL},
                                [SMOOTH] = {"--smooth", false, NULL},
@@ -642,6 +713,7 @@ static void run(int argc, char **argv) {
     const char **files = allocate((size_t)argc, sizeof *files);
     const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
     const narc_fit_request request = make_request(options);
+    const int jobs = options[JOBS].value ? (int)whole_option(&options[JOBS], 1, 1024) : count_cores();
     const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
     reading how = take_reading(&options[READING]);
@@ -662,8 +734,8 @@ static void run(int argc, char **argv) {
     else
         make_shapes(
             &outlines,
-            (fitting){.request = request, .parts = parts, .no_edges = options[NO_EDGES].value, .flatness = flatness},
-            &to);
+            &(fitting){.request = request, .parts = parts, .no_edges = options[NO_EDGES].value, .flatness = flatness},
+            jobs, &to);
     if (count_reports())
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);

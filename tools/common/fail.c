@@ -102,6 +102,8 @@ const told *list_told(size_t *out_count) {
 
 void keep_going(void) { going_on = true; }
 
+bool goes_on(void) { return going_on; }
+
 size_t count_reports(void) { return report_count; }
 
 void *allocate(size_t count, size_t size) {

@@ -22,6 +22,7 @@ PRINTF_LIKE(3, 4) _Noreturn void fail_at(const char *path, size_t line, const ch
 /* As fail_at(), but from keep_going() on it prints the line, counts it and returns. */
 PRINTF_LIKE(3, 4) void report_at(const char *path, size_t line, const char *format, ...);
 void keep_going(void);
+bool goes_on(void);
 size_t count_reports(void);
 
 /* A warning: "narc: path: message". */

@@ -49,4 +49,8 @@ void remove_file(const char *path);
  * grows beyond a limit is an error of writing. */
 void watch_signals(void (*clean_up)(void));
 
+/* From hear_interrupts(true) to hear_interrupts(false) the first Ctrl-C does not end the command but is told. */
+void hear_interrupts(bool hear);
+bool was_interrupted(void);
+
 #endif

@@ -96,11 +96,27 @@ void remove_file(const char *path) { unlink(path); }
 
 static void (*at_end)(void);
 
+static volatile sig_atomic_t hears, interrupted;
+
 static void on_signal(int number) {
-    at_end();
+    if (number == SIGINT && hears && !interrupted) {
+        interrupted = 1;
+        signal(number, on_signal);
+        return;
+    }
+    if (at_end)
+        at_end();
     signal(number, SIG_DFL);
     raise(number);
 }
+
+void hear_interrupts(bool hear) {
+    hears = hear;
+    if (hear && signal(SIGINT, on_signal) == SIG_IGN)
+        signal(SIGINT, SIG_IGN);
+}
+
+bool was_interrupted(void) { return interrupted; }
 
 void watch_signals(void (*clean_up)(void)) {
     static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,    SIGPIPE, SIGQUIT, SIGALRM, SIGXCPU,

@@ -202,11 +202,25 @@ void remove_file(const char *path) {
 
 static void (*at_end)(void);
 
+static volatile LONG hears, interrupted;
+
 static BOOL WINAPI on_event(DWORD event) {
-    (void)event;
-    at_end();
+    if (event == CTRL_C_EVENT && hears && !interrupted) {
+        interrupted = 1;
+        return TRUE;
+    }
+    if (at_end)
+        at_end();
     return FALSE; /* and the process ends */
 }
+
+void hear_interrupts(bool hear) {
+    hears = hear;
+    if (hear && !at_end)
+        SetConsoleCtrlHandler(on_event, TRUE);
+}
+
+bool was_interrupted(void) { return interrupted; }
 
 void watch_signals(void (*clean_up)(void)) {
     at_end = clean_up;
