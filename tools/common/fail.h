@@ -24,6 +24,9 @@ PRINTF_LIKE(3, 4) void report_at(const char *path, size_t line, const char *form
 void keep_going(void);
 size_t count_reports(void);
 
+/* From now on lines that do not end the command are not printed: a report on standard error has them. */
+void hold_lines(void);
+
 /* A warning: "narc: path: message". */
 PRINTF_LIKE(2, 3) void warn_at(const char *path, const char *format, ...);
 

@@ -49,4 +49,7 @@ void remove_file(const char *path);
  * grows beyond a limit is an error of writing. */
 void watch_signals(void (*clean_up)(void));
 
+/* They no longer end the command, which is about to end itself. */
+void ignore_signals(void);
+
 #endif

@@ -201,12 +201,17 @@ void remove_file(const char *path) {
 }
 
 static void (*at_end)(void);
+static volatile bool ignored;
 
 static BOOL WINAPI on_event(DWORD event) {
     (void)event;
+    if (ignored)
+        return TRUE;
     at_end();
     return FALSE; /* and the process ends */
 }
+
+void ignore_signals(void) { ignored = true; }
 
 void watch_signals(void (*clean_up)(void)) {
     at_end = clean_up;
