@@ -457,8 +457,11 @@ static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list
 
 /* The list of shapes that the file must be; NULL after an error. */
 static const cJSON *find_list(reader *at) {
-    static const char *const keys[] = {"shapes", "user", NULL};
+    static const char *const keys[] = {"$schema", "shapes", "user", NULL};
     check_object(at, at->root, "the file's value", keys);
+    const cJSON *schema = at->status ? NULL : find(at->root, "$schema"); /* which editors look for */
+    if (schema && !cJSON_IsString(schema))
+        fail_value(at, schema, "$schema", "is not a string");
     const cJSON *found = at->status ? NULL : require(at, at->root, "shapes");
     if (found && !cJSON_IsArray(found))
         fail_value(at, found, "shapes", "is not a list");

@@ -52,8 +52,9 @@ typedef struct narc_shape_list {
 } narc_shape_list;
 
 /* Reads a shapes file of `size` bytes, and adds each shape, but no chain, to `store` unless that is NULL. What a store
- * would not take is an error, of chains too, also if `store` is NULL. What stands under a key "user" is not looked at. The list's memory comes from `allocator`, NULL:
- * malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the store.
+ * would not take is an error, of chains too, also if `store` is NULL. What stands under a key "user" is not looked at;
+ * "$schema" is any text. The list's memory comes from `allocator`, NULL: malloc() and free(); cJSON, which parses, uses
+ * malloc(). The list may outlive the data and the store.
  * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a
  * key that is unknown, missing or there twice, a value of another kind, a name that cannot be one or is another
  * shape's), NARC_ERROR_COUNT (no shape, too many arcs or points), NARC_ERROR_NOT_FINITE; and those of the

@@ -323,10 +323,12 @@ static void split_outline(export_body *to, const piece *of, size_t most) {
 
 /* ---------------------------------------------------------------------------- bodies */
 
-/* Where NAME/1, NAME/2 ... are parts of a body NAME: how long that name is, and the part's number; else 0. */
+/* Where NAME/1, NAME/2 ... are parts of a body NAME: how long that name is, and the part's number, which does not begin with
+ * 0; else 0. */
 static size_t find_number(const char *name, uint64_t *number) {
     const char *slash = strrchr(name, '/');
-    return slash && slash > name && parse_whole(slash + 1, 1000000, number) ? (size_t)(slash - name) : 0;
+    return slash && slash > name && slash[1] != '0' && parse_whole(slash + 1, 1000000, number) ? (size_t)(slash - name)
+                                                                                               : 0;
 }
 
 static size_t find_part(const narc_shape_list *shapes, const char *name, size_t length, uint64_t number) {
@@ -507,19 +509,23 @@ static void print_bodies(FILE *report, const exported *what) {
     fprintf(report, "%-20s %8zu %8zu\n", "all", pieces, corners);
 }
 
+/* `out` may have {name}; NULL: nothing is written. */
 static void put_bodies(FILE *report, const exported *what, const char *path, const char *out) {
     fputs("{\"inputs\": [\n  ", report);
     put_input(report, path);
     fputs(", \"bodies\": [", report);
     for (size_t i = 0; i < what->count; i++) {
         const export_body *of = &what->bodies[i];
-        char *own = expand_pattern(out, of->name);
         fputs(i ? ",\n    {\"name\": " : "\n    {\"name\": ", report);
         put_json_text(report, of->name);
-        fprintf(report, ", \"pieces\": %zu, \"corners\": %zu, \"out\": ", of->count, count_corners(of));
-        put_json_text(report, own ? own : out);
+        fprintf(report, ", \"pieces\": %zu, \"corners\": %zu", of->count, count_corners(of));
+        if (out) {
+            char *own = expand_pattern(out, of->name);
+            fputs(", \"out\": ", report);
+            put_json_text(report, own ? own : out);
+            free(own);
+        }
         fputc('}', report);
-        free(own);
     }
     fputs("]}\n]}\n", report);
 }
@@ -612,7 +618,7 @@ static void run(int argc, char **argv) {
         report = finish_outputs();
     }
     if (json)
-        put_bodies(report, &made, files[0], out);
+        put_bodies(report, &made, files[0], options[DRY_RUN].value ? NULL : out);
     else
         print_bodies(report, &made);
     finish_report(report);

@@ -31,12 +31,10 @@ static const char HELP[] =
     "                [--min-radius R] [--quick|--starts N] [--jobs N] [--keep-origin] [--keep-going]\n"
     "                [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
-    "                [--out shapes.json]\n"
-    "                [--picture FILE]\n"
+    "                [--out shapes.json] [--picture FILE] [--report json]\n"
     "       narc fit INPUT... --chain --tolerance T [--open] [--smooth] [--keep-going] [--characters TEXT]\n"
     "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
-    "                [--out shapes.json]\n"
-    "                [--picture FILE]\n"
+    "                [--out shapes.json] [--picture FILE] [--report json]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
     "those that come close to it. Of an outline only the convex hull counts, without --parts or --chain.\n"
@@ -585,6 +583,8 @@ static void check_any(const outline_list *outlines, const wanted *to) {
     if (to->json)
         put_fits(report, outlines, NULL, NULL, NULL, to->out);
     finish_report(report);
+    if (to->json && report == stderr)
+        abandon();
     fail("no outline is left to fit");
 }
 
@@ -722,10 +722,14 @@ static void run(int argc, char **argv) {
                  .picture = options[PICTURE].value,
                  .json = wants_json(&options[REPORT])};
     picture_kind_of(to.picture);
+    refuse_pattern(options[PICTURE].name, to.picture);
 
     outline_list outlines = {0};
     if (options[KEEP_GOING].value)
         keep_going();
+    const bool is_told = to.json && strcmp(to.out, "-") == 0; /* by the report on standard error */
+    if (is_told)
+        hold_lines();
     read_outlines(files, file_count, &how, &outlines);
     check_any(&outlines, &to);
     open_files(&to, &outlines);
@@ -736,7 +740,7 @@ static void run(int argc, char **argv) {
             &outlines,
             &(fitting){.request = request, .parts = parts, .no_edges = options[NO_EDGES].value, .flatness = flatness},
             jobs, &to);
-    if (count_reports())
+    if (count_reports() && !is_told)
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);
     free(files);

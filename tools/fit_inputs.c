@@ -379,18 +379,25 @@ typedef struct surprises {
     char link[64];
 } surprises;
 
+/* Does a text begin so, in capitals or not? */
+static bool begins(const char *text, const char *with) { return g_ascii_strncasecmp(text, with, strlen(with)) == 0; }
+
 /* Notes the first place behind `mark` where a text names another file. */
 static void note_link(surprises *found, const char *text, const char *mark) {
-    for (const char *at = text; !found->link[0] && (at = strstr(at, mark));) {
-        at += strlen(mark);
-        at += strspn(at, " '\"");
-        if (*at && *at != '#' && strncmp(at, "data:", 5) != 0 && strncmp(at, "url(", 4) != 0)
-            snprintf(found->link, sizeof found->link, "%.*s", (int)strcspn(at, " '\");"), at);
+    for (const char *at = text; !found->link[0] && *at; at++) {
+        if (!begins(at, mark))
+            continue;
+        const char *to = at + strlen(mark);
+        to += strspn(to, " '\"");
+        if (*to && *to != '#' && !begins(to, "data:") && !begins(to, "url("))
+            snprintf(found->link, sizeof found->link, "%.*s", (int)strcspn(to, " '\");"), to);
     }
 }
 
 static void note_element(GMarkupParseContext *context, const char *element, const char **names, const char **values,
                          gpointer data, GError **error) {
+    static const char *const linking[] = {"style",  "fill",         "stroke",     "clip-path",  "mask", "filter",
+                                          "marker", "marker-start", "marker-mid", "marker-end", NULL};
     surprises *found = data;
     (void)context, (void)error;
     if (strncmp(element, "animate", 7) == 0 || strcmp(element, "set") == 0)
@@ -398,11 +405,11 @@ static void note_element(GMarkupParseContext *context, const char *element, cons
     for (size_t k = 0; names[k]; k++) {
         const bool is_link = strcmp(names[k], "href") == 0 || strcmp(names[k], "xlink:href") == 0;
         const char *value = values[k] + strspn(values[k], " ");
-        if (!is_link)
+        if (g_strv_contains(linking, names[k]))
             note_link(found, value, "url(");
-        else if (strncmp(value, "data:", 5) == 0)
+        else if (is_link && begins(value, "data:"))
             found->image = found->image || strcmp(element, "image") == 0;
-        else if (value[0] && value[0] != '#' && strcmp(element, "a") != 0 && !found->link[0])
+        else if (is_link && value[0] && value[0] != '#' && strcmp(element, "a") != 0 && !found->link[0])
             snprintf(found->link, sizeof found->link, "%s", value);
     }
 }
@@ -540,7 +547,8 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     }
     if (added->open_count && !how->open)
         warn_at(file,
-                "%zu of its lines are open, and closed by a straight line each; --chain --open keeps them as strokes",
+                "%zu of its lines are open, and closed by a straight line each; narc fit --chain --open keeps them as "
+                "strokes",
                 added->open_count);
     added->is_svg = kind == SVG;
     added->is_picture = kind == PNG || (kind == SVG && !exact);

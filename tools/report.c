@@ -24,8 +24,12 @@ static void put_told(FILE *file, const char *path, bool errors) {
     for (size_t i = 0; i < count; i++) {
         if (all[i].is_error != errors || strcmp(all[i].path, path) != 0)
             continue;
-        fputs(shown++ ? ", " : "", file);
+        fputs(shown++ ? ", {" : "{", file);
+        if (all[i].line)
+            fprintf(file, "\"line\": %zu, ", all[i].line);
+        fputs("\"text\": ", file);
         put_json_text(file, all[i].text);
+        fputc('}', file);
     }
 }
 

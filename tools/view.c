@@ -57,25 +57,25 @@ static void put_part(FILE *file, const narc_named_shape *part) {
     fputs("]}", file);
 }
 
-/* The area that all shapes cover; 0 of chains. */
+/* The area that all shapes cover, measured near the first one's origin; 0 where any is a chain. */
 static double measure_area(const narc_shape_list *shapes, const size_t *parts, size_t count) {
     size_t *counts = allocate(count, sizeof *counts), total = 0, capacity = 0;
     narc_arc *arcs = NULL;
+    const narc_point around = shapes->items[parts[0]].origin;
     narc_mass mass = {0};
+    bool solid = true;
     for (size_t k = 0; k < count; k++) {
         const narc_named_shape *part = &shapes->items[parts[k]];
-        if (part->form != NARC_FORM_SHAPE)
-            break;
+        solid = solid && part->form == NARC_FORM_SHAPE;
         arcs = grow(arcs, &capacity, total + part->arc_count, sizeof *arcs);
         counts[k] = part->arc_count;
         for (size_t i = 0; i < part->arc_count; i++, total++) {
             arcs[total] = part->arcs[i];
-            arcs[total].center_x += part->origin.x;
-            arcs[total].center_y += part->origin.y;
+            arcs[total].center_x += part->origin.x - around.x;
+            arcs[total].center_y += part->origin.y - around.y;
         }
     }
-    if (shapes->items[parts[0]].form != NARC_FORM_SHAPE ||
-        narc_compute_union_mass(arcs, counts, count, NULL, &mass, NULL) != NARC_OK)
+    if (!solid || narc_compute_union_mass(arcs, counts, count, NULL, &mass, NULL) != NARC_OK)
         mass.area = 0;
     free(arcs);
     free(counts);
@@ -104,6 +104,8 @@ static void put_drawing(FILE *file, const outline *of) {
 
 static void write_page(FILE *file, const narc_shape_list *shapes, const outline_list *outlines) {
     size_t *parts = allocate(shapes->count, sizeof *parts), bodies = 0;
+    bool *shown = allocate(outlines->count, sizeof *shown);
+    memset(shown, 0, outlines->count * sizeof *shown);
     fwrite(page, 1, sizeof page, file);
     fputs("{\"bodies\":[", file);
     for (size_t k = 0; k < shapes->count; k++) {
@@ -122,14 +124,21 @@ static void write_page(FILE *file, const narc_shape_list *shapes, const outline_
         size_t drawn = 0;
         while (drawn < outlines->count && strcmp(outlines->items[drawn].name, name) != 0)
             drawn++;
-        if (drawn < outlines->count)
+        if (drawn < outlines->count) {
             put_drawing(file, &outlines->items[drawn]);
-        else
+            shown[drawn] = true;
+        } else {
             fputc(']', file);
+        }
         fputc('}', file);
         free(name);
     }
     fputs("\n]}\n</script>\n</html>\n", file);
+    for (size_t i = 0; i < outlines->count; i++)
+        if (!shown[i])
+            warn_at(outlines->items[i].file, "it is not shown: no body is named '%s'",
+                    narc_make_excerpt(outlines->items[i].name).text);
+    free(shown);
     free(parts);
 }
 
@@ -140,6 +149,7 @@ static void run(int argc, char **argv) {
     const size_t count = parse_options(argc, argv, options, OPTIONS, "SHAPES", files);
     reading how = take_reading(&options[READING]);
     how.keep_images = true;
+    refuse_pattern(options[OUT].name, options[OUT].value);
     narc_shape_list *shapes = read_shapes(files[0], NULL);
     outline_list outlines = {0};
     read_outlines(files + 1, count - 1, &how, &outlines);

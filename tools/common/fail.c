@@ -17,7 +17,7 @@
 
 enum { LINE_SIZE = 2048 };
 
-static bool going_on;
+static bool going_on, holding;
 static size_t report_count;
 static told *messages;
 static size_t message_count, message_capacity;
@@ -28,10 +28,12 @@ _Noreturn void abandon(void) {
     _Exit(FAILURE_STATUS);
 }
 
-/* Prints `line` as one line of UTF-8. */
-static void print_line(char *line) {
-    hide_progress();
+/* Makes one line of UTF-8 of `line`, and prints it. */
+static void print_line(char *line, bool last) {
     narc_make_printable(line);
+    if (holding && !last)
+        return;
+    hide_progress();
     fprintf(stderr, "%s\n", line);
 }
 
@@ -49,7 +51,7 @@ void fail(const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + 6, sizeof line - 6, format, arguments);
     va_end(arguments);
-    print_line(line);
+    print_line(line, true);
     abandon();
 }
 
@@ -60,7 +62,7 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line);
+    print_line(line, true);
     abandon();
 }
 
@@ -77,7 +79,7 @@ void report_at(const char *path, size_t line_number, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line);
+    print_line(line, !going_on);
     keep_told(path, line_number, true, line + used);
     report_count++;
     if (!going_on)
@@ -91,7 +93,7 @@ void warn_at(const char *path, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line);
+    print_line(line, false);
     keep_told(path, 0, false, line + used);
 }
 
@@ -103,6 +105,8 @@ const told *list_told(size_t *out_count) {
 void keep_going(void) { going_on = true; }
 
 bool goes_on(void) { return going_on; }
+
+void hold_lines(void) { holding = true; }
 
 size_t count_reports(void) { return report_count; }
 

@@ -25,6 +25,9 @@ void keep_going(void);
 bool goes_on(void);
 size_t count_reports(void);
 
+/* From now on lines that do not end the command are not printed: a report on standard error has them. */
+void hold_lines(void);
+
 /* A warning: "narc: path: message". */
 PRINTF_LIKE(2, 3) void warn_at(const char *path, const char *format, ...);
 

@@ -99,7 +99,17 @@ static output *add_output(const char *path) {
 void reserve_output(const char *path) {
     if (find_output(path))
         fail("%s: two outputs are the same file", path);
-    add_output(path);
+    output *out = add_output(path);
+    if (out->target) {
+        FILE *file = open_temporary(out->target, &out->temporary);
+        if (!file)
+            fail("%s: %s", path, strerror(errno));
+        fclose(file);
+        char *name = out->temporary;
+        remove_file(name);
+        out->temporary = NULL;
+        free(name);
+    }
 }
 
 FILE *open_output(const char *path) {
@@ -160,6 +170,8 @@ void finish_report(FILE *file) {
 }
 
 void commit_outputs(void) {
+    if (first)
+        ignore_signals(); /* all files or none */
     while (first) {
         output *out = first;
         if (out->temporary && !replace_file(out->temporary, out->target))
@@ -172,15 +184,33 @@ void commit_outputs(void) {
     }
 }
 
+static const char mark[] = "{name}";
+
+void refuse_pattern(const char *option, const char *path) {
+    if (path && strstr(path, mark))
+        fail("%s is one file, it takes no {name}", option);
+}
+
 char *expand_pattern(const char *pattern, const char *name) {
-    static const char mark[] = "{name}", odd[] = "/\\:*?<>|";
-    const char *found = strstr(pattern, mark);
-    if (!found)
+    static const char odd[] = "/\\:*?<>|";
+    if (!strstr(pattern, mark))
         return NULL;
-    char *begin = join_text(pattern, (size_t)(found - pattern), name), *path;
-    for (char *c = begin + (found - pattern); *c; c++)
-        *c = strchr(odd, *c) ? '_' : *c;
-    path = join_text(begin, strlen(begin), found + strlen(mark));
-    free(begin);
+    const bool is_dots = !name[strspn(name, ".")]; /* which are folders */
+    char *safe = join_text(name, strlen(name), ""), *path = join_text("", 0, "");
+    for (char *c = safe; *c; c++)
+        *c = is_dots || strchr(odd, *c) ? '_' : *c;
+    for (const char *found; pattern; pattern = found ? found + strlen(mark) : NULL) {
+        found = strstr(pattern, mark);
+        char *piece = join_text(pattern, found ? (size_t)(found - pattern) : strlen(pattern), found ? safe : ""),
+             *longer = join_text(path, strlen(path), piece);
+        free(piece);
+        free(path);
+        path = longer;
+    }
+    free(safe);
+    if (strcmp(path, "-") == 0) { /* no standard output */
+        free(path);
+        path = join_text("./-", 3, "");
+    }
     return path;
 }

@@ -53,4 +53,7 @@ void watch_signals(void (*clean_up)(void));
 void hear_interrupts(bool hear);
 bool was_interrupted(void);
 
+/* They no longer end the command, which is about to end itself. */
+void ignore_signals(void);
+
 #endif

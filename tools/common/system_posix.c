@@ -118,12 +118,18 @@ void hear_interrupts(bool hear) {
 
 bool was_interrupted(void) { return interrupted; }
 
-void watch_signals(void (*clean_up)(void)) {
+static void handle_signals(void (*handler)(int)) {
     static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,    SIGPIPE, SIGQUIT, SIGALRM, SIGXCPU,
                                   SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGABRT, SIGTRAP};
-    at_end = clean_up;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        if (signal(numbers[i], on_signal) == SIG_IGN)
+        if (signal(numbers[i], handler) == SIG_IGN)
             signal(numbers[i], SIG_IGN);
+}
+
+void ignore_signals(void) { handle_signals(SIG_IGN); }
+
+void watch_signals(void (*clean_up)(void)) {
+    at_end = clean_up;
+    handle_signals(on_signal);
     signal(SIGXFSZ, SIG_IGN);
 }

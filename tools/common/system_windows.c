@@ -201,10 +201,13 @@ void remove_file(const char *path) {
 }
 
 static void (*at_end)(void);
+static volatile bool ignored;
 
 static volatile LONG hears, interrupted;
 
 static BOOL WINAPI on_event(DWORD event) {
+    if (ignored)
+        return TRUE;
     if (event == CTRL_C_EVENT && hears && !interrupted) {
         interrupted = 1;
         return TRUE;
@@ -221,6 +224,8 @@ void hear_interrupts(bool hear) {
 }
 
 bool was_interrupted(void) { return interrupted; }
+
+void ignore_signals(void) { ignored = true; }
 
 void watch_signals(void (*clean_up)(void)) {
     at_end = clean_up;

@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 
 #include "fail.h"
+#include "names.h"
 #include "number.h"
 #include "output.h"
 #include "system.h"
@@ -105,13 +106,20 @@ _Noreturn void fail_text(const char *path, const narc_error *error) {
 
 void put_json_text(FILE *file, const char *text) {
     fputc('"', file);
-    for (; *text; text++)
-        if ((unsigned char)*text < ' ' || *text == '<')
-            fprintf(file, "\\u%04x", (unsigned)*text);
-        else if (*text == '"' || *text == '\\')
-            fprintf(file, "\\%c", *text);
+    while (*text) {
+        const char *next = text;
+        uint32_t code;
+        if (!narc_next_code_point(&next, &code)) {
+            fputs("\\ufffd", file);
+            text++;
+            continue;
+        }
+        if (code < ' ' || code == '<')
+            fprintf(file, "\\u%04x", (unsigned)code);
         else
-            fputc(*text, file);
+            fprintf(file, "%s%.*s", code == '"' || code == '\\' ? "\\" : "", (int)(next - text), text);
+        text = next;
+    }
     fputc('"', file);
 }
 

@@ -134,7 +134,7 @@ if has_terminal; then
     awk 'BEGIN { for (k = 0; k < 60; k++) print cos(k * 0.1047) "," 0.4 * sin(k * 0.1047) }' >fits/ellipse.csv
     script -qec "'$narc' fit fits/ellipse.csv --arcs 12 --edges --objective distance --out long.json" /dev/null \
         >script.txt 2>&1 </dev/null
-    check "a long fit tells how far it is" grep -q "fitting: [1-9][0-9]* %" script.txt
+    check "a long fit tells how far it is" grep -q "fitting ellipse: [1-9][0-9]* %" script.txt
 else
     echo "skipped: progress on a terminal"
 fi

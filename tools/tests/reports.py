@@ -34,7 +34,8 @@ fit = ["fit", "el.csv", "in.csv", "disc.csv", "odd.zzz", "in", "--keep-going", "
 inputs = json.loads(narc(1, *fit, "--tolerance", "0.1", "--out", "out/{name}.json").stdout)["inputs"]
 assert [at["file"] for at in inputs] == ["el.csv", "in.csv", "disc.csv", "odd.zzz", "in"]
 assert [len(at["errors"]) for at in inputs] == [0, 1, 0, 1, 1] and not any(at["warnings"] for at in inputs)
-assert "is not a number" in inputs[1]["errors"][0] and "a folder without" in inputs[4]["errors"][0]
+(wrong,), (empty,) = inputs[1]["errors"], inputs[4]["errors"]
+assert wrong["line"] == 2 and "is not a number" in wrong["text"] and "a folder without" in empty["text"] and "line" not in empty
 (el,), none, (disc,), _, _ = (at["shapes"] for at in inputs)
 assert none == [] and sorted(os.listdir("out")) == ["disc.json", "el.json"]
 assert (disc["kind"], disc["arcs"], disc["way"], disc["out"]) == ("circle", 1, "geometry", "out/disc.json")
@@ -61,6 +62,8 @@ assert [(body["name"], body["out"]) for body in told["bodies"]] == [("el", "out/
 for name, pieces in ("el", told["bodies"][0]["pieces"]), ("disc", 1):
     with open(f"out/{name}.tscn", encoding="utf-8") as file:
         assert file.read().count('type="CollisionShape2D"') == pieces
+done = narc(0, "export", "all.json", "--to", "godot3", "--tolerance", "0.1", "--dry-run", "--report", "json")
+assert [body.keys() for body in json.loads(done.stdout)["inputs"][0]["bodies"]] == [{"name", "pieces", "corners"}] * 2
 kept = sorted(os.listdir("out"))
 assert "absent/el.json: No such file" in narc(2, "fit", "el.csv", "--arcs", "3", "--out", "absent/{name}.json").stderr
 with open("twins.json", "w", encoding="utf-8") as file:
@@ -68,6 +71,46 @@ with open("twins.json", "w", encoding="utf-8") as file:
 assert "two outputs are the same file" in narc(2, "export", "twins.json", "--to", "svg", "--out", "out/{name}.svg").stderr
 assert "--report must be json" in narc(2, "export", "all.json", "--to", "svg", "--report", "xml").stderr
 assert sorted(os.listdir("out")) == kept and not os.path.exists("new.json")
+
+# Names that are no files, each {name}, and parts: a/01 is none.
+names = [".", "..", "-", "a/1", "a/01", "a/2"]
+with open("odd.json", "w", encoding="utf-8") as file:
+    json.dump({"shapes": [{"name": name, "circle": 1} for name in names]}, file)
+os.chdir("out")
+for pattern in "deep/{name}/{name}.svg", "{name}":
+    safe = ["_", "__", "-", "a", "a_01"] if "/" in pattern else ["_", "__", "./-", "a", "a_01"]
+    for name in safe:
+        os.makedirs(f"deep/{name}", exist_ok=True)
+    done = narc(0, "export", "../odd.json", "--to", "svg", "--out", pattern, "--report", "json")
+    bodies = json.loads(done.stdout)["inputs"][0]["bodies"]
+    assert [body["out"] for body in bodies] == [pattern.replace("{name}", name) for name in safe], bodies
+    assert [body["pieces"] for body in bodies] == [1, 1, 1, 2, 1] and all(os.path.isfile(body["out"]) for body in bodies)
+os.chdir("..")
+assert "--picture is one file" in narc(2, "fit", "el.csv", "--arcs", "3", "--out", "new.json", "--picture", "{name}.png").stderr
+
+# What cannot be replaced is told before anything is fitted; a signal leaves all files or none.
+if os.sep == "/":
+    with open("out/el.json", "a", encoding="utf-8"):
+        os.chmod("out/el.json", 0o444)
+    assert "out/el.json: Permission denied" in narc(2, "fit", "disc.csv", "el.csv", "--arcs", "8", "--starts", "560", "--out", "out/{name}.json").stderr
+    assert "narc-" not in "".join(os.listdir("out"))
+    with open("many.json", "w", encoding="utf-8") as file:
+        json.dump({"shapes": [{"name": f"s{k}", "circle": 1} for k in range(1000)]}, file)
+    os.mkdir("many")
+    running = subprocess.Popen([NARC, "export", "many.json", "--to", "svg", "--out", "many/{name}.svg"], stdout=subprocess.DEVNULL)
+    while running.poll() is None and not os.path.exists("many/s0.svg"):
+        pass
+    running.terminate()
+    running.wait()
+    assert len(os.listdir("many")) == 1000, (running.returncode, len(os.listdir("many")))
+
+# What is no UTF-8 is U+FFFD; a report on standard error stands alone there.
+if os.sep == "/":
+    done = narc(0, "export", "odd.json", "--to", "svg", "--out", b"\xff\xc3\xa4.svg", "--report", "json")
+    assert json.loads(done.stdout)["inputs"][0]["bodies"][0]["out"] == "\ufffd\u00e4.svg"
+for code, files in (1, ["el.csv", "in.csv"]), (2, ["in.csv"]):
+    done = narc(code, "fit", *files, "--arcs", "3", "--keep-going", "--report", "json")
+    assert json.loads(done.stderr)["inputs"][-1]["errors"], done
 
 os.chdir("/")
 shutil.rmtree(folder)

@@ -41,14 +41,17 @@ GOOD = [
         {"center": [-4, 0], "radius": 2, "start": math.pi / 2, "end": math.pi},
         {"center": [-8, 0], "radius": -2, "start": math.pi, "end": math.pi / 2}]}}]
 BAD = [{"shapes": [{"name": "a", "circle": 1, "box": {"width": 1, "height": 1}}]}, {"shapes": [{"name": "a", "circle": 1, "origin": [1]}]}, {}, [], {"shapes": []}, {"shapes": [], "x": 1}, {"shapes": [{"circle": 1}]}, {"shapes": [{"name": "a"}]}]
-for name in "", " a", "a ", "a,b", 'a"b', "a\tb", 7:
+for name in "", " a", "a ", "a,b", 'a"b', "a\tb", "a\n", 7:
     BAD.append({"shapes": [{"name": name, "circle": 1}]})
+for shape in {"circle": 0}, {"capsule": {"length": 2, "radius": 0}}, {"box": {"width": 0, "height": 1}}, {"box": {"width": 1, "height": 0}}:
+    BAD.append({"shapes": [{"name": "a", **shape}]})
+BAD.append({"$schema": 1, "shapes": GOOD})
 for shape in GOOD:
     kind = next(key for key in shape if key not in ("name", "origin", "radius", "user"))
     BAD.append({"shapes": [{**shape, "x": 1}]})
     if kind not in ("points", "polygon"):
         BAD.append({"shapes": [{**shape, "radius": 1}]})
-for value in {"shapes": GOOD}, {"shapes": GOOD[:1], "user": None}, *({"shapes": [shape]} for shape in GOOD):
+for value in {"shapes": GOOD}, {"$schema": "shapes.schema.json", "shapes": GOOD[:1], "user": None}, {"shapes": [{"name": "\u00a0", "circle": 1}]}, *({"shapes": [shape]} for shape in GOOD):
     assert not complaint(value) and JUDGE.is_valid(value), value
 for value in BAD:
     assert complaint(value) and not JUDGE.is_valid(value), value

@@ -64,13 +64,13 @@ if SVG:
         ("image.svg", svg(f"<image width='64' height='64' href='{image}'/>"), "it holds an image of pixels, which is traced .*"),
     ] + [("link.svg", svg(link + DOT), f"'{file}' is another file, which is never loaded: embed it") for link, file in (
         ("<image width='9' height='9' href='moves.png'/>", "moves.png"), ("<use xlink:href='other.svg#a'/>", "other.svg#a"),
-        ("<rect width='9' height='9' fill='url(other.svg#b)'/>", "other.svg#b"), ("<style>@import 'a.css';</style>", "a.css"),
+        ("<rect width='9' height='9' fill='url(other.svg#b)'/>", "other.svg#b"), ("<style>@import 'a.css';</style>", "a.css"), ("<style>@font-face { src: URL(\"f.woff\") }</style>", "f.woff"),
         ("<style>@import url(\"http://example.com/a.css\");</style>", "http://example.com/a.css"))]
     failed += [("none.svg", svg(""), "nothing is seen in the SVG file"), ("empty.svg", b"", "the SVG file is empty")]
-    for quiet in f"<defs><linearGradient id='a'/></defs><rect width='9' height='9' fill='url(#a)'/><a href='x.html'>{DOT}</a>", DOT:
+    for quiet in f"<defs><linearGradient id='a'/></defs><rect width='9' height='9' fill='url(#a)'/><a href='x.html'>{DOT}</a>", f"<g data-x='see url(http://e.org/)'>{DOT}</g>", DOT:
         assert told("quiet.svg", svg(quiet)) == (0, ""), quiet
 LINES = "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\na\n10\n0\n20\n0\n11\n4\n21\n0\n0\nLINE\n8\na\n10\n4\n20\n0\n11\n4\n21\n3\n0\nENDSEC\n0\nEOF\n"
-open_lines = "1 of its lines are open, and closed by a straight line each; --chain --open keeps them as strokes"
+open_lines = "1 of its lines are open, and closed by a straight line each; narc fit --chain --open keeps them as strokes"
 warned.append(("open.dxf", LINES.encode(), open_lines))
 for expected, cases in (0, warned), (2, failed):
     for file, data, message in cases:

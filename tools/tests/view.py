@@ -63,6 +63,18 @@ assert code == 2 and "one of the inputs" in err
 code, out, err = narc("view", "absent.json")
 assert code == 2 and err.startswith("narc: absent.json: ")
 
+# A shape and a chain of one name have no area; far away it is measured as well; what no body is named by is told.
+chain = SHAPES["shapes"][4]["chain"]
+for shapes, area in (({"circle": 1}, {"chain": chain}, {"box": {"width": 1, "height": 1}}), 0), \
+        (({"circle": 1, "origin": [1e9, 5]}, {"circle": 1, "origin": [1e9, 15]}), math.tau):
+    with open("h.json", "w", encoding="utf-8") as file:
+        json.dump({"shapes": [{"name": f"h/{k + 1}", **shape} for k, shape in enumerate(shapes)]}, file)
+    code, out, err = narc("view", "h.json", "tee.png")
+    assert code == 0 and abs(float(re.search('"name":"h","area":(.*?),', out)[1]) - area) < 1e-6, out[-900:]
+    assert err == "narc: tee.png: it is not shown: no body is named 'tee'\n", err
+code, out, err = narc("view", "h.json", "--out", "{name}.html")
+assert code == 2 and "--out is one file" in err and not os.path.exists("{name}.html")
+
 # Looks at the middle of a body: over the image its parts, or with them hidden the image alone; keys and the wheel move it.
 LOOK = """<script>
 const wait = setInterval(async () => {
