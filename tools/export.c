@@ -628,6 +628,7 @@ static void run(int argc, char **argv) {
             free(made.bodies[i].pieces[k].corners);
         free(made.bodies[i].pieces);
         free((char *)made.bodies[i].name);
+        free((char *)made.bodies[i].image);
     }
     free(made.bodies);
     narc_destroy_shape_list(shapes);
