@@ -21,7 +21,7 @@ struct depth {
 };
 static const struct depth FIRST = {60, 1e-7}, SECOND = {40, 1e-6}, EXCHANGE = {16, 1e-5}, LAST = {60, 1e-8};
 
-/* Who has no hope to be among so many of the best that were found before goes on no further: with this times the gain of
+/* Who has no hope to come before the best but so many that were found goes on no further: with this times the gain of
  * its last step, or less in a quick search, which also makes exchanges in the best chain alone. */
 enum { RANKED_FIRST = 3, RANKED_SECOND = 2, RANKED_QUICK = 1 };
 static const double HOPE = 100, QUICK_HOPE = 5;

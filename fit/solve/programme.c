@@ -15,7 +15,7 @@
 static const double CURVATURE = 1e-5, LESS_CURVATURE = 1e-7;
 enum { STEPS = 10 };
 
-/* A step that moves by less has ended. */
+/* A step that moves, or gains, by less has ended. */
 static const double STILL = 1e-9;
 
 bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
@@ -66,6 +66,7 @@ static void load_columns(narc_programme *programme) {
     narc_quadratic *const q = &programme->quadratic;
     q->count = q->rows = 0;
     q->equations = programme->equations;
+    q->settles = true;
     for (size_t c = 0; c < programme->columns; c++) {
         programme->solution[c] = programme->lower[c];
         if (programme->lower[c] < programme->upper[c]) {
@@ -120,11 +121,15 @@ bool narc_solve_programme(narc_programme *programme) {
         set_objective(programme, LESS_CURVATURE, q->solution);
         if (!narc_solve_quadratic(q))
             return false;
-        double moved = 0;
-        for (size_t k = 0; k < q->count; k++)
-            moved = fmax(moved, fabs(q->solution[k] - programme->solution[programme->listed[k]]));
+        double moved = 0, gained = 0;
+        for (size_t k = 0; k < q->count; k++) {
+            const size_t column = programme->listed[k];
+            const double way = q->solution[k] - programme->solution[column];
+            moved = fmax(moved, fabs(way));
+            gained -= programme->objective[column] * way;
+        }
         take_solution(programme);
-        if (moved < STILL)
+        if (moved < STILL || gained < STILL)
             break;
     }
     return true;

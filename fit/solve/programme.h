@@ -34,7 +34,7 @@ void narc_clear_programme(narc_programme *programme);
 /* A new row of zeros, to be filled in; NULL if there is no room. */
 double *narc_add_row(narc_programme *programme, double lower, bool is_equation);
 
-/* Fills in `solution`. False if there is none, or no end of it. It may be called again with more rows;
+/* Fills in `solution`; where there is no end of it, one that is far out. False if there is none. It may be called again with more rows;
  * objective and bounds stay until the programme is cleared. */
 bool narc_solve_programme(narc_programme *programme);
 

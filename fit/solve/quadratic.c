@@ -211,11 +211,10 @@ static size_t find_first_zero(const narc_quadratic *q, const double *falls, doub
     size_t first = q->active_count;
     *out_step = INFINITY;
     for (size_t k = 0; k < q->active_count; k++) {
-        const double step = q->multiplier[k] / falls[k];
-        if (!is_equation(q, q->active[k]) && falls[k] > 0 && step < *out_step) {
-            *out_step = step;
-            first = k;
-        }
+        if (is_equation(q, q->active[k]) || !(falls[k] > 0) || !(q->multiplier[k] / falls[k] < *out_step))
+            continue;
+        *out_step = q->multiplier[k] / falls[k];
+        first = k;
     }
     return first;
 }
@@ -273,13 +272,34 @@ static size_t find_violated(const narc_quadratic *q, size_t all) {
     return worst;
 }
 
+/* Roundings carry the solution off rows that are active, far off where the hessian is ill-conditioned: it goes back along
+ * the shortest way in the hessian's measure. False if it lies on all of them. */
+static bool settle_active(narc_quadratic *q) {
+    double *const way = q->room, most = 0;
+    for (size_t k = 0; k < q->active_count; k++) {
+        const double slack = read_slack(q, q->active[k]);
+        most = fmax(most, fabs(slack));
+        way[k] = (-slack - dot(column_of(q, k), way, k)) / column_of(q, k)[k];
+    }
+    if (!(most > FEASIBLE))
+        return false;
+    for (size_t k = 0; k < q->active_count; k++)
+        add_scaled(q->solution, way[k], q->transform + k * q->count, q->count);
+    return true;
+}
+
+enum { MOST_SETTLINGS = 3 };
+
 bool narc_solve_more_rows(narc_quadratic *q) {
     const size_t all = place_of(q, q->rows);
     size_t budget = 40 + 8 * q->count;
-    for (size_t place; (place = find_violated(q, all)) < all;)
-        if (!enforce(q, place, &budget))
-            return false;
-    return true;
+    for (unsigned round = 0;; round++) {
+        for (size_t place; (place = find_violated(q, all)) < all;)
+            if (!enforce(q, place, &budget))
+                return false;
+        if (!q->settles || round == MOST_SETTLINGS || !settle_active(q))
+            return true;
+    }
 }
 
 bool narc_solve_quadratic(narc_quadratic *q) {

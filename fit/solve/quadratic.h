@@ -22,6 +22,7 @@ typedef struct narc_quadratic {
     void *memory;                 /* of all arrays */
     double *transform, *triangle, *room; /* see quadratic.c */
     unsigned char *is_active;
+    bool settles; /* at its end the solution goes back to the rows that hold it, off which roundings have carried it */
 } narc_quadratic;
 
 /* Memory for `count` variables and at most `row_capacity` rows; false if there is none. */
@@ -31,8 +32,8 @@ void narc_close_quadratic(narc_quadratic *quadratic);
 /* The entries of a new row with this offset, to be filled in; NULL if there is no room. */
 double *narc_add_quadratic_row(narc_quadratic *quadratic, double offset);
 
-/* Fills in the solution, the rows that hold it and their multipliers. False if no x keeps all rows, the hessian is not
- * positive definite, or roundings are in the way: then the solution is undefined. */
+/* Fills in the solution, the rows that hold it and their multipliers. False if no x keeps all rows, equations depend on
+ * each other, the hessian is not positive definite, or roundings are in the way: then the solution is undefined. */
 bool narc_solve_quadratic(narc_quadratic *quadratic);
 
 /* The same after a solution was found and rows were added, which are no equations: it goes on from that solution. */

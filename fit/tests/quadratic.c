@@ -121,6 +121,37 @@ TEST(finds_what_is_least) {
     assert_true(missed <= 1 + trials / 500);
 }
 
+/* Where curvatures differ by many orders of magnitude, roundings carry the solution off its rows. */
+TEST(rows_hold_whatever_the_curvature) {
+    struct test_random random = test_random_named("curvatures");
+    size_t solved = 0;
+    const size_t trials = test_trials(1000);
+    for (size_t trial = 0; trial < trials; trial++) {
+        narc_quadratic q;
+        const size_t count = 2 + random_below(&random, MOST - 1);
+        assert_true(narc_open_quadratic(&q, count, ROWS));
+        q.settles = true;
+        make_hessian(&random, &q);
+        for (size_t i = 0; i < count; i++) {
+            const double factor = random_log_between(&random, 1e-3, 1e3);
+            for (size_t k = 0; k < count; k++) {
+                q.hessian[i * count + k] *= factor;
+                q.hessian[k * count + i] *= factor;
+            }
+        }
+        make_rows(&random, &q, 0, 3 + random_below(&random, ROWS - 3));
+        if (narc_solve_quadratic(&q)) {
+            solved++;
+            for (size_t place = 0; place < q.rows + 2 * count; place++)
+                assert_true(find_slack(&q, place) >= -1e-9);
+            for (size_t a = 0; a < q.active_count; a++)
+                assert_true(fabs(find_slack(&q, q.active[a])) <= 1e-9);
+        }
+        narc_close_quadratic(&q);
+    }
+    assert_true(2 * solved > trials);
+}
+
 TEST(tells_what_no_one_keeps) {
     struct test_random random = test_random_named("infeasible programmes");
     for (size_t trial = 0; trial < test_trials(500); trial++) {
