@@ -437,8 +437,26 @@ static void measure_png(const exporting *how, const char *image, unsigned *width
         fail_at(path, 0, "--image must be PNG, whose size tilesets have");
     *width = (unsigned)bytes[16] << 24 | (unsigned)bytes[17] << 16 | (unsigned)bytes[18] << 8 | bytes[19];
     *height = (unsigned)bytes[20] << 24 | (unsigned)bytes[21] << 16 | (unsigned)bytes[22] << 8 | bytes[23];
+    if (*width == 0 || *height == 0)
+        fail_at(path, 0, "an image of no pixels");
     free(bytes);
     free(path);
+}
+
+/* Each is on the sheet, and no two are the same. */
+static void check_cells(const exported *made, const exporting *how) {
+    const size_t count = made->sheet_width / how->cells.width * (made->sheet_height / how->cells.height);
+    const char **names = allocate(count + 1, sizeof *names);
+    for (size_t k = 0; k < count; k++)
+        names[k] = NULL;
+    for (const export_body *body = made->bodies; body < made->bodies + made->count; body++) {
+        if (body->tile >= count)
+            fail_at(how->path, 0, "shape '%s' is cell %u of a sheet that has %zu", body->name, body->tile, count);
+        if (names[body->tile])
+            fail_at(how->path, 0, "shapes '%s' and '%s' are the same cell", names[body->tile], body->name);
+        names[body->tile] = body->name;
+    }
+    free(names);
 }
 
 /* Of a sheet NAME-3 is tile 3; of images each body the next one. */
@@ -611,6 +629,7 @@ static void run(int argc, char **argv) {
     if (to->tiles && how.cells.width) {
         made.sheet = how.image;
         measure_png(&how, how.image, &made.sheet_width, &made.sheet_height);
+        check_cells(&made, &how);
     }
     FILE *report = stdout;
     if (!options[DRY_RUN].value) {

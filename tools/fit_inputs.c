@@ -149,20 +149,23 @@ static file_kind kind_of(const char *file, const char *bytes, size_t size) {
 
 /* ---------------------------------------------------------------------------- outlines */
 
-static bool is_name_taken(const outline_list *outlines, const char *name) {
+static outline *find_name(const outline_list *outlines, const char *name) {
     for (size_t i = 0; i < outlines->count; i++)
         if (strcmp(outlines->items[i].name, name) == 0)
-            return true;
-    return false;
+            return &outlines->items[i];
+    return NULL;
 }
 
 /* Takes `name`, or a copy with -2, -3 ... behind it if another outline has it. */
 static char *choose_name(const outline_list *outlines, char *name) {
     enum { DIGITS = 24 };
+    outline *const first = find_name(outlines, name);
     const size_t size = strlen(name) + DIGITS;
     char *chosen = strcpy(allocate(size, 1), name);
-    for (size_t number = 2; is_name_taken(outlines, chosen); number++)
-        snprintf(chosen, size, "%s-%zu", name, number);
+    for (size_t number = first && first->copies ? first->copies : 1; find_name(outlines, chosen);) {
+        snprintf(chosen, size, "%s-%zu", name, ++number);
+        first->copies = number;
+    }
     free(name);
     return chosen;
 }
@@ -181,6 +184,8 @@ static outline *add_outline(outline_list *outlines, const char *file, uint32_t c
 void report_outline(const outline *at, const char *message) {
     if (at->character)
         report_at(at->file, 0, "U+%04X: %s", (unsigned)at->character, message);
+    else if (at->is_object)
+        report_at(at->file, 0, "'%s': %s", narc_make_excerpt(at->name).text, message);
     else
         report_at(at->file, 0, "%s", message);
 }
@@ -603,7 +608,9 @@ static void take_outline(const char *name, const char *png, size_t size, void *c
 
 static narc_path *begin_outline(const char *name, void *context) {
     const sheet_reading *at = context;
-    return add_outline(at->outlines, at->file, 0, make_shape_name(name, strlen(name)))->path;
+    outline *added = add_outline(at->outlines, at->file, 0, make_shape_name(name, strlen(name)));
+    added->is_object = true;
+    return added->path;
 }
 
 static void read_cells(const char *file, const char *bytes, size_t size, sheet_reading *at) {

@@ -12,7 +12,8 @@
 #include "sheets.h"
 
 typedef struct outline {
-    char *name; /* a shape name, other than all before it */
+    char *name;    /* a shape name, other than all before it */
+    size_t copies; /* the last number that was put behind it for another one */
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
     narc_path *path;
@@ -21,6 +22,7 @@ typedef struct outline {
     size_t open_count;       /* strokes of a DXF drawing that do not close */
     double unit;             /* of a DXF drawing, in metres; 0: unknown */
     bool is_svg, is_picture; /* it was traced: all PNG, some SVG */
+    bool is_object;          /* of many in a file: errors have its name */
 } outline;
 
 typedef struct outline_list {

@@ -36,6 +36,30 @@ static const char *word(const cJSON *of, const char *key) {
     return cJSON_IsString(item) ? item->valuestring : "";
 }
 
+/* What must be a number where it is there. False if something is none: that was reported. */
+static bool check_numbers(const char *file, const char *owner, const cJSON *of) {
+    static const char *const keys[] = {"x",       "y",       "width",  "height", "rotation",
+                                       "offsetx", "offsety", "radius", "angle"};
+    const cJSON *item;
+    bool right = true;
+    owner = *word(of, "name") ? word(of, "name") : owner;
+    cJSON_ArrayForEach(item, of) {
+        bool is_known = false;
+        for (size_t k = 0; k < sizeof keys / sizeof keys[0] && item->string; k++)
+            is_known = is_known || strcmp(item->string, keys[k]) == 0;
+        const cJSON *value = is_known && cJSON_IsArray(item) ? item->child : item; /* R.U.B.E. has lists of them */
+        for (; is_known && value; value = value == item ? NULL : value->next)
+            if (!cJSON_IsNumber(value) || !isfinite(value->valuedouble)) {
+                report_at(file, 0, "'%s': %s is no number: '%s'", narc_make_excerpt(owner).text, item->string,
+                          narc_make_excerpt(cJSON_IsString(value) ? value->valuestring : "").text);
+                right = false;
+            }
+        if (!is_known && !(item->string && strcmp(item->string, "properties") == 0)) /* which are the user's */
+            right = check_numbers(file, item->string ? item->string : owner, item) && right;
+    }
+    return right;
+}
+
 /* ---------------------------------------------------------------------------- drawing */
 
 /* Where an object's own coordinates are: turned about a place, y up or down. */
@@ -97,16 +121,22 @@ static void draw_ellipse(objects *to, const char *name, narc_path *path, const p
 
 /* Text, points, insertion points and tiles are none. */
 static bool is_drawn(const cJSON *object) {
-    return !get(object, "text") && !get(object, "point") && !get(object, "gid") &&
+    return !get(object, "text") && !get(object, "point") && !get(object, "gid") && !get(object, "capsule") &&
            (get(object, "polygon") || get(object, "polyline") ||
-            number(object, "width") * number(object, "height") > 0);
+            (number(object, "width") > 0 && number(object, "height") > 0));
 }
 
-/* The objects of a layer or a tile, whose lower side is y = 0 if it has a height. */
-static void draw_group(objects *to, const cJSON *group, const char *name, double height) {
+/* The objects of a layer or a tile, moved by (x, y); its lower side is y = 0 if it has a height. */
+static void draw_group(objects *to, const cJSON *group, const char *name, double x, double y, double height) {
     const cJSON *list = get(group, "objects"), *object;
-    size_t count = 0, done = 0;
-    cJSON_ArrayForEach(object, list) { count += is_drawn(object) && !*word(object, "name"); }
+    size_t count = 0, done = 0, lost = 0;
+    cJSON_ArrayForEach(object, list) {
+        count += is_drawn(object) && !*word(object, "name");
+        lost += !is_drawn(object) && !get(object, "text") && !get(object, "point") && !get(object, "gid");
+    }
+    if (lost)
+        warn_at(to->file, "'%s': %zu objects without width and height, or of a kind that is not known, are left out",
+                narc_make_excerpt(name).text, lost);
     cJSON_ArrayForEach(object, list) {
         if (!is_drawn(object))
             continue;
@@ -114,8 +144,7 @@ static void draw_group(objects *to, const cJSON *group, const char *name, double
         narc_path *path = *own ? begin_path(to, own, 0, 1) : begin_path(to, name, done++, count);
         const double turn = number(object, "rotation") * FULL_TURN / 360, w = number(object, "width"),
                      h = number(object, "height");
-        const place at = {number(group, "offsetx") + number(object, "x"),
-                          number(group, "offsety") + number(object, "y") - height, cos(turn), sin(turn), -1};
+        const place at = {x + number(object, "x"), y + number(object, "y") - height, cos(turn), sin(turn), -1};
         const cJSON *points = get(object, "polygon") ? get(object, "polygon") : get(object, "polyline");
         if (points) {
             draw_points(to, own, path, points, &at);
@@ -138,22 +167,26 @@ static void draw_tiles(objects *to, const cJSON *tileset) {
         char name[32];
         const double own = number(tile, "imageheight");
         snprintf(name, sizeof name, "tile-%.0f", number(tile, "id"));
-        draw_group(to, get(tile, "objectgroup"), name, own > 0 ? own : number(tileset, "tileheight"));
+        const cJSON *group = get(tile, "objectgroup");
+        draw_group(to, group, name, number(group, "offsetx"), number(group, "offsety"),
+                   own > 0 ? own : number(tileset, "tileheight"));
     }
 }
 
-static void draw_layers(objects *to, const cJSON *of) {
+/* Layers in a group move with it. */
+static void draw_layers(objects *to, const cJSON *of, double x, double y) {
     const cJSON *layer;
     cJSON_ArrayForEach(layer, get(of, "layers")) {
-        draw_group(to, layer, *word(layer, "name") ? word(layer, "name") : "objects", 0);
-        draw_layers(to, layer);
+        const double own_x = x + number(layer, "offsetx"), own_y = y + number(layer, "offsety");
+        draw_group(to, layer, *word(layer, "name") ? word(layer, "name") : "objects", own_x, own_y, 0);
+        draw_layers(to, layer, own_x, own_y);
     }
 }
 
 #if NARC_SVG
 /* The elements that are open: for each the JSON that it becomes; NULL: nothing. */
 typedef struct xml_reading {
-    cJSON *root, *open[32];
+    cJSON *root, *open[32]; /* no root: it is another kind of XML */
     size_t depth;
 } xml_reading;
 
@@ -175,12 +208,20 @@ static void start_element(GMarkupParseContext *context, const char *element, con
         const char *element, *key; /* of a list that it is an item of; NULL: of an object */
     } known[] = {{"objectgroup", "layers"}, {"group", "layers"},     {"layer", "layers"}, {"object", "objects"},
                  {"tile", "tiles"},         {"tileset", "tilesets"}, {"polygon", NULL},   {"polyline", NULL},
-                 {"ellipse", NULL},         {"point", NULL},         {"text", NULL},      {"image", NULL}};
+                 {"ellipse", NULL},         {"point", NULL},         {"text", NULL},      {"image", NULL},
+                 {"capsule", NULL}};
     xml_reading *at = data;
-    cJSON *to = at->depth && at->depth <= 32 ? at->open[at->depth - 1] : NULL, *made = NULL;
-    (void)context, (void)error;
-    if (at->depth == 0)
+    cJSON *to = at->depth ? at->open[at->depth - 1] : NULL, *made = NULL;
+    const bool is_map = strcmp(element, "map") == 0, is_shape = strncmp(element, "poly", 4) == 0;
+    (void)context;
+    if (at->depth == 0 && (is_map || strcmp(element, "tileset") == 0)) {
         at->root = made = sure(cJSON_CreateObject());
+        sure(cJSON_AddStringToObject(made, "type", is_map ? "map" : "tileset"));
+    }
+    if (!at->root || at->depth == 32) {
+        g_set_error(error, G_MARKUP_ERROR, G_MARKUP_ERROR_INVALID_CONTENT, "its elements nest deeper than 32");
+        return;
+    }
     for (size_t k = 0; k < sizeof known / sizeof known[0] && to; k++) {
         if (strcmp(element, known[k].element) != 0)
             continue;
@@ -190,19 +231,22 @@ static void start_element(GMarkupParseContext *context, const char *element, con
     }
     for (size_t k = 0; names[k] && made; k++) {
         double value;
-        if (strcmp(names[k], "points") == 0) { /* x,y x,y */
+        if (is_shape && strcmp(names[k], "points") == 0) { /* x,y x,y */
             cJSON *list = sure(cJSON_CreateArray());
-            for (const char *c = values[k]; *c; c += *c == ' ') {
-                cJSON *point = sure(cJSON_CreateObject());
-                sure(cJSON_AddNumberToObject(point, "x", g_ascii_strtod(c, (char **)&c)));
-                c += *c == ',';
-                const char *before = c;
-                sure(cJSON_AddNumberToObject(point, "y", g_ascii_strtod(c, (char **)&c)));
-                cJSON_AddItemToArray(list, point);
-                if (c == before)
-                    break;
-            }
             cJSON_ReplaceItemInObjectCaseSensitive(to, element, list);
+            for (const char *c = values[k]; *c;) {
+                cJSON *point = sure(cJSON_CreateObject());
+                cJSON_AddItemToArray(list, point);
+                char *comma, *end;
+                sure(cJSON_AddNumberToObject(point, "x", g_ascii_strtod(c, &comma)));
+                sure(cJSON_AddNumberToObject(point, "y", g_ascii_strtod(comma + (*comma == ','), &end)));
+                if (comma == c || *comma != ',' || end == comma + 1 || (*end && *end != ' ')) {
+                    g_set_error(error, G_MARKUP_ERROR, G_MARKUP_ERROR_INVALID_CONTENT, "a point is not x,y: '%.20s'",
+                                c);
+                    return;
+                }
+                c = end + strspn(end, " ");
+            }
             made = NULL;
         } else if (strcmp(names[k], "name") != 0 && parse_number(values[k], &value)) {
             sure(cJSON_AddNumberToObject(made, names[k], value));
@@ -212,9 +256,7 @@ static void start_element(GMarkupParseContext *context, const char *element, con
     }
     if (made && to && strcmp(element, "image") == 0) /* of a tile: its own size */
         sure(cJSON_AddNumberToObject(to, "imageheight", number(made, "height")));
-    if (at->depth < 32)
-        at->open[at->depth] = made;
-    at->depth++;
+    at->open[at->depth++] = made;
 }
 
 static void end_element(GMarkupParseContext *context, const char *element, gpointer data, GError **error) {
@@ -222,28 +264,29 @@ static void end_element(GMarkupParseContext *context, const char *element, gpoin
     ((xml_reading *)data)->depth--;
 }
 
-static cJSON *read_xml(const char *bytes, size_t size) {
-    const char *start = bytes;
-    while (*start && strncmp(start, "<map", 4) != 0 && strncmp(start, "<tileset", 8) != 0 &&
-           strncmp(start, "<svg", 4) != 0)
-        start++;
-    if (!*start || strncmp(start, "<svg", 4) == 0)
-        return NULL;
+/* NULL if it is no map and no tileset, or (*out_broken) one with an error, which is reported. */
+static cJSON *read_xml(const char *file, const char *bytes, size_t size, bool *out_broken) {
     const GMarkupParser parser = {.start_element = start_element, .end_element = end_element};
     xml_reading at = {0};
+    GError *error = NULL;
+    int line = 0;
     GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_DEFAULT_FLAGS, &at, NULL);
-    const bool done = g_markup_parse_context_parse(context, bytes, (gssize)size, NULL);
+    const bool done = g_markup_parse_context_parse(context, bytes, (gssize)size, &error) &&
+                      g_markup_parse_context_end_parse(context, &error);
+    g_markup_parse_context_get_position(context, &line, NULL);
     g_markup_parse_context_free(context);
-    if (done && at.root) {
-        sure(cJSON_AddStringToObject(at.root, "type", strncmp(start, "<map", 4) == 0 ? "map" : "tileset"));
-        return at.root;
+    *out_broken = at.root && !done;
+    if (*out_broken) {
+        report_at(file, (size_t)line, "%s", narc_make_excerpt(error->message).text);
+        cJSON_Delete(at.root);
+        at.root = NULL;
     }
-    cJSON_Delete(at.root);
-    return NULL;
+    g_clear_error(&error);
+    return at.root;
 }
 #else
-static cJSON *read_xml(const char *bytes, size_t size) {
-    (void)bytes, (void)size;
+static cJSON *read_xml(const char *file, const char *bytes, size_t size, bool *out_broken) {
+    (void)file, (void)bytes, (void)size, (void)out_broken;
     return NULL;
 }
 #endif
@@ -300,34 +343,37 @@ bool read_objects(const char *file, const char *bytes, size_t size, begin_object
     char *text = join_text(bytes, size, "");
     narc_error error;
     cJSON *root = NULL;
-    bool known = false;
+    bool broken = false;
     if (narc_clean_text(text, size, &error) == NARC_OK)
-        root = text[strspn(text, " \t\r\n")] == '<' ? read_xml(text, strlen(text)) : NULL;
+        root = text[strspn(text, " \t\r\n")] == '<' ? read_xml(file, text, strlen(text), &broken) : NULL;
     if (!root && text[0] != '<' && narc_parse_json(text, &root, &error) != NARC_OK)
         root = NULL;
     const char *type = word(root, "type");
-    if (strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0) {
-        const cJSON *tileset;
-        known = true;
-        draw_layers(&to, root);
-        draw_tiles(&to, root);
-        cJSON_ArrayForEach(tileset, get(root, "tilesets")) { draw_tiles(&to, tileset); }
-    } else if (cJSON_IsArray(get(root, "body"))) {
-        known = true;
-        draw_rube(&to, root);
-    } else if (cJSON_IsObject(root)) {
-        const cJSON *body;
-        cJSON_ArrayForEach(body, root) {
-            size_t count = 0;
-            if (!cJSON_IsArray(get(body, "fixtures")))
-                continue;
-            known = true;
-            draw_fixtures(&to, body, false, &count);
-            draw_fixtures(&to, body, true, &count);
-        }
+    const cJSON *tileset, *body;
+    const bool is_tiled = strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0,
+               is_rube = !is_tiled && cJSON_IsArray(get(root, "body"));
+    bool known = is_tiled || is_rube || broken;
+    cJSON_ArrayForEach(body, root) { /* PhysicsEditor's */
+        known = known || (body->string && cJSON_IsArray(get(body, "fixtures")));
     }
-    if (known && to.count == 0)
-        report_at(file, 0, "it has no collision objects");
+    broken = broken || (known && !check_numbers(file, "objects", root));
+    if (known && !broken) {
+        if (is_tiled) {
+            draw_layers(&to, root, 0, 0);
+            draw_tiles(&to, root);
+            cJSON_ArrayForEach(tileset, get(root, "tilesets")) { draw_tiles(&to, tileset); }
+        } else if (is_rube) {
+            draw_rube(&to, root);
+        } else {
+            cJSON_ArrayForEach(body, root) {
+                size_t count = 0;
+                draw_fixtures(&to, body, false, &count);
+                draw_fixtures(&to, body, true, &count);
+            }
+        }
+        if (to.count == 0)
+            report_at(file, 0, "it has no collision objects");
+    }
     cJSON_Delete(root);
     free(text);
     return known;

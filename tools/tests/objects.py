@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 
 NARC, SVG = os.path.abspath(sys.argv[1]), sys.argv[2:] != ["OFF"]
@@ -118,6 +119,41 @@ for message, *options in (("a tileset has images: --image must name", "--to", "t
                           ("crate.json: shape 'crate' is no cell of a sheet", "--to", "tsj", "--image", "art/sheet.png", "--grid", "16x16"),
                           ("absent/crate.png: No such file", "--to", "tsj", "--image", "absent/{name}.png"), ("crate.json: --image must be PNG", "--to", "tsj", "--image", "{name}.json")):
     assert narc(2, "export", "crate.json", "--tolerance", "1", *options).stderr.startswith("narc: " + message), message
+
+# What is broken is named, and what is left out is told.
+def tmx(inside):
+    return '<map width="1"><objectgroup name="a">%s</objectgroup></map>' % inside
+
+
+BOX = '<object id="1" width="4" height="2"/>'
+if SVG:
+    for number, (text, message) in enumerate((
+            (tmx(BOX)[:-8], r"broken0.tmx:1: .*"), (tmx(BOX) + "<x", r"broken1.tmx:1: .*"),
+            (tmx('<object id="1" x="inf" width="4" height="2"/>'), r"broken2.tmx: 'a?': x is no number: 'inf'|broken2.tmx: 'objects': x is no number: 'inf'"),
+            (tmx('<object id="1" name="b" rotation="30deg" width="4" height="2"/>'), "broken3.tmx: 'b': rotation is no number: '30deg'"),
+            (tmx('<object id="1"><polygon points="0,0 5,0 5,5 a,b 7,7"/></object>'), r"broken4.tmx:1: .*a point is not x,y: 'a,b 7,7'"),
+            (tmx('<object name="flat"><polyline points="0,0 1,0 2,0"/></object>' + BOX), "broken5.tmx: 'flat': ")), 0):
+        write("broken%d.tmx" % number, text)
+        assert re.match("(narc: )?(%s)" % message, said := narc(2, "fit", "broken%d.tmx" % number, "--arcs", "3").stderr), (message, said)
+    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object template="a.tx"/><object width="4" height="2"><capsule/></object><object width="-4" height="2"/>'))
+    assert "some.tmx: 'a': 3 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    write("moved.tmx", '<map><group offsetx="100" offsety="50"><objectgroup name="a" offsetx="7">%s</objectgroup></group></map>' % BOX)
+    (_, _, middle), = fitted("moved.tmx").values()
+    assert math.dist(middle, [109, -51]) < 0.1, middle
+    write("drawing.svg", '<!-- see <map> --><svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><circle cx="4" cy="4" r="3"/></svg>')
+    narc(0, "fit", "drawing.svg", "--arcs", "3", "--out", "drawing.json")
+    write("walls.tmx", tmx("".join('<object name="wall" x="%d" width="4" height="2"/>' % (9 * k) for k in range(2000))))
+    begin = time.monotonic()
+    narc(0, "fit", "walls.tmx", "--tolerance", "0.5", "--out", "walls.json")
+    with open("walls.json", encoding="utf-8") as file:
+        names = [shape["name"] for shape in json.load(file)["shapes"]]
+    assert names[:2] + names[-1:] == ["wall", "wall-2", "wall-2000"] and time.monotonic() - begin < 60
+write("words.tmj", {"type": "map", "layers": [{"objects": [{"name": "b", "x": "5", "width": 4, "height": 2}]}]})
+assert "words.tmj: 'b': x is no number: '5'" in narc(2, "fit", "words.tmj", "--arcs", "3").stderr
+
+write("wrong.json", {"shapes": [{"name": name, "circle": 2} for name in ("walk-1", "jump-1", "late-99")]})
+for cells, message in ("16x16", "shapes 'walk-1' and 'jump-1' are the same cell"), ("64x64", "shape 'walk-1' is cell 1 of a sheet that has 0"):
+    assert message in narc(2, "export", "wrong.json", "--to", "tsj", "--image", "art/sheet.png", "--grid", cells, "--tolerance", "0.1").stderr
 
 # A Godot resource for each body; one of two pieces has none.
 write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}}, {"name": "b", "circle": 1}]})
