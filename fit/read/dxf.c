@@ -126,7 +126,7 @@ static bool check_value(reader *r, long code, char *value, size_t line, size_t m
     if (kind == WHOLE && !(number == floor(number) && fabs(number) < 1e9))
         return fail_at(r, NARC_ERROR_FORMAT, line, number, "not a whole number", value);
     if ((code == 90 || (code >= 70 && code <= 74)) && !(number >= 0 && number <= (double)most))
-        return fail_at(r, NARC_ERROR_COUNT, line, number, "no such number of items is in this file:", value);
+        return fail_at(r, NARC_ERROR_FORMAT, line, number, "no such number of items is in this file:", value);
     if (strlen(value) > LONGEST)
         value[LONGEST] = 0;
     return true;

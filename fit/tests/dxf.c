@@ -126,7 +126,7 @@ TEST(what_is_wrong) {
         {BEGIN "0\nCIRCLE\n8\na\n10\n1e99\n20\n1\n40\n2\n" END, NARC_ERROR_SIZE, 10, "1e99"},
         {BEGIN "0\nCIRCLE\nx\na\n" END, NARC_ERROR_FORMAT, 7, "'x'"},
         {BEGIN "0\nLWPOLYLINE\n90\n2000000000\n" END, NARC_ERROR_FORMAT, 8, "2000000000"},
-        {BEGIN "0\nLWPOLYLINE\n90\n90000000\n" END, NARC_ERROR_COUNT, 8, "90000000"},
+        {BEGIN "0\nLWPOLYLINE\n90\n90000000\n" END, NARC_ERROR_FORMAT, 8, "90000000"},
         {BEGIN "0\nCIRCLE\n8\na\n10\n1\n20\n1\n40\n2\n", NARC_ERROR_FORMAT, 14, "not whole"},
         {BEGIN "0\nCIRCLE\n8\na\n10\n1\n20\n1\n40\n", NARC_ERROR_FORMAT, 13, "'40'"},
         {BEGIN "0\nINSERT\n8\na\n2\nbolt\n10\n1\n20\n1\n" END, NARC_ERROR_FORMAT, 6, "'bolt'"},
