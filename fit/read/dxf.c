@@ -358,7 +358,7 @@ static narc_point blossom(const double *knots, const double *controls, size_t de
 
 static bool draw_spline(reader *r, const entity *e, const frame *f, size_t layer) {
     const size_t knot_count = (size_t)e->from.numbers[2], count = (e->from.more_count - knot_count) / 3;
-    const double given = e->from.numbers[0], *knots = e->from.more, *controls = knots + knot_count;
+    const double given = e->from.numbers[0], *knots = e->from.more, *controls = knots ? knots + knot_count : NULL;
     const size_t degree = given >= 1 && given <= MOST_DEGREE ? (size_t)given : 0;
     if (degree == 0)
         return fail_at(r, NARC_ERROR_FORMAT, e->line, given, "its degree is not 1 to 3:", "SPLINE");
