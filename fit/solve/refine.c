@@ -379,7 +379,7 @@ static void correct_offsets(struct descent *descent) {
 }
 
 /* Tries a step that was not good once more with such offsets, since a step along bent rows leaves them. If that is no
- * better the solution stays as it was. */
+ * better the solution stays as it was; rows and multipliers are those of the second try. */
 static bool take_corrected(struct descent *descent, const narc_candidate *from, narc_candidate *out_next) {
     narc_quadratic *const q = &descent->search->quadratic;
     double first[NARC_MOST_VARIABLES];
