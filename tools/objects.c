@@ -45,7 +45,8 @@ static bool check_numbers(const char *file, const char *owner, const cJSON *of) 
     owner = *word(of, "name") ? word(of, "name") : owner;
     cJSON_ArrayForEach(item, of) {
         bool is_known = false;
-        for (size_t k = 0; k < sizeof keys / sizeof keys[0] && item->string; k++)
+        for (size_t k = 0; k < sizeof keys / sizeof keys[0] && item->string && !cJSON_IsObject(item);
+             k++) /* a body may be named so */
             is_known = is_known || strcmp(item->string, keys[k]) == 0;
         const cJSON *value = is_known && cJSON_IsArray(item) ? item->child : item; /* R.U.B.E. has lists of them */
         for (; is_known && value; value = value == item ? NULL : value->next)

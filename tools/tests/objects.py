@@ -148,6 +148,8 @@ if SVG:
     with open("walls.json", encoding="utf-8") as file:
         names = [shape["name"] for shape in json.load(file)["shapes"]]
     assert names[:2] + names[-1:] == ["wall", "wall-2", "wall-2000"] and time.monotonic() - begin < 60
+write("width.json", {"width": {"fixtures": [{"circle": {"x": 1, "y": 2, "radius": 3}}]}})
+assert list(fitted("width.json")) == ["width"]
 write("words.tmj", {"type": "map", "layers": [{"objects": [{"name": "b", "x": "5", "width": 4, "height": 2}]}]})
 assert "words.tmj: 'b': x is no number: '5'" in narc(2, "fit", "words.tmj", "--arcs", "3").stderr
 
