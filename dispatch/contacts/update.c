@@ -218,8 +218,8 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     narc_status status = check_step(contacts, shapes, step, out_result, error);
     if (status != NARC_OK)
         return status;
-    narc_contact_step s = {contacts, shapes, step,
-                           NULL,     error,  shapes->piece_count > shapes->plane_count || step->run.base};
+    const bool has_ground = NARC_PIECES && (shapes->piece_count > shapes->plane_count || step->run.base);
+    narc_contact_step s = {contacts, shapes, step, NULL, error, has_ground};
     const narc_asked asked = describe_asking(step);
     contacts->again = !are_asked_alike(&asked, &contacts->last);
     contacts->partners_listed = false;
