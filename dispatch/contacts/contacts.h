@@ -256,8 +256,8 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* A body is a piece of a chain; it is said to be of a run. A pair is of ground if one of both is the one, or B is the other. */
 enum { NARC_IS_PIECE = 1, NARC_IS_OF_RUN = 2 };
 
-/* Marks of slots beside those of pairs: it is of ground; neither body moves; there is no pair. */
-enum { NARC_WITH_GROUND = 16, NARC_RESTS = 32, NARC_GONE = 64 };
+/* Marks of slots beside those of pairs: nothing but 0 is in `kept`; it is of ground; neither body moves; there is no pair. */
+enum { NARC_KEEPS_NOTHING = 8, NARC_WITH_GROUND = 16, NARC_RESTS = 32, NARC_GONE = 64 };
 
 /* ------------------------------------------------------------------------------------------------ ground.c */
 

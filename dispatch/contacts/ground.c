@@ -34,11 +34,13 @@ narc_status narc_ask_ground(const narc_contact_step *s) {
     return status;
 }
 
-/* A row of a slot to its place, before it is kept. */
-static void put_row(const narc_contacts *c, uint32_t slot, const void *from, void *to, narc_kept_row *kept) {
-    memcpy(to, from, c->row_size);
+/* A row of a slot to its place. */
+static void put_row(const narc_contacts *c, uint32_t slot, const void *from, void *to) {
+    if (c->contact_rows) /* sizes that the compiler knows */
+        memcpy(to, from, sizeof(narc_contact));
+    else
+        memcpy(to, from, sizeof(narc_manifold));
     memcpy(to, &slot, sizeof slot);
-    memset(kept, 0, sizeof *kept); /* it is saved, of use or not */
 }
 
 /* The further rows of a pair that was not asked stay. */
@@ -66,11 +68,15 @@ static size_t take_rows(const narc_contact_step *s, const narc_pairs *pairs, siz
     c->flags[slot] = (uint8_t)((c->flags[slot] & ~(NARC_SLOT_KEPT | NARC_SLOT_ENTRY)) | NARC_SLOT_SEEN |
                                (end > at && keeps ? NARC_SLOT_KEPT : 0));
     if (end > at)
-        put_row(c, slot, narc_row_at(c, c->ground.rows, at), narc_slot_row(c, slot), &c->kept[slot]);
+        put_row(c, slot, narc_row_at(c, c->ground.rows, at), narc_slot_row(c, slot));
+    if (end > at && !(c->marks[slot] & NARC_KEEPS_NOTHING)) /* it is saved, of use or not */
+        memset(&c->kept[slot], 0, sizeof *c->kept);
+    c->marks[slot] = (uint8_t)((c->marks[slot] & ~NARC_KEEPS_NOTHING) | (end > at && !keeps ? NARC_KEEPS_NOTHING : 0));
     c->more_of[slot] = (narc_more_rows){(uint32_t)more->count, (uint32_t)(end > at ? end - at - 1 : 0)};
     for (size_t i = at + 1; i < end; i++) {
         const uint32_t to = (uint32_t)more->count++;
-        put_row(c, slot, narc_row_at(c, c->ground.rows, i), narc_row_at(c, more->rows, to), &more->kept[to]);
+        put_row(c, slot, narc_row_at(c, c->ground.rows, i), narc_row_at(c, more->rows, to));
+        memset(&more->kept[to], 0, sizeof *more->kept);
         if (keeps)
             narc_keep_rows(s, pairs, &slot, &to, 1, more->rows, more->kept);
     }
@@ -84,9 +90,11 @@ static void fetch_slot(const narc_contacts *c, uint32_t slot) {
     const char *const row = narc_slot_row(c, slot), *const kept = (const char *)&c->kept[slot];
     FETCH_TO_WRITE(row);
     FETCH_TO_WRITE(row + c->row_size - 1);
+    FETCH_TO_WRITE(&c->more_of[slot]);
+    if (c->marks[slot] & NARC_KEEPS_NOTHING)
+        return;
     FETCH_TO_WRITE(kept);
     FETCH_TO_WRITE(kept + sizeof *c->kept - 1);
-    FETCH_TO_WRITE(&c->more_of[slot]);
 }
 
 /* Rows that were answered for pairs of a body. */

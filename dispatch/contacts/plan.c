@@ -272,7 +272,7 @@ static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
         if (!touches && one.what & OF_FIRST) /* one that touches is better asked */
             apart = all & OF_FREE && is_body_apart(s, v, i);
         unsigned what = follows ? NARC_FOLLOW : NARC_ASK_GROUND;
-        what = apart & !touches ? NARC_APART : what;
+        what = (apart & !touches) ? NARC_APART : what;
         what = one.what & OF_RESTS ? NARC_REST : what;
         const unsigned asks = what == NARC_ASK_GROUND, held = (one.what & holds) == holds;
         work[to] = (narc_pair_work){one.pair, one.slot, what};
@@ -509,7 +509,7 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
         *to = (uint32_t)(first + i);
         to += (odd[i] == 0) & (stirs != 0);
         other[count] = (uint8_t)i;
-        count += (odd[i] != 0) & (!kept | (now[i] != 0));
+        count += (odd[i] != 0) & (!kept | (now[i] != 0)) & !(marks[i] & NARC_WITH_GROUND);
     }
     memcpy(found, now, sizeof now);
     *candidates = to;
@@ -534,7 +534,8 @@ void narc_sort_pairs(const narc_contact_step *s) {
     uint8_t *const flags = c->flags;
     slot_lists to = {c->asked, c->known, c->candidates};
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
-    const bool rests = !more && c->candidate_count > count / 4; /* as in the last step */
+    /* As in the last step; where ground lies between other slots, these are picked out. */
+    const bool rests = !s->step->ahead.base && (s->has_ground || c->candidate_count > count / 4);
     c->sensor_count = 0;
     for (size_t first = 0; first < count && rests; first += CHUNK) {
         uint8_t found[CHUNK], other[CHUNK];

@@ -90,7 +90,7 @@ static void make_lists(const narc_contact_step *s) {
                                             0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
             add_event(c, touches, event);
         }
-        if (touches && marks & NARC_SENSOR)
+        if (touches & (marks / NARC_SENSOR)) /* one is rare, the other one not */
             c->sensors[sensor_count++] = slot;
         touching[touching_count] = slot; /* as chance has it: without a branch */
         touching_count += touches & !(marks & (NARC_SENSOR | NARC_RESTS));
