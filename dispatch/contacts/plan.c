@@ -155,18 +155,31 @@ static void list_ground(const narc_contact_step *s, const pair_view *v) {
     c->ground_pair_count = (size_t)(to - c->ground_pairs);
 }
 
+/* What is known of a pair, by what its bodies and its slot are: a number below LOOKS, from find_look(). */
+enum { LOOK_TOUCHING = 2, LOOK_CHANGED = 16, LOOK_CHANGED_B = 64, LOOKS = 256 };
+_Static_assert((NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT) == 13,
+               "with LOOK_TOUCHING all below LOOK_CHANGED");
+
+static void list_looks(uint32_t out[LOOKS]) {
+    for (unsigned look = 0; look < LOOKS; look++) {
+        const unsigned changed = look / LOOK_CHANGED & NARC_ALL_CHANGED;
+        const bool old = look & (NARC_SLOT_STALE | NARC_SLOT_SENSOR) || changed & NARC_RESHAPED;
+        out[look] = (changed || old ? OF_CHANGED : 0u) | (old ? OF_OLD : 0u) |
+                    (look / LOOK_CHANGED_B ? OF_MOVING : 0u) | (look & NARC_SLOT_KEPT && !old ? OF_KEPT : 0u) |
+                    (look & LOOK_TOUCHING ? OF_TOUCHING : OF_BARE);
+    }
+}
+
 /* Here and below what differs from pair to pair as chance has it is without a branch. */
-static inline unsigned look_at_ground(const pair_view *v, const narc_pair_work *work) {
+static inline unsigned find_look(const pair_view *v, const narc_pair_work *work) {
     const size_t k = work->pair;
-    const unsigned changed_b = v->changed[v->b[k]], changed = v->changed[v->a[k]] | changed_b;
-    const unsigned moves = (changed_b != 0) * OF_MOVING;
+    const unsigned changed_b = v->changed[v->b[k]] & NARC_ALL_CHANGED, changed_a = v->changed[v->a[k]];
+    const unsigned changed = ((changed_a & NARC_ALL_CHANGED) | changed_b) * LOOK_CHANGED + changed_b * LOOK_CHANGED_B;
     if (work->slot == UINT32_MAX)
-        return work->what | OF_OLD | OF_CHANGED | OF_BARE | moves;
-    const unsigned flags = v->flags[work->slot], touches = v->state[work->slot] & NARC_TOUCHING;
-    const unsigned old = find_stale(flags, v->marks[k]) | (changed & NARC_RESHAPED), stays = old == 0;
-    return work->what | (changed | old ? OF_CHANGED : 0u) | (1 - stays) * OF_OLD | moves |
-           stays * (flags & NARC_SLOT_KEPT) * (OF_KEPT / NARC_SLOT_KEPT) |
-           (touches * OF_TOUCHING + (1 - touches) * OF_BARE);
+        return changed | NARC_SLOT_STALE;
+    const unsigned flags = v->flags[work->slot] | (v->marks[k] / NARC_FLIPPED) * NARC_SLOT_STALE;
+    return changed | (flags & (NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT)) |
+           (v->state[work->slot] & NARC_TOUCHING) * LOOK_TOUCHING;
 }
 
 /* What a pair is, with what those behind it of its body are; `all` is that on return, or 0 in front of the first one. */
@@ -178,39 +191,35 @@ static inline uint32_t gather_back(unsigned what, uint32_t *all) {
 
 /* The same of all pairs of its body, from what gather_back() has made. */
 static inline uint32_t gather(uint32_t what, uint32_t *all) {
-    const uint32_t is_first = 0u - (what & OF_FIRST);
-    *all = (what / OF_BODY & is_first) | (*all & ~is_first);
-    return (what & OF_PAIR) + *all * OF_BODY;
+    const uint32_t is_first = 0u - (what & OF_FIRST), own = what & OF_PAIR;
+    *all = ((what - own) & is_first) | (*all & ~is_first);
+    return own | *all;
 }
 
-/* Lists the pairs of ground of bodies of which something has changed, and, in `ground_asked`, those of which something is kept
- * that may decide. Returns how many these are. */
-static size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, unsigned keeps) {
-    narc_contacts *const c = s->contacts;
-    narc_pair_work *const work = c->work;
+/* Finds what all pairs of ground are, and lists in `ground_asked` those of which something is kept that may decide, of bodies of
+ * which something has changed. Returns how many these are. */
+static size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, uint32_t *out, uint32_t keeps) {
+    const narc_contacts *const c = s->contacts;
     const narc_pair_work *const pairs = c->ground_pairs;
     const size_t count = c->ground_pair_count;
     uint32_t *const known = c->known, *const asked = c->ground_asked;
-    uint32_t all = 0;
-    size_t to = 0, kept = 0;
+    uint32_t looks[LOOKS], all = 0;
+    size_t kept = 0;
+    list_looks(looks);
     for (size_t i = count; i-- > 0;) {
-        unsigned what = look_at_ground(v, &pairs[i]);
+        unsigned what = pairs[i].what | looks[find_look(v, &pairs[i])];
         if (!c->ground_known && what & OF_FIRST)
             what |= find_other(v, pairs[i].pair, s->list->pairs.count);
-        work[i] = (narc_pair_work){pairs[i].pair, pairs[i].slot, gather_back(what, &all)};
+        out[i] = gather_back(what, &all);
     }
     for (size_t i = 0; i < count; i++) {
-        const narc_pair_work one = {work[i].pair, work[i].slot, gather(work[i].what, &all)};
-        const size_t changed = all / OF_CHANGED & 1;
-        work[to] = one;
-        to += changed;
-        known[kept] = one.slot;
-        asked[kept] = one.pair;
-        kept += changed & ((one.what & keeps) == keeps);
+        out[i] = gather(out[i], &all);
+        known[kept] = pairs[i].slot;
+        asked[kept] = pairs[i].pair;
+        kept += (out[i] & keeps) == keeps;
     }
-    for (size_t i = 0; s->step->ahead.base && i < to; i++)
-        c->ground_margins[work[i].pair] = narc_find_margin(s, v->a[work[i].pair], v->b[work[i].pair]);
-    c->work_count = to;
+    for (size_t i = 0; s->step->ahead.base && i < count; i++)
+        c->ground_margins[pairs[i].pair] = narc_find_margin(s, v->a[pairs[i].pair], v->b[pairs[i].pair]);
     return kept;
 }
 
@@ -224,61 +233,66 @@ static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *wo
     return may;
 }
 
-/* Of which listed pairs does what is kept count still? */
-static void find_held(const narc_contact_step *s, unsigned keeps, size_t kept_count) {
-    narc_contacts *const c = s->contacts;
-    narc_pair_work *const work = c->work;
+/* Of which pairs does what is kept count still? */
+static void find_held(const narc_contact_step *s, uint32_t *what, uint32_t keeps, size_t kept_count) {
+    const narc_contacts *const c = s->contacts;
+    const narc_pair_work *const pairs = c->ground_pairs;
+    const uint32_t *const left = c->left;
     const bool has_more = s->step->recycling > 0 && c->more.count > 0;
     size_t moved = narc_find_moved(s, kept_count);
     uint32_t all = 0;
-    for (size_t i = c->work_count; i-- > 0;) {
-        const unsigned was = work[i].what & OF_PAIR, kept = (was & keeps) == keeps;
-        const unsigned goes = kept & (moved > 0) & (c->left[moved - (moved > 0)] == work[i].pair), held = kept - goes;
-        unsigned loose = (1 - held) & was / OF_TOUCHING;
+    for (size_t i = c->ground_pair_count; i-- > 0;) {
+        const uint32_t was = what[i], kept = (was & keeps) == keeps;
+        const uint32_t goes = kept & (moved > 0) & (left[moved - (moved > 0)] == pairs[i].pair), held = kept - goes;
+        uint32_t loose = (was / OF_TOUCHING & 1) & ~held;
         if (has_more && held & was / OF_TOUCHING)
-            loose = !may_more_follow(s, &work[i]);
+            loose = !may_more_follow(s, &pairs[i]);
         moved -= goes;
-        work[i].what = gather_back(was | held * OF_HELD | (1 - held) * OF_FREE | loose * OF_LOOSE, &all);
+        what[i] = gather_back((was & OF_PAIR) | (OF_FREE - held * (OF_FREE - OF_HELD)) | loose * OF_LOOSE, &all);
     }
 }
 
 /* Are all boxes of the pairs of a body, the first one of which is number `first`, apart from it? */
 static bool is_body_apart(const narc_contact_step *s, const pair_view *v, size_t first) {
     const narc_contacts *const c = s->contacts;
-    const narc_pair_work *const work = c->work;
+    const narc_pair_work *const pairs = c->ground_pairs;
     bool apart = true;
-    for (size_t i = first; apart && i < c->work_count && (i == first || !(work[i].what & OF_FIRST)); i++)
-        apart = are_apart(v, v->a[work[i].pair], v->b[work[i].pair]);
+    for (size_t i = first; apart && i < c->ground_pair_count && (i == first || !(pairs[i].what & OF_FIRST)); i++)
+        apart = are_apart(v, v->a[pairs[i].pair], v->b[pairs[i].pair]);
     return apart;
 }
 
 /* All rows of a body with ground follow it, if there are some; rows tell of other ground only while none moves. Else its pairs
  * are asked together, as their rows are merged; but those that have none are not while what is kept of them holds. */
 static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
+    enum { STOPS = (OF_LOOSE | OF_OLD | OF_OTHER) * OF_BODY, SHIFTS = (OF_MOVING | OF_BARE) * OF_BODY };
     narc_contacts *const c = s->contacts;
     narc_pair_work *const work = c->work;
-    uint32_t *const asked = c->ground_asked;
+    const narc_pair_work *const pairs = c->ground_pairs;
+    const size_t count = c->ground_pair_count;
+    uint32_t *const asked = c->ground_asked, *const what = c->asked; /* which is not in use yet */
     const bool recycles = s->step->recycling > 0;
-    const unsigned keeps = recycles ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
-    const unsigned holds = OF_HELD | OF_BARE, stops = OF_LOOSE | OF_OLD | OF_OTHER, shifts = OF_MOVING | OF_BARE;
+    /* Rows follow, or pairs without one stay so. */
+    const uint32_t keeps = OF_CHANGED * OF_BODY + (recycles ? OF_KEPT : OF_KEPT | OF_BARE), holds = OF_HELD | OF_BARE;
     unsigned apart = 0;
     uint32_t all = 0;
     size_t to = 0, asked_count = 0;
-    find_held(s, keeps, look_at_all_ground(s, v, keeps));
-    for (size_t i = 0; i < c->work_count; i++) {
-        const narc_pair_work one = {work[i].pair, work[i].slot, gather(work[i].what, &all)};
-        const unsigned touches = all / OF_TOUCHING & 1;
-        const unsigned follows = recycles & touches & !(all & stops) & ((all & shifts) != shifts);
-        if (!touches && one.what & OF_FIRST) /* one that touches is better asked */
-            apart = all & OF_FREE && is_body_apart(s, v, i);
-        unsigned what = follows ? NARC_FOLLOW : NARC_ASK_GROUND;
-        what = (apart & !touches) ? NARC_APART : what;
-        what = one.what & OF_RESTS ? NARC_REST : what;
-        const unsigned asks = what == NARC_ASK_GROUND, held = (one.what & holds) == holds;
-        work[to] = (narc_pair_work){one.pair, one.slot, what};
-        to += 1 - (asks & held);
-        asked[asked_count] = one.pair;
-        asked_count += asks & (1 - held);
+    find_held(s, what, keeps, look_at_all_ground(s, v, what, keeps));
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t one = gather(what[i], &all), touches = all / OF_BODY & OF_TOUCHING;
+        if (!touches && one & OF_FIRST) /* one that touches is better asked */
+            apart = all & OF_FREE * OF_BODY && all & OF_CHANGED * OF_BODY && is_body_apart(s, v, i);
+        unsigned planned = NARC_ASK_GROUND;
+        if (recycles)
+            planned = touches && !(all & STOPS) && (all & SHIFTS) != SHIFTS ? NARC_FOLLOW : planned;
+        planned = !touches && apart ? NARC_APART : planned;
+        planned = one & OF_RESTS ? NARC_REST : planned;
+        const unsigned changed = all / (OF_CHANGED * OF_BODY) & 1, held = (one & holds) == holds;
+        const unsigned asks = planned == NARC_ASK_GROUND;
+        work[to] = (narc_pair_work){pairs[i].pair, pairs[i].slot, planned};
+        to += changed & ~(asks & held);
+        asked[asked_count] = pairs[i].pair;
+        asked_count += changed & asks & ~held;
     }
     c->work_count = to;
     c->ground_count = asked_count;
@@ -488,28 +502,31 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
 enum { CHUNK = 64 };
 
 /* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: something is kept of them, they
- * are as they were, and a body has moved. Puts the numbers of all others, less `first`, into `other`, and what has changed
- * of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but time. */
+ * are as they were, and a body has moved. Puts the numbers of all others but those of ground, less `first`, into `other`, and
+ * what has changed of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but
+ * time. */
 static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
                              uint8_t other[CHUNK], uint32_t **candidates) {
     const uint32_t *const a = v->a + first, *const b = v->b + first;
     const uint8_t *const changed = v->changed;
-    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, odd[CHUNK];
+    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, follows[CHUNK], passed[CHUNK];
     uint32_t *to = *candidates;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
         now[i] = changed[a[i]] | changed[b[i]];
     memcpy(flags, v->flags + first, n);
     memcpy(marks, v->marks + first, n);
-    for (size_t i = 0; i < CHUNK; i++)
-        odd[i] = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
-                 (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
+    for (size_t i = 0; i < CHUNK; i++) {
+        const uint8_t odd = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
+                            (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
+        follows[i] = (odd == 0) & ((now[i] & NARC_ALL_CHANGED) != 0);
+        passed[i] = (odd == 0) | (kept & (now[i] == 0)) | ((marks[i] & NARC_WITH_GROUND) != 0);
+    }
     for (size_t i = 0; i < n; i++) {
-        const unsigned stirs = now[i] & NARC_ALL_CHANGED;
         *to = (uint32_t)(first + i);
-        to += (odd[i] == 0) & (stirs != 0);
+        to += follows[i];
         other[count] = (uint8_t)i;
-        count += (odd[i] != 0) & (!kept | (now[i] != 0)) & !(marks[i] & NARC_WITH_GROUND);
+        count += 1u - passed[i];
     }
     memcpy(found, now, sizeof now);
     *candidates = to;
