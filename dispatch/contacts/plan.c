@@ -110,8 +110,7 @@ static inline bool was_ground(const pair_view *v, size_t k) {
 
 /* What is known of a pair with ground while it is planned. FIRST: it is the first one of its body; RESTS: neither body moves.
  * OLD: it must be asked, whatever has moved; OTHER: so must all ground of the body, as a pair was ground, or is no sensor's
- * any more. HELD: what is kept of it still counts, FREE: not so. LOOSE: it touches, and not all of its rows may follow. What
- * all pairs of the body are lies in the bits from OF_BODY on. */
+ * any more. What all pairs of the body are lies in the bits from OF_BODY on. */
 enum {
     OF_FIRST = 1,
     OF_RESTS = 2,
@@ -122,10 +121,7 @@ enum {
     OF_KEPT = 64,
     OF_BARE = 128,
     OF_TOUCHING = 256,
-    OF_HELD = 512,
-    OF_FREE = 1024,
-    OF_LOOSE = 2048,
-    OF_BODY = 4096,
+    OF_BODY = 512,
     OF_PAIR = OF_BODY - 1
 };
 
@@ -233,65 +229,69 @@ static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *wo
     return may;
 }
 
-/* Of which pairs does what is kept count still? */
-static void find_held(const narc_contact_step *s, uint32_t *what, uint32_t keeps, size_t kept_count) {
-    const narc_contacts *const c = s->contacts;
-    const narc_pair_work *const pairs = c->ground_pairs;
-    const uint32_t *const left = c->left;
-    const bool has_more = s->step->recycling > 0 && c->more.count > 0;
-    size_t moved = narc_find_moved(s, kept_count);
-    uint32_t all = 0;
-    for (size_t i = c->ground_pair_count; i-- > 0;) {
-        const uint32_t was = what[i], kept = (was & keeps) == keeps;
-        const uint32_t goes = kept & (moved > 0) & (left[moved - (moved > 0)] == pairs[i].pair), held = kept - goes;
-        uint32_t loose = (was / OF_TOUCHING & 1) & ~held;
-        if (has_more && held & was / OF_TOUCHING)
-            loose = !may_more_follow(s, &pairs[i]);
-        moved -= goes;
-        what[i] = gather_back((was & OF_PAIR) | (OF_FREE - held * (OF_FREE - OF_HELD)) | loose * OF_LOOSE, &all);
-    }
+/* The pairs of ground while it is found out what is done with them. */
+typedef struct ground_plan {
+    const narc_pair_work *pairs;
+    const uint32_t *what;
+    size_t count;
+    uint32_t keeps;       /* what a pair is of which something is kept that may decide; */
+    const uint32_t *left; /* those whose bodies have moved too far for it */
+    size_t moved, moved_count;
+} ground_plan;
+
+/* Does what is kept of pair i count still? Pairs are asked about in their order. */
+static inline uint32_t take_held(ground_plan *p, size_t i) {
+    const uint32_t kept = (p->what[i] & p->keeps) == p->keeps;
+    const uint32_t goes = kept & (p->moved < p->moved_count) & (p->left[p->moved] == p->pairs[i].pair);
+    p->moved += goes;
+    return kept - goes;
 }
 
-/* Are all boxes of the pairs of a body, the first one of which is number `first`, apart from it? */
-static bool is_body_apart(const narc_contact_step *s, const pair_view *v, size_t first) {
-    const narc_contacts *const c = s->contacts;
-    const narc_pair_work *const pairs = c->ground_pairs;
-    bool apart = true;
-    for (size_t i = first; apart && i < c->ground_pair_count && (i == first || !(pairs[i].what & OF_FIRST)); i++)
-        apart = are_apart(v, v->a[pairs[i].pair], v->b[pairs[i].pair]);
-    return apart;
+/* What is done with all pairs of a body, the first one of which is number `first`. All its rows with ground follow it, if there
+ * are some; rows tell of other ground only while none moves. */
+static unsigned plan_body(const narc_contact_step *s, const pair_view *v, const ground_plan *plan, size_t first) {
+    const uint32_t all = plan->what[first] / OF_BODY;
+    const bool touches = all & OF_TOUCHING;
+    ground_plan p = *plan;
+    bool follows =
+        s->step->recycling > 0 && touches && !(all & (OF_OLD | OF_OTHER)) && !(all & OF_MOVING && all & OF_BARE);
+    bool all_held = true;
+    size_t end = first;
+    do {
+        const bool held = take_held(&p, end);
+        all_held = all_held && held;
+        if (follows && p.what[end] & OF_TOUCHING)
+            follows = held && may_more_follow(s, &p.pairs[end]);
+    } while (++end < p.count && !(p.what[end] & OF_FIRST));
+    bool apart = !touches && !all_held; /* one that touches is better asked */
+    for (size_t i = first; apart && i < end; i++)
+        apart = are_apart(v, v->a[p.pairs[i].pair], v->b[p.pairs[i].pair]);
+    return follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
 }
 
-/* All rows of a body with ground follow it, if there are some; rows tell of other ground only while none moves. Else its pairs
- * are asked together, as their rows are merged; but those that have none are not while what is kept of them holds. */
+/* Pairs of a body are asked together, as their rows are merged; but those that have none are not while what is kept of them
+ * holds. */
 static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
-    enum { STOPS = (OF_LOOSE | OF_OLD | OF_OTHER) * OF_BODY, SHIFTS = (OF_MOVING | OF_BARE) * OF_BODY };
     narc_contacts *const c = s->contacts;
     narc_pair_work *const work = c->work;
-    const narc_pair_work *const pairs = c->ground_pairs;
-    const size_t count = c->ground_pair_count;
     uint32_t *const asked = c->ground_asked, *const what = c->asked; /* which is not in use yet */
-    const bool recycles = s->step->recycling > 0;
-    /* Rows follow, or pairs without one stay so. */
-    const uint32_t keeps = OF_CHANGED * OF_BODY + (recycles ? OF_KEPT : OF_KEPT | OF_BARE), holds = OF_HELD | OF_BARE;
-    unsigned apart = 0;
-    uint32_t all = 0;
+    const bool recycles = s->step->recycling > 0;                    /* rows follow, or pairs without one stay so */
+    const uint32_t keeps = OF_CHANGED * OF_BODY + (recycles ? OF_KEPT : OF_KEPT | OF_BARE);
+    const size_t kept_count = look_at_all_ground(s, v, what, keeps), moved_count = narc_find_moved(s, kept_count);
+    ground_plan plan = {c->ground_pairs, what, c->ground_pair_count, keeps, c->left, 0, moved_count};
+    unsigned planned = NARC_ASK_GROUND;
     size_t to = 0, asked_count = 0;
-    find_held(s, what, keeps, look_at_all_ground(s, v, what, keeps));
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t one = gather(what[i], &all), touches = all / OF_BODY & OF_TOUCHING;
-        if (!touches && one & OF_FIRST) /* one that touches is better asked */
-            apart = all & OF_FREE * OF_BODY && all & OF_CHANGED * OF_BODY && is_body_apart(s, v, i);
-        unsigned planned = NARC_ASK_GROUND;
-        if (recycles)
-            planned = touches && !(all & STOPS) && (all & SHIFTS) != SHIFTS ? NARC_FOLLOW : planned;
-        planned = !touches && apart ? NARC_APART : planned;
-        planned = one & OF_RESTS ? NARC_REST : planned;
-        const unsigned changed = all / (OF_CHANGED * OF_BODY) & 1, held = (one & holds) == holds;
-        const unsigned asks = planned == NARC_ASK_GROUND;
-        work[to] = (narc_pair_work){pairs[i].pair, pairs[i].slot, planned};
+    for (size_t i = 0; i < plan.count; i++) {
+        const uint32_t one = what[i], changed = one / (OF_CHANGED * OF_BODY) & 1;
+        if (one & OF_TOUCHING * OF_BODY && !recycles)
+            planned = NARC_ASK_GROUND;
+        else if (one & OF_FIRST && changed)
+            planned = plan_body(s, v, &plan, i);
+        const uint32_t held = take_held(&plan, i) & one / OF_BARE;
+        const unsigned own = one & OF_RESTS ? NARC_REST : planned, asks = own == NARC_ASK_GROUND;
+        work[to] = (narc_pair_work){plan.pairs[i].pair, plan.pairs[i].slot, own};
         to += changed & ~(asks & held);
-        asked[asked_count] = pairs[i].pair;
+        asked[asked_count] = plan.pairs[i].pair;
         asked_count += changed & asks & ~held;
     }
     c->work_count = to;
