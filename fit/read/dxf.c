@@ -13,7 +13,7 @@
 #include "outline/path.h"
 #include "outline/vector.h"
 #include "read/dxf_entities.h"
-#include "read/ellipse.h"
+#include "outline/ellipse.h"
 
 /* Ends this near, in parts of the drawing's extent, meet. */
 static const double NEAR = 1e-6;

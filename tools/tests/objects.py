@@ -82,6 +82,8 @@ if SVG:
 </tileset>""")
     same(fitted("set.tsx"), TILES)
 write("none.tmj", {"type": "map", "layers": []})
+write("pills.tmj", {"type": "map", "layers": [{"objects": [{"name": "lies", "x": 1, "y": 2, "width": 6, "height": 2, "rotation": 90, "capsule": True}, {"name": "stands", "width": 2, "height": 6, "capsule": True}]}]})
+same(fitted("pills.tmj"), {"lies": ("capsule", 8 + math.pi, [0, -5]), "stands": ("capsule", 8 + math.pi, [1, -3])})
 assert narc(2, "fit", "none.tmj", "--arcs", "3").stderr == "narc: none.tmj: it has no collision objects\n"
 write("wrong.json", {"type": "map", "layers": [{"objects": [{"polygon": [{"x": 1e300, "y": 0}]}]}]})
 assert narc(2, "fit", "wrong.json", "--arcs", "3").stderr.startswith("narc: wrong.json: ")
@@ -135,8 +137,17 @@ if SVG:
             (tmx('<object name="flat"><polyline points="0,0 1,0 2,0"/></object>' + BOX), "broken5.tmx: 'flat': ")), 0):
         write("broken%d.tmx" % number, text)
         assert re.match("(narc: )?(%s)" % message, said := narc(2, "fit", "broken%d.tmx" % number, "--arcs", "3").stderr), (message, said)
-    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object template="a.tx"/><object width="4" height="2"><capsule/></object><object width="-4" height="2"/>'))
-    assert "some.tmx: 'a': 3 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object width="-4" height="2"/>'))
+    assert "some.tmx: 'a': 1 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    os.mkdir("kinds")
+    write("kinds/pill.tx", '<?xml version="1.0" encoding="UTF-8"?><template><object name="pill" width="6" height="2"><capsule/></object></template>')
+    write("kinds/wide.tj", {"type": "template", "object": {"name": "wide", "width": 8, "height": 2, "rotation": 0}})
+    write("kinds.tmx", tmx('<object template="kinds/pill.tx" x="10" y="20"/><object template="kinds/wide.tj" name="tall" x="1" y="2" height="9"/>'))
+    PILL = ("capsule", 8 + math.pi, [13, -21])
+    same(fitted("kinds.tmx"), {"pill": PILL, "tall": ("box", 72, [5, -6.5])})
+    for inside, message in (('<object template="kinds/absent.tx"/>', "kinds/absent.tx: No such file"), ('<object template="a.tmx"/>', "a.tmx: it is no template of an object")):
+        write("a.tmx", tmx(inside))
+        assert message in narc(2, "fit", "a.tmx", "--arcs", "3").stderr
     write("moved.tmx", '<map><group offsetx="100" offsety="50"><objectgroup name="a" offsetx="7">%s</objectgroup></group></map>' % BOX)
     (_, _, middle), = fitted("moved.tmx").values()
     assert math.dist(middle, [109, -51]) < 0.1, middle
