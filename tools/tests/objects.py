@@ -168,13 +168,18 @@ write("wrong.json", {"shapes": [{"name": name, "circle": 2} for name in ("walk-1
 for cells, message in ("16x16", "shapes 'walk-1' and 'jump-1' are the same cell"), ("64x64", "shape 'walk-1' is cell 1 of a sheet that has 0"):
     assert message in narc(2, "export", "wrong.json", "--to", "tsj", "--image", "art/sheet.png", "--grid", cells, "--tolerance", "0.1").stderr
 
-# A Godot resource for each body; one of two pieces has none.
-write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}}, {"name": "b", "circle": 1}]})
-for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Pool")):
+# A Godot resource for each body, plain where its numbers say all; one of two pieces has none.
+write("plain.json", {"shapes": [{"name": "far", "box": {"width": 4, "height": 2}, "origin": [1, 0]}, {"name": "box", "box": {"width": 4, "height": 2}}, {"name": "ball", "circle": 1.5},
+                                {"name": "up", "arcs": [{"center": [0, y], "radius": 1, "start": start, "end": start + math.pi} for y, start in ((1.5, 0), (-1.5, -math.pi))]}, {"name": "flat", "capsule": {"length": 3, "radius": 1}}]})
+NUMBER = r"[-\d., ]*"
+for form, words, box, height in ("tres", r"format=3", r"size = Vector2\(4, 2\)", 5), ("tres3", r"format=2", r"extents = Vector2\(2, 1\)", 3):
+    polygon = r"ConvexPolygonShape2D", r"points = P\w+Vector2Array\(%s\)" % NUMBER
     narc(0, "export", "plain.json", "--to", form, "--tolerance", "0.1", "--out", "{name}." + form)
-    with open("a." + form, encoding="utf-8") as file:
-        text = file.read()
-    assert re.fullmatch(r'\[gd_resource type="ConvexPolygonShape2D" %s\]\n\n\[resource\]\npoints = %sVector2Array\(([-\d., ]*)\)\n\n' % words, text), text
+    for name, (kind, value) in {"far": polygon, "flat": polygon, "box": ("RectangleShape2D", box), "ball": ("CircleShape2D", "radius = 1.5"),
+                                "up": ("CapsuleShape2D", r"radius = 1\nheight = %d" % height)}.items():
+        with open(name + "." + form, encoding="utf-8") as file:
+            text = file.read()
+        assert re.fullmatch(r'\[gd_resource type="%s" %s\]\n\n\[resource\]\n%s\n\n' % (kind, words, value), text), text
     assert "a file of %s holds one shape" % form in narc(2, "export", "shapes.json", "--to", form, "--tolerance", "0.1", "--out", "{name}.x").stderr
     assert "a file of %s holds one shape" % form in narc(2, "export", "plain.json", "--to", form, "--tolerance", "0.1").stderr
 godot = shutil.which("godot3-server")
@@ -182,11 +187,12 @@ if not godot:
     print("skipped: Godot 3, without godot3-server")
 else:
     os.mkdir("game")
-    shutil.copy("b.tres3", "game/b.tres")
+    for name in "far", "up":
+        shutil.copy(name + ".tres3", "game/%s.tres" % name)
     write("game/project.godot", "config_version=4\n")
-    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tvar shape = load('res://b.tres')\n\tprint('SHAPE ', shape.get_class(), ' ', shape.points.size())\n\tquit()\n")
+    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tfor name in ['far', 'up']:\n\t\tprint('SHAPE ', load('res://' + name + '.tres').get_class())\n\tprint('HEIGHT ', load('res://up.tres').height)\n\tquit()\n")
     listed = subprocess.run([godot, "--path", "game", "-s", "list.gd"], capture_output=True, text=True, timeout=120, env={**os.environ, "HOME": folder})
-    assert re.search(r"^SHAPE ConvexPolygonShape2D \d+$", listed.stdout, re.M), listed
+    assert re.search(r"^SHAPE ConvexPolygonShape2D\nSHAPE CapsuleShape2D\nHEIGHT 3$", listed.stdout, re.M), listed
 
 # DXF: layers and arcs come back; a spline with weights is named.
 narc(0, "export", "shapes.json", "--to", "dxf", "--out", "out.dxf")
