@@ -99,7 +99,7 @@ static inline unsigned find_stale(unsigned flags, unsigned marks) {
 }
 
 static inline bool is_ground(const pair_view *v, size_t k) {
-    return !(v->marks[k] & NARC_SENSOR) && (v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE));
+    return !(v->marks[k] & NARC_SENSOR) & ((v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE)) != 0);
 }
 
 /* Was a pair ground that is none, or no sensor's? */
@@ -108,70 +108,110 @@ static inline bool was_ground(const pair_view *v, size_t k) {
     return slot != UINT32_MAX && (v->changed[v->b[k]] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
 }
 
-/* What is known of a pair with ground while it is planned. OF_OLD: it must be asked, whatever has moved. OF_OTHER: so must
- * all ground of the body, as a pair was ground, or is no sensor's any more. OF_HELD: what is kept of it still counts.
- * OF_FIRST: it is the first one of its body. */
+/* What is known of a pair with ground while it is planned. FIRST: it is the first one of its body; RESTS: neither body moves.
+ * OLD: it must be asked, whatever has moved; OTHER: so must all ground of the body, as a pair was ground, or is no sensor's
+ * any more. HELD: what is kept of it still counts, FREE: not so. LOOSE: it touches, and not all of its rows may follow. What
+ * all pairs of the body are lies in the bits from OF_BODY on. */
 enum {
-    OF_CHANGED = 1,
-    OF_OLD = 2,
-    OF_BARE = 4,
-    OF_KEPT = 8,
-    OF_MOVING = 16,
-    OF_OTHER = 32,
-    OF_HELD = 64,
-    OF_FIRST = 128
+    OF_FIRST = 1,
+    OF_RESTS = 2,
+    OF_OTHER = 4,
+    OF_CHANGED = 8,
+    OF_OLD = 16,
+    OF_MOVING = 32,
+    OF_KEPT = 64,
+    OF_BARE = 128,
+    OF_TOUCHING = 256,
+    OF_HELD = 512,
+    OF_FREE = 1024,
+    OF_LOOSE = 2048,
+    OF_BODY = 4096,
+    OF_PAIR = OF_BODY - 1
 };
 
-static inline unsigned look_at_ground(const pair_view *v, size_t k, uint32_t slot, unsigned changed_a) {
-    const unsigned changed_b = v->changed[v->b[k]], moves = changed_b ? OF_MOVING : 0u;
-    if (slot == UINT32_MAX)
-        return OF_OLD | OF_CHANGED | OF_BARE | moves;
-    const unsigned flags = v->flags[slot], bare = v->state[slot] & NARC_TOUCHING ? 0u : OF_BARE;
-    if (find_stale(flags, v->marks[k]) || (changed_a | changed_b) & NARC_RESHAPED)
-        return OF_OLD | OF_CHANGED | bare | moves;
-    return (changed_a | changed_b ? OF_CHANGED : 0u) | (flags & NARC_SLOT_KEPT ? OF_KEPT : 0u) | bare | moves;
+/* Of the body of pair k, was another pair ground that is none? */
+static unsigned find_other(const pair_view *v, size_t k, size_t count) {
+    const uint32_t a = v->a[k];
+    while (k > 0 && v->a[k - 1] == a)
+        k--;
+    for (; k < count && v->a[k] == a; k++)
+        if (!is_ground(v, k) && was_ground(v, k))
+            return OF_OTHER | OF_CHANGED;
+    return 0;
 }
 
-/* Of the pairs from `first` on, those of one body: these with ground are listed, and what is kept of them and may decide, if
- * something has changed. Returns the end. */
-static size_t list_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t count) {
+/* Lists all pairs of ground. */
+static void list_ground(const narc_contact_step *s, const pair_view *v) {
     narc_contacts *const c = s->contacts;
-    const uint32_t a = v->a[first];
-    size_t k = first;
-    while (k < count && v->a[k] == a && !is_ground(v, k))
-        k++;
-    if (k == count || v->a[k] != a)
-        return k;
-    const unsigned keeps =
-        s->step->recycling > 0 ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
-    narc_pair_work *const work = c->work + c->work_count;
-    size_t listed = 0;
-    unsigned any = 0;
-    for (size_t i = first; i < k; i++)
-        any |= was_ground(v, i) ? OF_OTHER | OF_CHANGED : 0u;
-    do {
-        if (listed == 0 || is_ground(v, k)) {
-            const uint32_t slot = slot_of(v, k);
-            const unsigned what = look_at_ground(v, k, slot, v->changed[a]);
-            any |= what;
-            work[listed++] = (narc_pair_work){(uint32_t)k, slot, what};
-        } else {
-            any |= was_ground(v, k) ? OF_OTHER | OF_CHANGED : 0u;
-        }
-    } while (++k < count && v->a[k] == a);
-    if (!(any & OF_CHANGED))
-        return k;
-    work->what |= (any & OF_OTHER) | OF_FIRST;
-    c->work_count += listed;
-    for (size_t i = 0; i < listed; i++) {
-        if (s->step->ahead.base)
-            c->ground_margins[work[i].pair] = narc_find_margin(s, a, v->b[work[i].pair]);
-        if ((work[i].what & keeps) != keeps)
+    const size_t count = s->list->pairs.count;
+    narc_pair_work *to = c->ground_pairs;
+    for (size_t k = 0; k < count; k++) {
+        if (!is_ground(v, k))
             continue;
-        c->known[c->ground_count] = work[i].slot;
-        c->ground_asked[c->ground_count++] = work[i].pair;
+        const unsigned first = to == c->ground_pairs || v->a[to[-1].pair] != v->a[k] ? OF_FIRST : 0;
+        const unsigned rests = is_at_rest(s, v->a[k]) && is_at_rest(s, v->b[k]) ? OF_RESTS : 0;
+        *to++ = (narc_pair_work){(uint32_t)k, slot_of(v, k), first | rests};
     }
-    return k;
+    c->ground_pair_count = (size_t)(to - c->ground_pairs);
+}
+
+/* Here and below what differs from pair to pair as chance has it is without a branch. */
+static inline unsigned look_at_ground(const pair_view *v, const narc_pair_work *work) {
+    const size_t k = work->pair;
+    const unsigned changed_b = v->changed[v->b[k]], changed = v->changed[v->a[k]] | changed_b;
+    const unsigned moves = (changed_b != 0) * OF_MOVING;
+    if (work->slot == UINT32_MAX)
+        return work->what | OF_OLD | OF_CHANGED | OF_BARE | moves;
+    const unsigned flags = v->flags[work->slot], touches = v->state[work->slot] & NARC_TOUCHING;
+    const unsigned old = find_stale(flags, v->marks[k]) | (changed & NARC_RESHAPED), stays = old == 0;
+    return work->what | (changed | old ? OF_CHANGED : 0u) | (1 - stays) * OF_OLD | moves |
+           stays * (flags & NARC_SLOT_KEPT) * (OF_KEPT / NARC_SLOT_KEPT) |
+           (touches * OF_TOUCHING + (1 - touches) * OF_BARE);
+}
+
+/* What a pair is, with what those behind it of its body are; `all` is that on return, or 0 in front of the first one. */
+static inline uint32_t gather_back(unsigned what, uint32_t *all) {
+    const uint32_t both = *all | what;
+    *all = both & ((what & OF_FIRST) - 1u);
+    return what + both * OF_BODY;
+}
+
+/* The same of all pairs of its body, from what gather_back() has made. */
+static inline uint32_t gather(uint32_t what, uint32_t *all) {
+    const uint32_t is_first = 0u - (what & OF_FIRST);
+    *all = (what / OF_BODY & is_first) | (*all & ~is_first);
+    return (what & OF_PAIR) + *all * OF_BODY;
+}
+
+/* Lists the pairs of ground of bodies of which something has changed, and, in `ground_asked`, those of which something is kept
+ * that may decide. Returns how many these are. */
+static size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, unsigned keeps) {
+    narc_contacts *const c = s->contacts;
+    narc_pair_work *const work = c->work;
+    const narc_pair_work *const pairs = c->ground_pairs;
+    const size_t count = c->ground_pair_count;
+    uint32_t *const known = c->known, *const asked = c->ground_asked;
+    uint32_t all = 0;
+    size_t to = 0, kept = 0;
+    for (size_t i = count; i-- > 0;) {
+        unsigned what = look_at_ground(v, &pairs[i]);
+        if (!c->ground_known && what & OF_FIRST)
+            what |= find_other(v, pairs[i].pair, s->list->pairs.count);
+        work[i] = (narc_pair_work){pairs[i].pair, pairs[i].slot, gather_back(what, &all)};
+    }
+    for (size_t i = 0; i < count; i++) {
+        const narc_pair_work one = {work[i].pair, work[i].slot, gather(work[i].what, &all)};
+        const size_t changed = all / OF_CHANGED & 1;
+        work[to] = one;
+        to += changed;
+        known[kept] = one.slot;
+        asked[kept] = one.pair;
+        kept += changed & ((one.what & keeps) == keeps);
+    }
+    for (size_t i = 0; s->step->ahead.base && i < to; i++)
+        c->ground_margins[work[i].pair] = narc_find_margin(s, v->a[work[i].pair], v->b[work[i].pair]);
+    c->work_count = to;
+    return kept;
 }
 
 /* May all further rows of a slot follow? */
@@ -184,65 +224,64 @@ static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *wo
     return may;
 }
 
-/* Do all rows that a body has with ground follow it, and are there some? Rows tell of other ground only while none moves. */
-static bool do_all_follow(const narc_contact_step *s, size_t first, size_t end) {
-    const narc_pair_work *const work = s->contacts->work;
-    unsigned any = 0, bare = OF_BARE;
-    for (size_t i = first; i < end; i++) {
-        any |= work[i].what;
-        bare &= work[i].what;
-        if (!(work[i].what & (OF_BARE | OF_HELD)))
-            return false;
+/* Of which listed pairs does what is kept count still? */
+static void find_held(const narc_contact_step *s, unsigned keeps, size_t kept_count) {
+    narc_contacts *const c = s->contacts;
+    narc_pair_work *const work = c->work;
+    const bool has_more = s->step->recycling > 0 && c->more.count > 0;
+    size_t moved = narc_find_moved(s, kept_count);
+    uint32_t all = 0;
+    for (size_t i = c->work_count; i-- > 0;) {
+        const unsigned was = work[i].what & OF_PAIR, kept = (was & keeps) == keeps;
+        const unsigned goes = kept & (moved > 0) & (c->left[moved - (moved > 0)] == work[i].pair), held = kept - goes;
+        unsigned loose = (1 - held) & was / OF_TOUCHING;
+        if (has_more && held & was / OF_TOUCHING)
+            loose = !may_more_follow(s, &work[i]);
+        moved -= goes;
+        work[i].what = gather_back(was | held * OF_HELD | (1 - held) * OF_FREE | loose * OF_LOOSE, &all);
     }
-    if (bare || any & (OF_OLD | OF_OTHER) || (any & OF_MOVING && any & OF_BARE))
-        return false;
-    for (size_t i = first; i < end; i++)
-        if (!(work[i].what & OF_BARE) && !may_more_follow(s, &work[i]))
-            return false;
-    return true;
 }
 
-/* The plan of the listed pairs of one body, which are asked together, as their rows are merged; but those that have none are
- * not while what is kept of them holds. Returns the end of what is planned. */
-static size_t plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end, size_t to) {
-    narc_pair_work *const work = s->contacts->work;
-    const uint32_t a = v->a[work[first].pair];
-    const bool follows = s->step->recycling > 0 && do_all_follow(s, first, end), rests = is_at_rest(s, a);
-    unsigned all = OF_HELD | OF_BARE;
-    for (size_t i = first; i < end; i++)
-        all &= work[i].what;
-    bool apart = all == OF_BARE; /* one that touches is better asked */
-    for (size_t i = first; i < end && apart && !follows; i++)
-        apart = are_apart(v, a, v->b[work[i].pair]);
-    const unsigned planned = follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
-    for (size_t i = first; i < end; i++) {
-        const narc_pair_work one = work[i];
-        const unsigned what = rests && is_at_rest(s, v->b[one.pair]) ? NARC_REST : planned;
-        work[to] = (narc_pair_work){one.pair, one.slot, what};
-        to += what != NARC_ASK_GROUND || (one.what & (OF_HELD | OF_BARE)) != (OF_HELD | OF_BARE);
-    }
-    return to;
+/* Are all boxes of the pairs of a body, the first one of which is number `first`, apart from it? */
+static bool is_body_apart(const narc_contact_step *s, const pair_view *v, size_t first) {
+    const narc_contacts *const c = s->contacts;
+    const narc_pair_work *const work = c->work;
+    bool apart = true;
+    for (size_t i = first; apart && i < c->work_count && (i == first || !(work[i].what & OF_FIRST)); i++)
+        apart = are_apart(v, v->a[work[i].pair], v->b[work[i].pair]);
+    return apart;
 }
 
+/* All rows of a body with ground follow it, if there are some; rows tell of other ground only while none moves. Else its pairs
+ * are asked together, as their rows are merged; but those that have none are not while what is kept of them holds. */
 static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
     narc_contacts *const c = s->contacts;
-    const size_t kept_count = c->ground_count, moved_count = narc_find_moved(s, kept_count);
-    size_t moved = 0, at = 0, to = 0;
-    for (size_t i = 0; i < kept_count; i++) {
-        if (moved < moved_count && c->left[moved] == c->ground_asked[i]) {
-            moved++;
-            continue;
-        }
-        while (c->work[at].pair != c->ground_asked[i])
-            at++;
-        c->work[at].what |= OF_HELD;
-    }
-    for (size_t i = 0, end; i < c->work_count; i = end) {
-        for (end = i + 1; end < c->work_count && !(c->work[end].what & OF_FIRST);)
-            end++;
-        to = plan_ground(s, v, i, end, to);
+    narc_pair_work *const work = c->work;
+    uint32_t *const asked = c->ground_asked;
+    const bool recycles = s->step->recycling > 0;
+    const unsigned keeps = recycles ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
+    const unsigned holds = OF_HELD | OF_BARE, stops = OF_LOOSE | OF_OLD | OF_OTHER, shifts = OF_MOVING | OF_BARE;
+    unsigned apart = 0;
+    uint32_t all = 0;
+    size_t to = 0, asked_count = 0;
+    find_held(s, keeps, look_at_all_ground(s, v, keeps));
+    for (size_t i = 0; i < c->work_count; i++) {
+        const narc_pair_work one = {work[i].pair, work[i].slot, gather(work[i].what, &all)};
+        const unsigned touches = all / OF_TOUCHING & 1;
+        const unsigned follows = recycles & touches & !(all & stops) & ((all & shifts) != shifts);
+        if (!touches && one.what & OF_FIRST) /* one that touches is better asked */
+            apart = all & OF_FREE && is_body_apart(s, v, i);
+        unsigned what = follows ? NARC_FOLLOW : NARC_ASK_GROUND;
+        what = (apart & !touches) ? NARC_APART : what;
+        what = one.what & OF_RESTS ? NARC_REST : what;
+        const unsigned asks = what == NARC_ASK_GROUND, held = (one.what & holds) == holds;
+        work[to] = (narc_pair_work){one.pair, one.slot, what};
+        to += 1 - (asks & held);
+        asked[asked_count] = one.pair;
+        asked_count += asks & (1 - held);
     }
     c->work_count = to;
+    c->ground_count = asked_count;
 }
 
 /* The first slot from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -293,12 +332,14 @@ static void note_lost_ground(const narc_contact_step *s) {
 void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
-    const bool has_ground = NARC_PIECES && s->has_ground;
-    const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
+    const bool has_ground = s->has_ground;
+    const size_t bodies = s->step->bodies->count;
     c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
+    c->ground_known = c->ground_known && has_ground && is_list_kept(s) && c->marks_known;
     for (size_t k = 0; c->changed && (k = c->again ? k : find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies;
          k++) {
+        c->ground_known = false;
         c->room[k] = find_room(s, (uint32_t)k);
         c->grounds[k] = find_ground(s, (uint32_t)k);
     }
@@ -306,9 +347,9 @@ void narc_plan_ground(const narc_contact_step *s) {
         c->flags[slot] |= NARC_SLOT_STALE;
     if (has_ground && !s->list->kept)
         note_lost_ground(s);
-    for (size_t k = 0; k < count && has_ground && c->changed;)
-        k = list_ground(s, &v, k, count);
-    if (NARC_PIECES)
+    if (has_ground && !c->ground_known)
+        list_ground(s, &v);
+    if (has_ground && c->changed)
         plan_all_ground(s, &v);
 }
 
@@ -357,7 +398,13 @@ static void mark_slots(const narc_contact_step *s) {
     for (size_t slot = 0; slot < c->slot_count; slot++)
         if (marks[slot] == NARC_GONE)
             c->a[slot] = c->b[slot] = 0;
+    for (size_t i = 0; s->has_ground && i < c->ground_pair_count; i++) {
+        narc_pair_work *const pair = &c->ground_pairs[i];
+        pair->slot = c->order[pair->pair];
+        marks[pair->slot] |= NARC_WITH_GROUND;
+    }
     c->marks_known = true;
+    c->ground_known = s->has_ground;
 }
 
 /* What is to be done with a slot whose bodies have changed, or are `stale`, and not both of which move, or which are no
@@ -386,7 +433,7 @@ NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) 
 }
 
 /* Marks of slots that are no plain pair of two bodies that may move. */
-enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
+enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE | NARC_WITH_GROUND };
 
 /* What of its flags a slot keeps. */
 static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
@@ -409,17 +456,15 @@ typedef struct slot_lists {
 
 /* Finds out what is to be done with a slot, the bodies of which have changed in the ways `found`. What differs from slot to
  * slot as chance has it is without a branch. */
-INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool special, bool more,
+INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool more,
                       uint8_t *all_flags, slot_lists *to) {
     const uint32_t slot = (uint32_t)k;
     const unsigned changed = found & NARC_ALL_CHANGED, was = all_flags[k], marks = v->marks[k];
     const unsigned stale = find_stale(was, marks);
-    if (!(changed | stale))
+    if (!(changed | stale) || marks & NARC_WITH_GROUND) /* that is planned */
         return;
     unsigned what = NARC_ASK;
-    if (special && is_ground(v, k) && !(marks & NARC_GONE))
-        return; /* it is planned */
-    if (special || marks & SPECIAL)
+    if (marks & SPECIAL)
         what = find_special(s, v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
     if (what == NARC_ASK) { /* one that touches is better asked */
@@ -464,7 +509,7 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
         *to = (uint32_t)(first + i);
         to += (odd[i] == 0) & (stirs != 0);
         other[count] = (uint8_t)i;
-        count += (odd[i] != 0) & (!kept | (now[i] != 0));
+        count += (odd[i] != 0) & (!kept | (now[i] != 0)) & !(marks[i] & NARC_WITH_GROUND);
     }
     memcpy(found, now, sizeof now);
     *candidates = to;
@@ -475,8 +520,9 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
  * uses lies in variables of its own, as whatever is written in bytes might be any of it. */
 void narc_sort_pairs(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
-    const bool ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
-    const bool kept = (is_list_kept(s) && c->marks_known) || (!s->list->kept && mark_new_slots(s));
+    const bool more = s->step->ahead.base || c->more.count > 0;
+    const bool known = c->marks_known && c->ground_known == s->has_ground;
+    const bool kept = (is_list_kept(s) && known) || (!s->list->kept && mark_new_slots(s));
     c->lists_known = kept;
     if (!kept)
         mark_slots(s);
@@ -488,21 +534,22 @@ void narc_sort_pairs(const narc_contact_step *s) {
     uint8_t *const flags = c->flags;
     slot_lists to = {c->asked, c->known, c->candidates};
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
-    const bool rests = !ground && !more && c->candidate_count > count / 4; /* as in the last step */
+    /* As in the last step; where ground lies between other slots, these are picked out. */
+    const bool rests = !s->step->ahead.base && (s->has_ground || c->candidate_count > count / 4);
     c->sensor_count = 0;
     for (size_t first = 0; first < count && rests; first += CHUNK) {
         uint8_t found[CHUNK], other[CHUNK];
         const size_t n = count - first < CHUNK ? count - first : CHUNK;
         const size_t others = pass_followers(&v, kept, first, n, found, other, &to.candidates);
         for (size_t i = 0; i < others; i++)
-            sort_slot(s, &v, first + other[i], found[other[i]], ground, more, flags, &to);
+            sort_slot(s, &v, first + other[i], found[other[i]], more, flags, &to);
     }
     for (size_t k = 0; k < count && !rests; k++) {
         const unsigned found = v.changed[v.a[k]] | v.changed[v.b[k]];
         if (kept && !found)
             k = find_changed(&v, k, count) - 1;
         else
-            sort_slot(s, &v, k, found, ground, more, flags, &to);
+            sort_slot(s, &v, k, found, more, flags, &to);
     }
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t slot = c->work[i].slot = c->order[c->work[i].pair], what = c->work[i].what;

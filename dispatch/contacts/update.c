@@ -90,7 +90,7 @@ static void make_lists(const narc_contact_step *s) {
                                             0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
             add_event(c, touches, event);
         }
-        if (touches && marks & NARC_SENSOR)
+        if (touches & (marks / NARC_SENSOR)) /* one is rare, the other one not */
             c->sensors[sensor_count++] = slot;
         touching[touching_count] = slot; /* as chance has it: without a branch */
         touching_count += touches & !(marks & (NARC_SENSOR | NARC_RESTS));
@@ -218,8 +218,8 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     narc_status status = check_step(contacts, shapes, step, out_result, error);
     if (status != NARC_OK)
         return status;
-    narc_contact_step s = {contacts, shapes, step,
-                           NULL,     error,  shapes->piece_count > shapes->plane_count || step->run.base};
+    const bool has_ground = NARC_PIECES && (shapes->piece_count > shapes->plane_count || step->run.base);
+    narc_contact_step s = {contacts, shapes, step, NULL, error, has_ground};
     const narc_asked asked = describe_asking(step);
     contacts->again = !are_asked_alike(&asked, &contacts->last);
     contacts->partners_listed = false;
