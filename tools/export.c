@@ -390,6 +390,12 @@ static void write_numbers(piece *p, narc_point offset, double size, const export
                 p->name, p->corners[0].x, p->corners[0].y);
 }
 
+/* Is a plain shape where its numbers alone have it: around (0, 0), a capsule upright? */
+static bool is_at_origin(const piece *p, narc_point offset) {
+    return hypot(p->center.x + offset.x, p->center.y + offset.y) <= MERGED * measure_piece(p) &&
+           (p->kind != CAPSULE || fabs(cos(p->angle)) < 1e-6);
+}
+
 /* Gives a body's pieces the kinds that the format has, and moves them to its origin. */
 static void place_body(export_body *of, const exporting *how) {
     const double s = how->scale, up = how->y_down ? -s : s;
@@ -417,7 +423,8 @@ static void place_body(export_body *of, const exporting *how) {
         if (p->kind & (LOOP | LINE) & ~how->to->keeps)
             fail_at(how->path, 0, "shape '%s' is a chain, and %s has only convex pieces: narc fit --parts makes these",
                     p->name, how->to->name);
-        p->kind = p->kind & how->to->keeps ? p->kind : OUTLINE;
+        if (!(p->kind & how->to->keeps) || (how->to->one && !is_at_origin(p, offset)))
+            p->kind = p->kind & (LOOP | LINE) ? p->kind : OUTLINE;
         if (!(how->to->keeps & ARCS) && p->kind & (OUTLINE | LOOP | LINE))
             flatten_piece(p, how);
         split_outline(&placed, p, p->kind == OUTLINE ? how->to->most_corners : 0);

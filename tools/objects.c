@@ -12,6 +12,7 @@
 
 #include "fail.h"
 #include "json.h"
+#include "system.h"
 #include "text.h"
 #include "turn.h"
 
@@ -34,6 +35,12 @@ static double number(const cJSON *of, const char *key) {
 static const char *word(const cJSON *of, const char *key) {
     const cJSON *item = get(of, key);
     return cJSON_IsString(item) ? item->valuestring : "";
+}
+
+static cJSON *sure(cJSON *item) {
+    if (!item)
+        fail("not enough memory for objects");
+    return item;
 }
 
 /* What must be a number where it is there. False if something is none: that was reported. */
@@ -99,22 +106,29 @@ static void draw_points(objects *to, const char *name, narc_path *path, const cJ
     }
 }
 
-/* Cubics through a 32nd of half a turn; a circle is two arcs. */
 static void draw_ellipse(objects *to, const char *name, narc_path *path, const place *at, double rx, double ry) {
-    const bool round = rx == ry;
-    const int count = round ? 2 : 64;
-    const double step = FULL_TURN / count, reach = 4 * tan(step / 4) / 3;
+    const narc_point center = put(at, 0, 0), end = put(at, rx, 0), top = put(at, 0, ry);
+    const narc_point u = {end.x - center.x, end.y - center.y}, v = {top.x - center.x, top.y - center.y};
     narc_error error;
-    narc_point end = put(at, rx, 0);
     check(to, name, narc_move_to(path, &end, &error), &error);
-    for (int k = 0; k < count; k++) {
-        const double s = k * step, t = s + step, a = s + step / 2;
-        end = put(at, rx * cos(t), ry * sin(t));
-        const narc_point middle = put(at, rx * cos(a), ry * sin(a)),
-                         p = put(at, rx * (cos(s) - reach * sin(s)), ry * (sin(s) + reach * cos(s))),
-                         q = put(at, rx * (cos(t) + reach * sin(t)), ry * (sin(t) - reach * cos(t)));
-        check(to, name, round ? narc_arc_to(path, &middle, &end, &error) : narc_cubic_to(path, &p, &q, &end, &error),
-              &error);
+    check(to, name, narc_ellipse_to(path, &center, &u, &v, 0, FULL_TURN, &end, &error), &error);
+}
+
+/* Of a box from (0, 0): the shorter sides are half circles. */
+static void draw_capsule(objects *to, const char *name, narc_path *path, const place *at, double width, double height) {
+    const bool lies = width > height;
+    const double radius = fmin(width, height) / 2, far = fmax(width, height) - radius, across = 2 * radius;
+    /* Along the capsule, across it: a side, the end behind it, the other side, the other end. */
+    const double points[6][2] = {{far, 0},   {far + radius, radius}, {far, across}, {radius, across}, {0, radius},
+                                 {radius, 0}};
+    narc_point p[6];
+    narc_error error;
+    for (int k = 0; k < 6; k++)
+        p[k] = put(at, points[k][lies ? 0 : 1], points[k][lies ? 1 : 0]);
+    check(to, name, narc_move_to(path, &p[5], &error), &error);
+    for (int k = 0; k < 6; k += 3) {
+        check(to, name, narc_line_to(path, &p[k], &error), &error);
+        check(to, name, narc_arc_to(path, &p[k + 1], &p[k + 2], &error), &error);
     }
 }
 
@@ -122,7 +136,7 @@ static void draw_ellipse(objects *to, const char *name, narc_path *path, const p
 
 /* Text, points, insertion points and tiles are none. */
 static bool is_drawn(const cJSON *object) {
-    return !get(object, "text") && !get(object, "point") && !get(object, "gid") && !get(object, "capsule") &&
+    return !get(object, "text") && !get(object, "point") && !get(object, "gid") &&
            (get(object, "polygon") || get(object, "polyline") ||
             (number(object, "width") > 0 && number(object, "height") > 0));
 }
@@ -152,6 +166,8 @@ static void draw_group(objects *to, const cJSON *group, const char *name, double
         } else if (get(object, "ellipse")) {
             const narc_point center = put(&at, w / 2, h / 2);
             draw_ellipse(to, own, path, &(place){center.x, -center.y, at.cosine, at.sine, -1}, w / 2, h / 2);
+        } else if (get(object, "capsule")) {
+            draw_capsule(to, own, path, &at, w, h);
         } else {
             narc_error error;
             for (int k = 0; k < 4; k++) {
@@ -191,12 +207,6 @@ typedef struct xml_reading {
     size_t depth;
 } xml_reading;
 
-static cJSON *sure(cJSON *item) {
-    if (!item)
-        fail("not enough memory for objects");
-    return item;
-}
-
 static cJSON *add_to_list(cJSON *to, const char *key) {
     cJSON *list = cJSON_GetObjectItemCaseSensitive(to, key), *item = sure(cJSON_CreateObject());
     cJSON_AddItemToArray(list ? list : sure(cJSON_AddArrayToObject(to, key)), item);
@@ -213,11 +223,12 @@ static void start_element(GMarkupParseContext *context, const char *element, con
                  {"capsule", NULL}};
     xml_reading *at = data;
     cJSON *to = at->depth ? at->open[at->depth - 1] : NULL, *made = NULL;
-    const bool is_map = strcmp(element, "map") == 0, is_shape = strncmp(element, "poly", 4) == 0;
+    const bool is_shape = strncmp(element, "poly", 4) == 0;
     (void)context;
-    if (at->depth == 0 && (is_map || strcmp(element, "tileset") == 0)) {
+    const bool is_root = !strcmp(element, "map") || !strcmp(element, "tileset") || !strcmp(element, "template");
+    if (at->depth == 0 && is_root) {
         at->root = made = sure(cJSON_CreateObject());
-        sure(cJSON_AddStringToObject(made, "type", is_map ? "map" : "tileset"));
+        sure(cJSON_AddStringToObject(made, "type", element));
     }
     if (!at->root || at->depth == 32) {
         g_set_error(error, G_MARKUP_ERROR, G_MARKUP_ERROR_INVALID_CONTENT, "its elements nest deeper than 32");
@@ -339,16 +350,56 @@ static void draw_fixtures(objects *to, const cJSON *body, bool draws, size_t *co
     }
 }
 
-bool read_objects(const char *file, const char *bytes, size_t size, begin_object *begin, void *context) {
-    objects to = {file, begin, context, 0};
+static cJSON *parse(const char *file, const char *bytes, size_t size, bool *out_broken) {
     char *text = join_text(bytes, size, "");
     narc_error error;
     cJSON *root = NULL;
-    bool broken = false;
-    if (narc_clean_text(text, size, &error) == NARC_OK)
-        root = text[strspn(text, " \t\r\n")] == '<' ? read_xml(file, text, strlen(text), &broken) : NULL;
-    if (!root && text[0] != '<' && narc_parse_json(text, &root, &error) != NARC_OK)
+    const bool clean = narc_clean_text(text, size, &error) == NARC_OK;
+    *out_broken = false;
+    if (text[strspn(text, " \t\r\n")] == '<')
+        root = clean ? read_xml(file, text, strlen(text), out_broken) : NULL;
+    else if (narc_parse_json(text, &root, &error) != NARC_OK)
         root = NULL;
+    free(text);
+    return root;
+}
+
+/* Tiled's templates, files beside this one: what an object does not say itself, its template says. False if one is none: that
+ * was reported. */
+static bool fill_from_templates(const char *file, cJSON *of) {
+    const char *name = word(of, "template");
+    cJSON *item;
+    bool right = true;
+    if (*name) {
+        char *path = name[0] == '/' ? join_text(name, strlen(name), "") : join_text(file, folder_length(file), name);
+        size_t size;
+        char *bytes = try_read_bytes(path, &size);
+        bool broken = false;
+        cJSON *root = bytes ? parse(path, bytes, size, &broken) : NULL;
+        const cJSON *object = get(root, "object") ? get(root, "object") : cJSON_GetArrayItem(get(root, "objects"), 0),
+                    *part;
+        if (bytes && !broken && !object)
+            report_at(path, 0, "it is no template of an object");
+        cJSON_ArrayForEach(part, object) {
+            if (part->string && !get(of, part->string))
+                cJSON_AddItemToObject(of, part->string, sure(cJSON_Duplicate(part, true)));
+        }
+        right = object && check_numbers(path, "object", object);
+        cJSON_Delete(root);
+        free(bytes);
+        free(path);
+    }
+    cJSON_ArrayForEach(item, of) {
+        if (!(item->string && strcmp(item->string, "properties") == 0)) /* which are the user's */
+            right = fill_from_templates(file, item) && right;
+    }
+    return right;
+}
+
+bool read_objects(const char *file, const char *bytes, size_t size, begin_object *begin, void *context) {
+    objects to = {file, begin, context, 0};
+    bool broken;
+    cJSON *root = parse(file, bytes, size, &broken);
     const char *type = word(root, "type");
     const cJSON *tileset, *body;
     const bool is_tiled = strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0,
@@ -357,7 +408,8 @@ bool read_objects(const char *file, const char *bytes, size_t size, begin_object
     cJSON_ArrayForEach(body, root) { /* PhysicsEditor's */
         known = known || (body->string && cJSON_IsArray(get(body, "fixtures")));
     }
-    broken = broken || (known && !check_numbers(file, "objects", root));
+    broken =
+        broken || (known && !check_numbers(file, "objects", root)) || (is_tiled && !fill_from_templates(file, root));
     if (known && !broken) {
         if (is_tiled) {
             draw_layers(&to, root, 0, 0);
@@ -376,6 +428,5 @@ bool read_objects(const char *file, const char *bytes, size_t size, begin_object
             report_at(file, 0, "it has no collision objects");
     }
     cJSON_Delete(root);
-    free(text);
     return known;
 }

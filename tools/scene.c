@@ -47,7 +47,7 @@ static void run(int argc, char **argv) {
                                {"--bodies", true, NULL},
                                {"--density", true, NULL},
                                {"--seed", true, NULL},
-                               {"--out", true, NULL}};
+                               {"--out", OUTPUT_FILE, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     const char *path = required_option(&options[SHAPES]), *out = options[OUT].value ? options[OUT].value : "-";
     const uint64_t count = whole_option(&options[BODIES], 1, UINT32_MAX);

@@ -324,9 +324,8 @@ TEST(test_no_answer) {
 }
 
 /* The example of narc_scene.h: what is near to a body. */
-TEST(test_near_a_body) {
-    struct test_random random = test_random_named("points, near a body");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 60, 1);
+static size_t count_near_a_body(struct test_random *random) {
+    struct scene scene = make_random_scene(random, NARC_FLOAT32, 60, 1);
     const narc_bodies bodies = scene_bodies(&scene);
     narc_box box[60];
     narc_pairs pairs;
@@ -356,10 +355,18 @@ TEST(test_near_a_body) {
         expected++;
     }
     assert_int_equal(found, expected);
-    assert_true(found > 0);
     narc_destroy_index(index);
     free(all);
     destroy_scene(&scene);
+    return found;
+}
+
+TEST(test_near_a_body) {
+    struct test_random random = test_random_named("points, near a body");
+    size_t found = 0;
+    for (int scenes = 0; scenes < 8; scenes++) /* a body may be alone in one */
+        found += count_near_a_body(&random);
+    assert_true(found > 0);
 }
 
 /* ------------------------------------------------------------------------------------------------ things */

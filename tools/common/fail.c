@@ -28,21 +28,29 @@ _Noreturn void abandon(void) {
     _Exit(FAILURE_STATUS);
 }
 
-/* Makes one line of UTF-8 of `line`, and prints it. */
-static void print_line(char *line, bool last) {
-    narc_make_printable(line);
-    if (holding && !last)
-        return;
-    hide_progress();
-    fprintf(stderr, "%s\n", line);
-}
-
 /* Begins a line with the place of an error; returns its length. */
 static size_t print_place(char *line, const char *path, size_t line_number) {
     const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
     /* Half the line is kept for the message, however long the path. */
     return (size_t)(line_number ? snprintf(line, LINE_SIZE, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
                                 : snprintf(line, LINE_SIZE, "narc: %.*s: ", LINE_SIZE / 2, shown));
+}
+
+/* Makes one line of UTF-8 of `line`, and prints it; before a last one what was held. */
+static void print_line(char *line, bool last) {
+    if (holding && !last)
+        return;
+    const size_t held = holding ? message_count : 0;
+    holding = false;
+    for (size_t i = 0; i < held; i++) {
+        char before[LINE_SIZE];
+        const size_t used = print_place(before, messages[i].path, messages[i].line);
+        snprintf(before + used, sizeof before - used, "%s", messages[i].text);
+        print_line(before, true);
+    }
+    narc_make_printable(line);
+    hide_progress();
+    fprintf(stderr, "%s\n", line);
 }
 
 void fail(const char *format, ...) {
@@ -66,10 +74,18 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     abandon();
 }
 
-static void keep_told(const char *path, size_t line, bool is_error, const char *text) {
+/* False if it was told before, as of a file that is given twice. */
+static bool keep_told(const char *path, size_t line, bool is_error, const char *text) {
+    for (size_t i = 0; i < message_count; i++) {
+        const told *other = &messages[i];
+        if (other->line == line && other->is_error == is_error && strcmp(other->path, path) == 0 &&
+            strcmp(other->text, text) == 0)
+            return false;
+    }
     messages = grow(messages, &message_capacity, message_count + 1, sizeof *messages);
     messages[message_count++] =
         (told){join_text(path, strlen(path), ""), line, is_error, join_text(text, strlen(text), "")};
+    return true;
 }
 
 void report_at(const char *path, size_t line_number, const char *format, ...) {
@@ -79,11 +95,13 @@ void report_at(const char *path, size_t line_number, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line, !going_on);
-    keep_told(path, line_number, true, line + used);
-    report_count++;
-    if (!going_on)
+    if (!going_on) {
+        print_line(line, true);
         abandon();
+    }
+    if (keep_told(path, line_number, true, line + used))
+        print_line(line, false);
+    report_count++;
 }
 
 void warn_at(const char *path, const char *format, ...) {
@@ -93,8 +111,8 @@ void warn_at(const char *path, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line, false);
-    keep_told(path, 0, false, line + used);
+    if (keep_told(path, 0, false, line + used))
+        print_line(line, false);
 }
 
 const told *list_told(size_t *out_count) {

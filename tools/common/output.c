@@ -184,15 +184,9 @@ void commit_outputs(void) {
     }
 }
 
-static const char mark[] = "{name}";
-
-void refuse_pattern(const char *option, const char *path) {
-    if (path && strstr(path, mark))
-        fail("%s is one file, it takes no {name}", option);
-}
-
 char *expand_pattern(const char *pattern, const char *name) {
     static const char odd[] = "/\\:*?<>|";
+    static const char mark[] = NAME_MARK;
     if (!strstr(pattern, mark))
         return NULL;
     const bool is_dots = !name[strspn(name, ".")]; /* which are folders */

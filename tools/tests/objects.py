@@ -82,6 +82,8 @@ if SVG:
 </tileset>""")
     same(fitted("set.tsx"), TILES)
 write("none.tmj", {"type": "map", "layers": []})
+write("pills.tmj", {"type": "map", "layers": [{"objects": [{"name": "lies", "x": 1, "y": 2, "width": 6, "height": 2, "rotation": 90, "capsule": True}, {"name": "stands", "width": 2, "height": 6, "capsule": True}]}]})
+same(fitted("pills.tmj"), {"lies": ("capsule", 8 + math.pi, [0, -5]), "stands": ("capsule", 8 + math.pi, [1, -3])})
 assert narc(2, "fit", "none.tmj", "--arcs", "3").stderr == "narc: none.tmj: it has no collision objects\n"
 write("wrong.json", {"type": "map", "layers": [{"objects": [{"polygon": [{"x": 1e300, "y": 0}]}]}]})
 assert narc(2, "fit", "wrong.json", "--arcs", "3").stderr.startswith("narc: wrong.json: ")
@@ -135,8 +137,17 @@ if SVG:
             (tmx('<object name="flat"><polyline points="0,0 1,0 2,0"/></object>' + BOX), "broken5.tmx: 'flat': ")), 0):
         write("broken%d.tmx" % number, text)
         assert re.match("(narc: )?(%s)" % message, said := narc(2, "fit", "broken%d.tmx" % number, "--arcs", "3").stderr), (message, said)
-    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object template="a.tx"/><object width="4" height="2"><capsule/></object><object width="-4" height="2"/>'))
-    assert "some.tmx: 'a': 3 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object width="-4" height="2"/>'))
+    assert "some.tmx: 'a': 1 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    os.mkdir("kinds")
+    write("kinds/pill.tx", '<?xml version="1.0" encoding="UTF-8"?><template><object name="pill" width="6" height="2"><capsule/></object></template>')
+    write("kinds/wide.tj", {"type": "template", "object": {"name": "wide", "width": 8, "height": 2, "rotation": 0}})
+    write("kinds.tmx", tmx('<object template="kinds/pill.tx" x="10" y="20"/><object template="kinds/wide.tj" name="tall" x="1" y="2" height="9"/>'))
+    PILL = ("capsule", 8 + math.pi, [13, -21])
+    same(fitted("kinds.tmx"), {"pill": PILL, "tall": ("box", 72, [5, -6.5])})
+    for inside, message in (('<object template="kinds/absent.tx"/>', "kinds/absent.tx: No such file"), ('<object template="a.tmx"/>', "a.tmx: it is no template of an object")):
+        write("a.tmx", tmx(inside))
+        assert message in narc(2, "fit", "a.tmx", "--arcs", "3").stderr
     write("moved.tmx", '<map><group offsetx="100" offsety="50"><objectgroup name="a" offsetx="7">%s</objectgroup></group></map>' % BOX)
     (_, _, middle), = fitted("moved.tmx").values()
     assert math.dist(middle, [109, -51]) < 0.1, middle
@@ -157,13 +168,18 @@ write("wrong.json", {"shapes": [{"name": name, "circle": 2} for name in ("walk-1
 for cells, message in ("16x16", "shapes 'walk-1' and 'jump-1' are the same cell"), ("64x64", "shape 'walk-1' is cell 1 of a sheet that has 0"):
     assert message in narc(2, "export", "wrong.json", "--to", "tsj", "--image", "art/sheet.png", "--grid", cells, "--tolerance", "0.1").stderr
 
-# A Godot resource for each body; one of two pieces has none.
-write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}}, {"name": "b", "circle": 1}]})
-for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Pool")):
+# A Godot resource for each body, plain where its numbers say all; one of two pieces has none.
+write("plain.json", {"shapes": [{"name": "far", "box": {"width": 4, "height": 2}, "origin": [1, 0]}, {"name": "box", "box": {"width": 4, "height": 2}}, {"name": "ball", "circle": 1.5},
+                                {"name": "up", "arcs": [{"center": [0, y], "radius": 1, "start": start, "end": start + math.pi} for y, start in ((1.5, 0), (-1.5, -math.pi))]}, {"name": "flat", "capsule": {"length": 3, "radius": 1}}]})
+NUMBER = r"[-\d., ]*"
+for form, words, box, height in ("tres", r"format=3", r"size = Vector2\(4, 2\)", 5), ("tres3", r"format=2", r"extents = Vector2\(2, 1\)", 3):
+    polygon = r"ConvexPolygonShape2D", r"points = P\w+Vector2Array\(%s\)" % NUMBER
     narc(0, "export", "plain.json", "--to", form, "--tolerance", "0.1", "--out", "{name}." + form)
-    with open("a." + form, encoding="utf-8") as file:
-        text = file.read()
-    assert re.fullmatch(r'\[gd_resource type="ConvexPolygonShape2D" %s\]\n\n\[resource\]\npoints = %sVector2Array\(([-\d., ]*)\)\n\n' % words, text), text
+    for name, (kind, value) in {"far": polygon, "flat": polygon, "box": ("RectangleShape2D", box), "ball": ("CircleShape2D", "radius = 1.5"),
+                                "up": ("CapsuleShape2D", r"radius = 1\nheight = %d" % height)}.items():
+        with open(name + "." + form, encoding="utf-8") as file:
+            text = file.read()
+        assert re.fullmatch(r'\[gd_resource type="%s" %s\]\n\n\[resource\]\n%s\n\n' % (kind, words, value), text), text
     assert "a file of %s holds one shape" % form in narc(2, "export", "shapes.json", "--to", form, "--tolerance", "0.1", "--out", "{name}.x").stderr
     assert "a file of %s holds one shape" % form in narc(2, "export", "plain.json", "--to", form, "--tolerance", "0.1").stderr
 godot = shutil.which("godot3-server")
@@ -171,11 +187,12 @@ if not godot:
     print("skipped: Godot 3, without godot3-server")
 else:
     os.mkdir("game")
-    shutil.copy("b.tres3", "game/b.tres")
+    for name in "far", "up":
+        shutil.copy(name + ".tres3", "game/%s.tres" % name)
     write("game/project.godot", "config_version=4\n")
-    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tvar shape = load('res://b.tres')\n\tprint('SHAPE ', shape.get_class(), ' ', shape.points.size())\n\tquit()\n")
+    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tfor name in ['far', 'up']:\n\t\tprint('SHAPE ', load('res://' + name + '.tres').get_class())\n\tprint('HEIGHT ', load('res://up.tres').height)\n\tquit()\n")
     listed = subprocess.run([godot, "--path", "game", "-s", "list.gd"], capture_output=True, text=True, timeout=120, env={**os.environ, "HOME": folder})
-    assert re.search(r"^SHAPE ConvexPolygonShape2D \d+$", listed.stdout, re.M), listed
+    assert re.search(r"^SHAPE ConvexPolygonShape2D\nSHAPE CapsuleShape2D\nHEIGHT 3$", listed.stdout, re.M), listed
 
 # DXF: layers and arcs come back; a spline with weights is named.
 narc(0, "export", "shapes.json", "--to", "dxf", "--out", "out.dxf")

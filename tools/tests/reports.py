@@ -54,6 +54,14 @@ assert (el["kind"], el["arcs"], el["edges"], el["out"]) == ("chain", 0, 6, "-") 
 done = narc(2, "fit", "in.csv", "--keep-going", "--arcs", "3", "--report", "json", "--out", "new.json")
 assert json.loads(done.stdout)["inputs"][0]["errors"] and done.stderr.endswith("no outline is left to fit\n")
 
+with open("thin.tmj", "w", encoding="utf-8") as file:
+    json.dump({"type": "map", "layers": [{"name": "a", "objects": [{"width": 1, "height": 1}, {"width": 0, "height": 1}]}]}, file)
+done = narc(2, "fit", "thin.tmj", "in.csv", "--arcs", "3", "--report", "json") # a report that does not come leaves the lines
+assert done.stderr.startswith("narc: thin.tmj: 'a': 1 objects without") and done.stderr.splitlines()[1].startswith("in.csv:2: "), done
+done = narc(0, "fit", "el.csv", "thin.tmj", "el.csv", "thin.tmj", "--arcs", "3", "--report", "json", "--out", "new.json") # told once
+assert [(len(at["shapes"]), len(at["warnings"])) for at in json.loads(done.stdout)["inputs"]] == [(1, 0), (1, 1)] * 2, done
+os.remove("new.json")
+
 # Each body a scene; a pattern without a folder, and two bodies in one file, are told before anything is made.
 narc(0, "fit", "el.csv", "disc.csv", "--parts", "2", "--tolerance", "0.2", "--out", "all.json")
 done = narc(0, "export", "all.json", "--to", "godot3", "--out", "out/{name}.tscn", "--tolerance", "0.1", "--report", "json")
