@@ -40,7 +40,8 @@ static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *run
  * time. */
 static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_rung *out) {
     size_t count = 0;
-    if (rung->count > least_count(rung->family))
+    if (rung->count > least_count(rung->family) && (!ladder->skips || rung->goal != NARC_FIT_BOUND_DISTANCE ||
+                                                    ladder->found[rung->family][rung->goal][rung->count - 1]))
         out[count++] = (narc_rung){rung->family, rung->goal, rung->count - 1};
     if (rung->goal == NARC_FIT_BOUND_DISTANCE || rung->goal == NARC_FIT_DIFFERENCE)
         out[count++] = (narc_rung){rung->family, NARC_FIT_DISTANCE, rung->count};

@@ -24,6 +24,7 @@ typedef struct narc_ladder {
     double min_radius, max_radius; /* of arcs, in units of the hull's radius */
     unsigned starts;               /* 0: the usual number */
     bool quick;                    /* fewer, and less of each */
+    bool skips;                    /* what bounds closely builds on fewer arcs only if they were asked for */
     unsigned round;                /* of searches from as many starts: each from other random ones */
     narc_progress *progress;
     narc_ranking *found[LADDER_FAMILIES][LADDER_GOALS][MAX_CHAIN + 1]; /* those that were searched for */
