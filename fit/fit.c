@@ -489,7 +489,8 @@ static narc_status fit_fewest(struct job *job, size_t most, narc_fit_result *out
     narc_error last;
     if (status != NARC_OK)
         return status;
-    job->ladder.skips = true;
+    job->ladder.fewest = true;
+    job->ladder.family = job->request->family;
     for (size_t count = first; count <= most; count++) {
         double far;
         if (count == look && most == NARC_MAX_FIT_ARCS && is_out_of_reach(job, &far))
