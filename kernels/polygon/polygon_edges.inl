@@ -242,7 +242,7 @@ INLINE struct asked_junctions ask_facing(const struct seen_polygons *p, vi facin
 }
 
 /* Asks the junctions of the own shape that count, beside the arc `facing`; the number of its first one is `first`. */
-SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, struct best_edge *best, vi *corner) {
+INLINE void ask_junctions(const struct seen_polygons *p, vi facing, int first, struct best_edge *best, vi *corner) {
     int32_t count, start;
     vi_store(&count, p->own.count);
     vi_store(&start, vi_sub(facing, p->own.base));
@@ -276,46 +276,61 @@ SHARED void ask_junctions(const struct seen_polygons *p, vi facing, int first, s
     }
 }
 
-INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
+/* The polygons of the pair k of a queue, seen from A and from B. */
+INLINE void see_polygons(const narc_record *records, const struct queue *queue, int k, struct seen_polygons out[2]) {
     const struct pose pose = get_pose(queue, k);
-    const vec2 axis = get_vec2(queue, AXIS, k), t = pose.position, q = pose.rotation;
+    const vec2 axis = get_vec2(queue, AXIS, k), q = pose.rotation;
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
     const vf radius_a = v_mul(v_load(&get_stored_arc(records, ring_a.base)->radius), pose.scale_a),
              radius_b = v_mul(v_load(&get_stored_arc(records, ring_b.base)->radius), pose.scale_b);
+    out[0] = (struct seen_polygons){.records = records,
+                                    .own = ring_a,
+                                    .other = ring_b,
+                                    .first = get_bits(queue, FIRST_RECORD_B, k),
+                                    .info = get_bits(queue, INFO_B, k),
+                                    .pose = pose,
+                                    .axis = axis,
+                                    .radii = v_add(radius_a, radius_b),
+                                    .core = get(queue, CORE, k),
+                                    .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
+    out[1] = out[0];
+    out[1].own = ring_b;
+    out[1].other = ring_a;
+    out[1].first = get_bits(queue, FIRST_RECORD_A, k);
+    out[1].info = get_bits(queue, INFO_A, k);
+    out[1].pose = (struct pose){v2_unrotate_opposite(q, pose.position), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
+    out[1].axis = v2_unrotate_opposite(q, axis);
+}
+
+/* All that count, of both. What sees them is not the caller's, which keeps its own in registers. */
+SHARED struct polygon_edge ask_both(const narc_record *records, const struct queue *queue, int k, vi facing_a,
+                                    vi facing_b) {
+    const vf none = v_set(-INFINITY);
+    const vi facing[2] = {facing_a, facing_b};
+    struct polygon_edge found = {{none, none, vi_set(0), {v_set(0), v_set(0)}}, vi_set(0)};
+    struct seen_polygons from[2];
+    see_polygons(records, queue, k, from);
+    for (int side = 0; side < 2; side++)
+        ask_junctions(&from[side], facing[side], side * MAX_CORNERS, &found.best, &found.corner);
+    if (vm_any(vi_lt(vi_set(MAX_CORNERS - 1), found.best.edge)))
+        found.best.normal = v2_rotate_opposite(from[0].pose.rotation, found.best.normal);
+    return found;
+}
+
+INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
+    struct seen_polygons from[2];
     vi facing_a, facing_b;
-    find_arcs(records, queue, k, axis, &facing_a, &facing_b);
-    const struct seen_polygons from_a = {.records = records,
-                                         .own = ring_a,
-                                         .other = ring_b,
-                                         .first = get_bits(queue, FIRST_RECORD_B, k),
-                                         .info = get_bits(queue, INFO_B, k),
-                                         .pose = pose,
-                                         .axis = axis,
-                                         .radii = v_add(radius_a, radius_b),
-                                         .core = get(queue, CORE, k),
-                                         .room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k))};
-    struct seen_polygons from_b = from_a;
-    from_b.own = ring_b;
-    from_b.other = ring_a;
-    from_b.first = get_bits(queue, FIRST_RECORD_A, k);
-    from_b.info = get_bits(queue, INFO_A, k);
-    from_b.pose = (struct pose){v2_unrotate_opposite(q, t), {q.x, v_neg(q.y)}, pose.scale_b, pose.scale_a};
-    from_b.axis = v2_unrotate_opposite(q, axis);
-    const struct asked_junctions a = ask_facing(&from_a, facing_a), b = ask_facing(&from_b, facing_b);
+    find_arcs(records, queue, k, get_vec2(queue, AXIS, k), &facing_a, &facing_b);
+    see_polygons(records, queue, k, from);
+    const struct asked_junctions a = ask_facing(&from[0], facing_a), b = ask_facing(&from[1], facing_b);
     const vm of_b = v_lt(a.gap, b.gap);
     const vi edge_b = vi_add(b.edge, vi_set(MAX_CORNERS));
-    struct polygon_edge found = {{v_max(a.gap, b.gap), v_max(v_min(a.gap, b.gap), v_max(a.second, b.second)),
-                                  vi_select(of_b, edge_b, a.edge),
-                                  v2_select(of_b, v2_rotate_opposite(q, b.normal), a.normal)},
-                                 vi_select(of_b, b.corner, a.corner)};
-    if (vm_any(v_le(v_sub(found.best.gap, from_a.room), v_max(a.beside, b.beside)))) { /* others count, too */
-        found.best.gap = found.best.second = v_set(-INFINITY);
-        ask_junctions(&from_a, facing_a, 0, &found.best, &found.corner);
-        ask_junctions(&from_b, facing_b, MAX_CORNERS, &found.best, &found.corner);
-        if (vm_any(vi_lt(vi_set(MAX_CORNERS - 1), found.best.edge)))
-            found.best.normal = v2_rotate_opposite(q, found.best.normal);
-    }
-    return found;
+    const vec2 normal_b = v2_rotate_opposite(from[0].pose.rotation, b.normal);
+    const struct best_edge best = {v_max(a.gap, b.gap), v_max(v_min(a.gap, b.gap), v_max(a.second, b.second)),
+                                   vi_select(of_b, edge_b, a.edge), v2_select(of_b, normal_b, a.normal)};
+    if (vm_any(v_le(v_sub(best.gap, from[0].room), v_max(a.beside, b.beside)))) /* others count, too */
+        return ask_both(records, queue, k, facing_a, facing_b);
+    return (struct polygon_edge){best, vi_select(of_b, b.corner, a.corner)};
 }
 
 /* Those of the pairs k ... of a queue. */

@@ -28,11 +28,12 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
     const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
     const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
 #ifdef V_COUNT_EIGHT /* angles follow each other from record to record */
-    int32_t first, all, below = 0;
+    int32_t first, all, below = 0, done = 0;
     vi_store(&first, record);
     vi_store(&all, count);
-    for (int done = 0; done < all; done += 8)
+    do
         below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
+    while ((done += 8) < all);
     return vi_set(below);
 #else
     vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
