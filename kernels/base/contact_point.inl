@@ -84,7 +84,7 @@ INLINE struct feature find_feature_beside(const narc_record *records, struct rin
     return f;
 }
 
-SHARED struct feature find_feature_at(const narc_record *records, struct ring ring, vi record, const struct pose *pose,
+INLINE struct feature find_feature_at(const narc_record *records, struct ring ring, vi record, const struct pose *pose,
                                       vec2 n, bool is_b) {
     const struct arcs arc = load_arcs(records, record, pose, is_b);
     return find_feature_beside(records, ring, record, &arc, pose, n, is_b);
