@@ -7,13 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ellipse.h"
 #include "error.h"
 #include "lines.h"
 #include "number.h"
 #include "outline/path.h"
 #include "outline/vector.h"
 #include "read/dxf_entities.h"
-#include "read/ellipse.h"
 
 /* Ends this near, in parts of the drawing's extent, meet. */
 static const double NEAR = 1e-6;

@@ -14,10 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ellipse.h"
 #include "error.h"
 #include "outline/crossings.h"
 #include "outline/path.h"
-#include "read/ellipse.h"
+#include "outline/vector.h"
 
 /* A point (x, y) goes to x a + y b + c. */
 struct frame {

@@ -135,8 +135,26 @@ if SVG:
             (tmx('<object name="flat"><polyline points="0,0 1,0 2,0"/></object>' + BOX), "broken5.tmx: 'flat': ")), 0):
         write("broken%d.tmx" % number, text)
         assert re.match("(narc: )?(%s)" % message, said := narc(2, "fit", "broken%d.tmx" % number, "--arcs", "3").stderr), (message, said)
-    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object template="a.tx"/><object width="4" height="2"><capsule/></object><object width="-4" height="2"/>'))
-    assert "some.tmx: 'a': 3 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object/><object width="-4" height="2"/>'))
+    assert "some.tmx: 'a': 2 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+
+    # Capsules, whose ends are half circles; templates beside the file, which objects add to.
+    capsule = '<capsule/></object>'
+    write("pills.tmx", tmx('<object name="lying" x="1" y="2" width="6" height="2">' + capsule + '<object name="turned" width="2" height="6" rotation="90">' + capsule +
+                           '<object name="round" width="4" height="4">' + capsule))
+    area = 8 + math.pi
+    same(fitted("pills.tmx"), {"lying": ("capsule", area, [4, -3]), "turned": ("capsule", area, [-3, -1]), "round": ("circle", 4 * math.pi, [2, -2])})
+    os.mkdir("kit")
+    write("kit/post.tx", '<template><object name="post" width="2" height="6">' + capsule + "</template>")
+    write("kit/roof.tj", {"type": "template", "object": {"name": "roof", "polygon": [{"x": 0, "y": 0}, {"x": 6, "y": 0}, {"x": 3, "y": -6}]}})
+    write("kit.tmx", tmx('<object template="kit/post.tx" x="10" y="20"/><object template="kit/post.tx" name="tall" height="10"/><object template="kit/roof.tj" x="2" y="10"/>'))
+    same(fitted("kit.tmx"), {"post": ("capsule", area, [11, -23]), "tall": ("capsule", 16 + math.pi, [1, -5]), "roof": ("polygon", 18, [5, -8])})
+    same(fitted("kit/post.tx"), {"post": ("capsule", area, [1, -3])})
+    for template, message in ("absent.tx", "absent.tx: No such file"), ("kit.tmx", "kit.tmx: it is no template"), ("pills.svg", "pills.svg: "):
+        write("lost.tmx", tmx('<object template="%s"/>' % template + BOX))
+        write("pills.svg", "<svg/>")
+        assert message in narc(2, "fit", "lost.tmx", "--arcs", "3").stderr, template
+        assert message in narc(1, "fit", "lost.tmx", "--arcs", "3", "--keep-going", "--out", "lost.json").stderr, template
     write("moved.tmx", '<map><group offsetx="100" offsety="50"><objectgroup name="a" offsetx="7">%s</objectgroup></group></map>' % BOX)
     (_, _, middle), = fitted("moved.tmx").values()
     assert math.dist(middle, [109, -51]) < 0.1, middle
