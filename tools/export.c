@@ -33,7 +33,8 @@ static const char HELP[] =
     "  --to FORMAT     tmx, tmj      a map of Tiled, with a layer of collision objects for each body\n"
     "                  tsj           a tileset of Tiled, each body the collision of its tile\n"
     "                  godot, godot3 a scene (.tscn) of Godot 4 or 3, with a StaticBody2D for each\n"
-    "                  tres, tres3   a shape as a resource of its own, with {name} in --out\n"
+    "                  tres, tres3   a shape as a resource of its own, with {name} in --out; circles, boxes and\n"
+    "                                upright capsules are these with --origin center\n"
     "                  phaser        PhysicsEditor's JSON, as Phaser 3 gives it to matter-js\n"
     "                  box2d         R.U.B.E.'s JSON; polygons have at most 8 corners\n"
     "                  libgdx        Physics Body Editor's JSON; the same\n"
@@ -417,7 +418,11 @@ static void place_body(export_body *of, const exporting *how) {
         if (p->kind & (LOOP | LINE) & ~how->to->keeps)
             fail_at(how->path, 0, "shape '%s' is a chain, and %s has only convex pieces: narc fit --parts makes these",
                     p->name, how->to->name);
-        p->kind = p->kind & how->to->keeps ? p->kind : OUTLINE;
+        const double near = MERGED * measure_piece(p);
+        const bool is_placed = how->to->one && p->kind & (CIRCLE | CAPSULE | BOX) && /* which a resource is not */
+                               (fabs(p->center.x + offset.x) > near || fabs(p->center.y + offset.y) > near ||
+                                (p->kind == CAPSULE && fabs(cos(p->angle)) > MERGED));
+        p->kind = p->kind & how->to->keeps && !is_placed ? p->kind : OUTLINE;
         if (!(how->to->keeps & ARCS) && p->kind & (OUTLINE | LOOP | LINE))
             flatten_piece(p, how);
         split_outline(&placed, p, p->kind == OUTLINE ? how->to->most_corners : 0);

@@ -176,7 +176,7 @@ for cells, message in ("16x16", "shapes 'walk-1' and 'jump-1' are the same cell"
     assert message in narc(2, "export", "wrong.json", "--to", "tsj", "--image", "art/sheet.png", "--grid", cells, "--tolerance", "0.1").stderr
 
 # A Godot resource for each body; one of two pieces has none.
-write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}}, {"name": "b", "circle": 1}]})
+write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}, "origin": [1, 0]}, {"name": "b", "circle": 1, "origin": [9, 0]}, {"name": "c", "arcs": [{"center": [0, 2], "radius": 1, "start": 0, "end": math.pi}, {"center": [0, -2], "radius": 1, "start": -math.pi, "end": 0}]}]})
 for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Pool")):
     narc(0, "export", "plain.json", "--to", form, "--tolerance", "0.1", "--out", "{name}." + form)
     with open("a." + form, encoding="utf-8") as file:
@@ -184,6 +184,11 @@ for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Poo
     assert re.fullmatch(r'\[gd_resource type="ConvexPolygonShape2D" %s\]\n\n\[resource\]\npoints = %sVector2Array\(([-\d., ]*)\)\n\n' % words, text), text
     assert "a file of %s holds one shape" % form in narc(2, "export", "shapes.json", "--to", form, "--tolerance", "0.1", "--out", "{name}.x").stderr
     assert "a file of %s holds one shape" % form in narc(2, "export", "plain.json", "--to", form, "--tolerance", "0.1").stderr
+    narc(0, "export", "plain.json", "--to", form, "--origin", "center", "--tolerance", "0.1", "--out", "{name}-plain." + form)
+    size, height = ("size = Vector2(4, 2)", 6) if form == "tres" else ("extents = Vector2(2, 1)", 4)
+    for name, kind, lines in ("a", "Rectangle", size), ("b", "Circle", "radius = 1"), ("c", "Capsule", "radius = 1\nheight = %d" % height):
+        with open(name + "-plain." + form, encoding="utf-8") as file:
+            assert file.read() == '[gd_resource type="%sShape2D" %s]\n\n[resource]\n%s\n\n' % (kind, words[0], lines), name
 godot = shutil.which("godot3-server")
 if not godot:
     print("skipped: Godot 3, without godot3-server")
