@@ -100,6 +100,8 @@ static settings read_settings(int argc, char **argv) {
                        .out = options[OUT].value,
                        .picture = options[PICTURE].value};
     picture_kind_of(chosen.picture);
+    refuse_pattern(options[PICTURE].name, chosen.picture);
+    refuse_pattern(options[OUT].name, chosen.out);
     chosen.cast.inside = find_inside(options[INSIDE].value);
     chosen.cast.most = options[MOST].value ? (size_t)whole_option(&options[MOST], 1, LARGEST_MOST) : 1;
     choose_isa(options[ISA].value);

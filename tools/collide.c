@@ -155,6 +155,8 @@ static settings read_settings(int argc, char **argv) {
                        .picture = options[PICTURE].value,
                        .isa = options[ISA].value};
     picture_kind_of(chosen.picture);
+    refuse_pattern(options[PICTURE].name, chosen.picture);
+    refuse_pattern(options[OUT].name, chosen.out);
     read_method(options, &chosen.narrow);
     const double margin = number_option(&options[MARGIN], -(double)FLT_MAX, (double)FLT_MAX, "of float's range", 0);
     chosen.narrow.margin = (float)margin;

@@ -28,21 +28,29 @@ _Noreturn void abandon(void) {
     _Exit(FAILURE_STATUS);
 }
 
-/* Makes one line of UTF-8 of `line`, and prints it. */
-static void print_line(char *line, bool last) {
-    narc_make_printable(line);
-    if (holding && !last)
-        return;
-    hide_progress();
-    fprintf(stderr, "%s\n", line);
-}
-
 /* Begins a line with the place of an error; returns its length. */
 static size_t print_place(char *line, const char *path, size_t line_number) {
     const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
     /* Half the line is kept for the message, however long the path. */
     return (size_t)(line_number ? snprintf(line, LINE_SIZE, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
                                 : snprintf(line, LINE_SIZE, "narc: %.*s: ", LINE_SIZE / 2, shown));
+}
+
+/* Makes one line of UTF-8 of `line`, and prints it; the last one of the command behind those that were held. */
+static void print_line(char *line, bool last) {
+    narc_make_printable(line);
+    if (holding && !last)
+        return;
+    hide_progress();
+    for (size_t i = 0; holding && i < message_count; i++) {
+        char held[LINE_SIZE];
+        const size_t used = print_place(held, messages[i].path, messages[i].line);
+        snprintf(held + used, sizeof held - used, "%s", messages[i].text);
+        narc_make_printable(held);
+        fprintf(stderr, "%s\n", held);
+    }
+    holding = false;
+    fprintf(stderr, "%s\n", line);
 }
 
 void fail(const char *format, ...) {
@@ -66,7 +74,12 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     abandon();
 }
 
+/* A file that is given twice tells the same twice. */
 static void keep_told(const char *path, size_t line, bool is_error, const char *text) {
+    for (size_t i = 0; i < message_count; i++)
+        if (messages[i].line == line && messages[i].is_error == is_error && strcmp(messages[i].text, text) == 0 &&
+            strcmp(messages[i].path, path) == 0)
+            return;
     messages = grow(messages, &message_capacity, message_count + 1, sizeof *messages);
     messages[message_count++] =
         (told){join_text(path, strlen(path), ""), line, is_error, join_text(text, strlen(text), "")};

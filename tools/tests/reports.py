@@ -87,6 +87,21 @@ for pattern in "deep/{name}/{name}.svg", "{name}":
     assert [body["pieces"] for body in bodies] == [1, 1, 1, 2, 1] and all(os.path.isfile(body["out"]) for body in bodies)
 os.chdir("..")
 assert "--picture is one file" in narc(2, "fit", "el.csv", "--arcs", "3", "--out", "new.json", "--picture", "{name}.png").stderr
+with open("bodies.csv", "w", encoding="utf-8") as file:
+    file.write("shape,x,y,angle\ndisc,0,0,0\n")
+for command in ["collide", "--shapes", "all.json", "--bodies", "bodies.csv"], ["cast", "--shapes", "all.json", "--bodies", "bodies.csv", "--rays", "bodies.csv"], ["scene", "--shapes", "all.json", "--bodies", "2", "--density", "0.1", "--seed", "1"]:
+    assert "--out is one file, it takes no {name}" in narc(2, *command, "--out", "{name}.csv").stderr, command
+    assert command[0] == "scene" or "--picture is one file" in narc(2, *command, "--picture", "{name}.svg").stderr, command
+
+# Of an input that is given twice each message is told once for each; what comes before a fatal error is not lost.
+with open("map.json", "w", encoding="utf-8") as file:
+    json.dump({"type": "map", "layers": [{"name": "a", "objects": [{"width": 4, "height": 2}, {"width": 4}]}]}, file)
+for at in json.loads(narc(0, "fit", "map.json", "map.json", "--arcs", "3", "--report", "json", "--out", "new.json").stdout)["inputs"]:
+    assert len(at["warnings"]) == 1, at
+os.remove("new.json")
+done = narc(2, "fit", "map.json", "in.csv", "--arcs", "3", "--report", "json")
+assert done.stdout == "" and done.stderr.count("\n") == 2, done
+assert "1 objects without" in done.stderr.splitlines()[0] and done.stderr.splitlines()[1].startswith("in.csv:2: "), done
 
 # What cannot be replaced is told before anything is fitted; a signal leaves all files or none.
 if os.sep == "/":
