@@ -22,13 +22,7 @@
 
 enum { LOOK_BACK = 64 };
 
-/* One of both kinds of rows. */
-typedef struct row_list {
-    const narc_pairs *pairs;
-    narc_index_column run;
-    narc_contact *contacts;
-    narc_manifold *manifolds;
-} row_list;
+typedef narc_merging row_list;
 
 static narc_manifold get_row(const row_list *list, size_t k) {
     if (list->manifolds)
@@ -43,14 +37,14 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
 
-static void drop_row(row_list *list, size_t k) {
+static void drop_row(const row_list *list, size_t k) {
     if (list->manifolds)
         list->manifolds[k].count = 0;
     else
         list->contacts[k].count = 0;
 }
 
-static void move_row(row_list *list, size_t from, size_t to) {
+static void move_row(const row_list *list, size_t from, size_t to) {
     if (from == to)
         return;
     if (list->manifolds)
@@ -201,7 +195,7 @@ static bool goes_over(const narc_manifold *a, const narc_manifold *b) {
 }
 
 /* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
-static void drop_seam(row_list *list, size_t from, size_t to) {
+static void drop_seam(const row_list *list, size_t from, size_t to) {
     const narc_manifold gone = get_row(list, from), left = get_row(list, to);
     for (uint32_t i = 0; i < gone.count; i++) {
         const uint32_t k = find_point(&gone, i, &left);
@@ -219,7 +213,7 @@ static bool is_ground(const row_list *list, const narc_manifold *row) {
 
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
  * has two sides that face each other. Returns whether row j has grown. */
-static bool compare_rows(row_list *list, size_t j, size_t k) {
+static bool compare_rows(const row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
     if (!is_ground(list, &a) || !is_ground(list, &b))
@@ -250,7 +244,7 @@ static bool compare_rows(row_list *list, size_t j, size_t k) {
 }
 
 /* Compares row k with those from `first` to `last`, and what it is joined to again with all of them. */
-static void compare_with(row_list *list, size_t k, size_t first, size_t last) {
+static void compare_with(const row_list *list, size_t k, size_t first, size_t last) {
     for (size_t i = last + 1; i-- > first && get_count(list, k) > 0;)
         if (i != k && get_count(list, i) > 0 && compare_rows(list, i < k ? i : k, i < k ? k : i)) {
             k = i < k ? i : k;
@@ -262,7 +256,7 @@ static void compare_with(row_list *list, size_t k, size_t first, size_t last) {
 
 /* Puts rows k .. end - 1, of one body, behind those that are kept, but for those that go. Returns how many rows are
  * kept then. */
-static size_t merge_body(row_list *list, size_t kept, size_t k, size_t end) {
+static size_t merge_body(const row_list *list, size_t kept, size_t k, size_t end) {
     const size_t first = kept;
     for (; k < end; k++) {
         move_row(list, k, kept);
@@ -277,7 +271,11 @@ static size_t merge_body(row_list *list, size_t kept, size_t k, size_t end) {
     return left;
 }
 
-static size_t merge_rows(row_list *list, size_t count) {
+size_t narc_merge_body(const narc_merging *rows, size_t first, size_t end) {
+    return merge_body(rows, first, first, end);
+}
+
+static size_t merge_rows(const row_list *list, size_t count) {
     size_t kept = 0, next = count > 0 ? find_body_of(list, 0) : 0;
     for (size_t k = 0, end; k < count; k = end) {
         const size_t body = next;

@@ -23,7 +23,17 @@
  *   - Where an edge of a body lies along a line that goes over into a concave arc, and ends on that, both rows are joined.
  *   - Of two rows below 0 of faces that look away from each other, the two sides of a thin solid, the deeper one goes.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
+typedef struct narc_merging {
+    const narc_pairs *pairs;
+    narc_index_column run;
+    narc_contact *contacts; /* one of both */
+    narc_manifold *manifolds;
+} narc_merging;
+
 size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count);
 size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count);
+
+/* The same of rows first .. end - 1, which are of one body; returns the end of those that are left. */
+size_t narc_merge_body(const narc_merging *rows, size_t first, size_t end);
 
 #endif

@@ -53,8 +53,10 @@ static const double SINGLE_ROUNDING = 0x1p-24;
 static const double COARSEST = 1.0 / 16;
 
 /* Chains of the most arcs that grow from fewer are closer than those from fresh starts, but not so many times: on five
- * outlines of different kinds it was 2.3 times at most. */
-static const double LOOK_AHEAD = 16;
+ * outlines of different kinds it was 2.3 times at most. They take as long as a few counts: of tolerances that are not small,
+ * in parts of the hull's radius, those are tried first that mostly do. */
+static const double LOOK_AHEAD = 16, SMALL_TOLERANCE = 1e-4;
+enum { LOOK_AHEAD_FROM = 9 };
 
 /* A fit under way. */
 struct job {
@@ -468,18 +470,33 @@ static bool is_out_of_reach(struct job *job, double *out_distance) {
     return *out_distance > LOOK_AHEAD * job->request->tolerance;
 }
 
+/* What bounds is no closer than what need not: if that is too far off, a search for it can be spared. */
+static bool is_too_far(struct job *job, size_t count) {
+    const narc_ranking *closest;
+    narc_error unused;
+    return tolerance_goal(job->request) == NARC_FIT_BOUND_DISTANCE && job->request->family != NARC_FIT_PAPER &&
+           find_chains(job, job->request->family, NARC_FIT_DISTANCE, count, &closest, &unused) == NARC_OK &&
+           closest->items[0].value * job->frame.radius + job->flatness > job->request->tolerance;
+}
+
 /* More and more arcs up to `most`, of which each count builds on the one before, until the tolerance is kept. */
 static narc_status fit_fewest(struct job *job, size_t most, narc_fit_result *out_result, narc_error *error) {
     const bool corners = job->request->family == NARC_FIT_POLYGON || job->request->family == NARC_FIT_PAPER;
-    double closest;
+    const bool small = job->request->tolerance < SMALL_TOLERANCE * job->frame.radius;
+    const size_t first = corners ? 3 : 1, look = small ? first : LOOK_AHEAD_FROM;
+    double closest = INFINITY;
     narc_status status = check_tolerance(job, error);
     narc_error last;
     if (status != NARC_OK)
         return status;
-    if (most == NARC_MAX_FIT_ARCS && is_out_of_reach(job, &closest))
-        return fail_fewest(job, closest, status, NULL, error);
-    closest = INFINITY;
-    for (size_t count = corners ? 3 : 1; count <= most; count++) {
+    job->ladder.fewest = true;
+    job->ladder.family = job->request->family;
+    for (size_t count = first; count <= most; count++) {
+        double far;
+        if (count == look && most == NARC_MAX_FIT_ARCS && is_out_of_reach(job, &far))
+            return fail_fewest(job, far, status, NULL, error);
+        if (count < most && is_too_far(job, count))
+            continue;
         if (keeps_tolerance(job, count, out_result, &closest, &status, &last))
             return NARC_OK;
         if (status == NARC_ERROR_MEMORY)

@@ -76,6 +76,12 @@ NARC_API narc_status narc_cubic_to(narc_path *path, const narc_point *control_1,
  * a line. A full circle is two arcs. */
 NARC_API narc_status narc_arc_to(narc_path *path, const narc_point *middle, const narc_point *point, narc_error *error);
 
+/* The part of the ellipse center + cos t u + sin t v between two parameters, at most a turn apart, from where the pen is to
+ * `point`: a circle as arcs, others within 1e-11 of their size. On an error nothing is drawn. */
+NARC_API narc_status narc_ellipse_to(narc_path *path, const narc_point *center, const narc_point *u,
+                                     const narc_point *v, double from, double to, const narc_point *point,
+                                     narc_error *error);
+
 /* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
  * repeated at the end. No curve is further than `flatness` from its chords, and no drawing from contours that were
  * traced: those of SVG files add a pixel to it. */

@@ -90,9 +90,9 @@ static narc_inside find_inside(const char *name) {
 static settings read_settings(int argc, char **argv) {
     enum { SHAPES, BODIES, RAYS, OUT, INSIDE, MOST, PICTURE, ISA, THREADS, OPTIONS };
     option options[OPTIONS] = {
-        {"--shapes", INPUT_FILE, NULL}, {"--bodies", INPUT_FILE, NULL}, {"--rays", INPUT_FILE, NULL},
-        {"--out", true, NULL},          {"--inside", true, NULL},       {"--most", true, NULL},
-        {"--picture", true, NULL},      {"--isa", true, NULL},          {"--threads", true, NULL}};
+        {"--shapes", INPUT_FILE, NULL},   {"--bodies", INPUT_FILE, NULL}, {"--rays", INPUT_FILE, NULL},
+        {"--out", OUTPUT_FILE, NULL},     {"--inside", true, NULL},       {"--most", true, NULL},
+        {"--picture", OUTPUT_FILE, NULL}, {"--isa", true, NULL},          {"--threads", true, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
@@ -100,8 +100,6 @@ static settings read_settings(int argc, char **argv) {
                        .out = options[OUT].value,
                        .picture = options[PICTURE].value};
     picture_kind_of(chosen.picture);
-    refuse_pattern(options[PICTURE].name, chosen.picture);
-    refuse_pattern(options[OUT].name, chosen.out);
     chosen.cast.inside = find_inside(options[INSIDE].value);
     chosen.cast.most = options[MOST].value ? (size_t)whole_option(&options[MOST], 1, LARGEST_MOST) : 1;
     choose_isa(options[ISA].value);

@@ -133,19 +133,14 @@ static void read_method(const option *options, narrow_settings *out_chosen) {
 }
 
 static settings read_settings(int argc, char **argv) {
-    option options[OPTIONS] = {[SHAPES] = {"--shapes", INPUT_FILE, NULL},
-                               [BODIES] = {"--bodies", INPUT_FILE, NULL},
-                               [PAIRS] = {"--pairs", INPUT_FILE, NULL},
-                               [MAX_PAIRS] = {"--max-pairs", true, NULL},
-                               [OUT] = {"--out", true, NULL},
-                               [ALL] = {"--all", false, NULL},
-                               [MARGIN] = {"--margin", true, NULL},
-                               [PICTURE] = {"--picture", true, NULL},
-                               [METHOD] = {"--method", true, NULL},
-                               [TOLERANCE] = {"--tolerance", true, NULL},
-                               [ITERATIONS] = {"--iterations", true, NULL},
-                               [ISA] = {"--isa", true, NULL},
-                               [THREADS] = {"--threads", true, NULL}};
+    option options[OPTIONS] = {
+        [SHAPES] = {"--shapes", INPUT_FILE, NULL},   [BODIES] = {"--bodies", INPUT_FILE, NULL},
+        [PAIRS] = {"--pairs", INPUT_FILE, NULL},     [MAX_PAIRS] = {"--max-pairs", true, NULL},
+        [OUT] = {"--out", OUTPUT_FILE, NULL},        [ALL] = {"--all", false, NULL},
+        [MARGIN] = {"--margin", true, NULL},         [PICTURE] = {"--picture", OUTPUT_FILE, NULL},
+        [METHOD] = {"--method", true, NULL},         [TOLERANCE] = {"--tolerance", true, NULL},
+        [ITERATIONS] = {"--iterations", true, NULL}, [ISA] = {"--isa", true, NULL},
+        [THREADS] = {"--threads", true, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
@@ -155,8 +150,6 @@ static settings read_settings(int argc, char **argv) {
                        .picture = options[PICTURE].value,
                        .isa = options[ISA].value};
     picture_kind_of(chosen.picture);
-    refuse_pattern(options[PICTURE].name, chosen.picture);
-    refuse_pattern(options[OUT].name, chosen.out);
     read_method(options, &chosen.narrow);
     const double margin = number_option(&options[MARGIN], -(double)FLT_MAX, (double)FLT_MAX, "of float's range", 0);
     chosen.narrow.margin = (float)margin;

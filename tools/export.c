@@ -33,8 +33,7 @@ static const char HELP[] =
     "  --to FORMAT     tmx, tmj      a map of Tiled, with a layer of collision objects for each body\n"
     "                  tsj           a tileset of Tiled, each body the collision of its tile\n"
     "                  godot, godot3 a scene (.tscn) of Godot 4 or 3, with a StaticBody2D for each\n"
-    "                  tres, tres3   a shape as a resource of its own, with {name} in --out; circles, boxes and\n"
-    "                                upright capsules are these with --origin center\n"
+    "                  tres, tres3   a shape as a resource of its own, with {name} in --out\n"
     "                  phaser        PhysicsEditor's JSON, as Phaser 3 gives it to matter-js\n"
     "                  box2d         R.U.B.E.'s JSON; polygons have at most 8 corners\n"
     "                  libgdx        Physics Body Editor's JSON; the same\n"
@@ -391,6 +390,12 @@ static void write_numbers(piece *p, narc_point offset, double size, const export
                 p->name, p->corners[0].x, p->corners[0].y);
 }
 
+/* Is a plain shape where its numbers alone have it: around (0, 0), a capsule upright? */
+static bool is_at_origin(const piece *p, narc_point offset) {
+    return hypot(p->center.x + offset.x, p->center.y + offset.y) <= MERGED * measure_piece(p) &&
+           (p->kind != CAPSULE || fabs(cos(p->angle)) < 1e-6);
+}
+
 /* Gives a body's pieces the kinds that the format has, and moves them to its origin. */
 static void place_body(export_body *of, const exporting *how) {
     const double s = how->scale, up = how->y_down ? -s : s;
@@ -418,11 +423,8 @@ static void place_body(export_body *of, const exporting *how) {
         if (p->kind & (LOOP | LINE) & ~how->to->keeps)
             fail_at(how->path, 0, "shape '%s' is a chain, and %s has only convex pieces: narc fit --parts makes these",
                     p->name, how->to->name);
-        const double near = MERGED * measure_piece(p);
-        const bool is_placed = how->to->one && p->kind & (CIRCLE | CAPSULE | BOX) && /* which a resource is not */
-                               (fabs(p->center.x + offset.x) > near || fabs(p->center.y + offset.y) > near ||
-                                (p->kind == CAPSULE && fabs(cos(p->angle)) > MERGED));
-        p->kind = p->kind & how->to->keeps && !is_placed ? p->kind : OUTLINE;
+        if (!(p->kind & how->to->keeps) || (how->to->one && !is_at_origin(p, offset)))
+            p->kind = p->kind & (LOOP | LINE) ? p->kind : OUTLINE;
         if (!(how->to->keeps & ARCS) && p->kind & (OUTLINE | LOOP | LINE))
             flatten_piece(p, how);
         split_outline(&placed, p, p->kind == OUTLINE ? how->to->most_corners : 0);

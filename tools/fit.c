@@ -707,7 +707,7 @@ static void run(int argc, char **argv) {
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
-                               [PICTURE] = {"--picture", true, NULL},
+                               [PICTURE] = {"--picture", OUTPUT_FILE, NULL},
                                [REPORT] = {"--report", true, NULL}};
     name_reading_options(&options[READING]);
     const char **files = allocate((size_t)argc, sizeof *files);
@@ -722,7 +722,6 @@ static void run(int argc, char **argv) {
                  .picture = options[PICTURE].value,
                  .json = wants_json(&options[REPORT])};
     picture_kind_of(to.picture);
-    refuse_pattern(options[PICTURE].name, to.picture);
 
     outline_list outlines = {0};
     if (options[KEEP_GOING].value)

@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ellipse.h"
 #include "fail.h"
 #include "json.h"
 #include "system.h"
@@ -26,7 +25,6 @@ typedef struct objects {
     begin_object *begin;
     void *context;
     size_t count;
-    cJSON *templates; /* by their paths, as they are read */
 } objects;
 
 static const cJSON *get(const cJSON *of, const char *key) { return cJSON_GetObjectItemCaseSensitive(of, key); }
@@ -37,6 +35,12 @@ static double number(const cJSON *of, const char *key) {
 static const char *word(const cJSON *of, const char *key) {
     const cJSON *item = get(of, key);
     return cJSON_IsString(item) ? item->valuestring : "";
+}
+
+static cJSON *sure(cJSON *item) {
+    if (!item)
+        fail("not enough memory for objects");
+    return item;
 }
 
 /* What must be a number where it is there. False if something is none: that was reported. */
@@ -103,52 +107,32 @@ static void draw_points(objects *to, const char *name, narc_path *path, const cJ
 }
 
 static void draw_ellipse(objects *to, const char *name, narc_path *path, const place *at, double rx, double ry) {
-    const ellipse whole = {
-        put(at, 0, 0), {at->cosine * rx, at->up * at->sine * rx}, {-at->sine * ry, at->up * at->cosine * ry}};
-    const ellipse_part part = divide_ellipse(&whole, 0, FULL_TURN);
+    const narc_point center = put(at, 0, 0), end = put(at, rx, 0), top = put(at, 0, ry);
+    const narc_point u = {end.x - center.x, end.y - center.y}, v = {top.x - center.x, top.y - center.y};
     narc_error error;
-    narc_point from = find_on(&whole, 0), c[2];
-    check(to, name, narc_move_to(path, &from, &error), &error);
-    for (int k = 0; k < part.count; k++) {
-        const narc_point end = end_step(&part, k), middle = halve_step(&part, k);
-        bend_step(&part, k, from, end, c);
-        check(to, name,
-              part.round ? narc_arc_to(path, &middle, &end, &error) : narc_cubic_to(path, &c[0], &c[1], &end, &error),
-              &error);
-        from = end;
-    }
+    check(to, name, narc_move_to(path, &end, &error), &error);
+    check(to, name, narc_ellipse_to(path, &center, &u, &v, 0, FULL_TURN, &end, &error), &error);
 }
 
-/* From (0, 0) to (w, h); as a capsule the shorter sides are half circles. */
-static void draw_box(objects *to, const char *name, narc_path *path, const place *at, double w, double h,
-                     bool is_capsule) {
-    const double size = fmax(w, h), side = fmin(w, h), r = is_capsule ? side / 2 : 0;
-    const double along[] = {r, size - r, size, size - r, r, 0, r}, across[] = {0, 0, r, side, side, r, 0};
-    narc_point p[7];
+/* Of a box from (0, 0): the shorter sides are half circles. */
+static void draw_capsule(objects *to, const char *name, narc_path *path, const place *at, double width, double height) {
+    const bool lies = width > height;
+    const double radius = fmin(width, height) / 2, far = fmax(width, height) - radius, across = 2 * radius;
+    /* Along the capsule, across it: a side, the end behind it, the other side, the other end. */
+    const double points[6][2] = {{far, 0},   {far + radius, radius}, {far, across}, {radius, across}, {0, radius},
+                                 {radius, 0}};
+    narc_point p[6];
     narc_error error;
-    for (int k = 0; k < 7; k++)
-        p[k] = h > w ? put(at, across[k], along[k]) : put(at, along[k], across[k]);
-    check(to, name, narc_move_to(path, &p[0], &error), &error);
-    for (int k = 1; k < 6; k += 3) {
+    for (int k = 0; k < 6; k++)
+        p[k] = put(at, points[k][lies ? 0 : 1], points[k][lies ? 1 : 0]);
+    check(to, name, narc_move_to(path, &p[5], &error), &error);
+    for (int k = 0; k < 6; k += 3) {
         check(to, name, narc_line_to(path, &p[k], &error), &error);
-        check(to, name,
-              is_capsule ? narc_arc_to(path, &p[k + 1], &p[k + 2], &error) : narc_line_to(path, &p[k + 2], &error),
-              &error);
+        check(to, name, narc_arc_to(path, &p[k + 1], &p[k + 2], &error), &error);
     }
 }
 
 /* ---------------------------------------------------------------------------- Tiled */
-
-static cJSON *sure(cJSON *item) {
-    if (!item)
-        fail("not enough memory for objects");
-    return item;
-}
-
-/* What a file of Tiled is. */
-static bool is_root(const char *type) {
-    return strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0 || strcmp(type, "template") == 0;
-}
 
 /* Text, points, insertion points and tiles are none. */
 static bool is_drawn(const cJSON *object) {
@@ -166,8 +150,8 @@ static void draw_group(objects *to, const cJSON *group, const char *name, double
         lost += !is_drawn(object) && !get(object, "text") && !get(object, "point") && !get(object, "gid");
     }
     if (lost)
-        warn_at(to->file, "'%s': %zu objects without width and height are left out", narc_make_excerpt(name).text,
-                lost);
+        warn_at(to->file, "'%s': %zu objects without width and height, or of a kind that is not known, are left out",
+                narc_make_excerpt(name).text, lost);
     cJSON_ArrayForEach(object, list) {
         if (!is_drawn(object))
             continue;
@@ -179,11 +163,17 @@ static void draw_group(objects *to, const cJSON *group, const char *name, double
         const cJSON *points = get(object, "polygon") ? get(object, "polygon") : get(object, "polyline");
         if (points) {
             draw_points(to, own, path, points, &at);
-        } else if (get(object, "ellipse") || (get(object, "capsule") && w == h)) {
+        } else if (get(object, "ellipse")) {
             const narc_point center = put(&at, w / 2, h / 2);
             draw_ellipse(to, own, path, &(place){center.x, -center.y, at.cosine, at.sine, -1}, w / 2, h / 2);
+        } else if (get(object, "capsule")) {
+            draw_capsule(to, own, path, &at, w, h);
         } else {
-            draw_box(to, own, path, &at, w, h, get(object, "capsule"));
+            narc_error error;
+            for (int k = 0; k < 4; k++) {
+                const narc_point p = put(&at, k == 1 || k == 2 ? w : 0, k >= 2 ? h : 0);
+                check(to, own, k ? narc_line_to(path, &p, &error) : narc_move_to(path, &p, &error), &error);
+            }
         }
     }
 }
@@ -235,7 +225,8 @@ static void start_element(GMarkupParseContext *context, const char *element, con
     cJSON *to = at->depth ? at->open[at->depth - 1] : NULL, *made = NULL;
     const bool is_shape = strncmp(element, "poly", 4) == 0;
     (void)context;
-    if (at->depth == 0 && is_root(element)) {
+    const bool is_root = !strcmp(element, "map") || !strcmp(element, "tileset") || !strcmp(element, "template");
+    if (at->depth == 0 && is_root) {
         at->root = made = sure(cJSON_CreateObject());
         sure(cJSON_AddStringToObject(made, "type", element));
     }
@@ -312,55 +303,6 @@ static cJSON *read_xml(const char *file, const char *bytes, size_t size, bool *o
 }
 #endif
 
-/* XML or JSON, NULL if it is neither; a template's object is a list of one, as others are. */
-static cJSON *read_tree(const char *file, const char *bytes, size_t size, bool *out_broken) {
-    char *text = join_text(bytes, size, "");
-    narc_error error;
-    cJSON *root = NULL;
-    *out_broken = false;
-    if (narc_clean_text(text, size, &error) == NARC_OK && text[strspn(text, " \t\r\n")] == '<')
-        root = read_xml(file, text, strlen(text), out_broken);
-    else if (narc_parse_json(text, &root, &error) != NARC_OK)
-        root = NULL;
-    free(text);
-    cJSON *object =
-        strcmp(word(root, "type"), "template") == 0 ? cJSON_DetachItemFromObjectCaseSensitive(root, "object") : NULL;
-    if (object)
-        cJSON_AddItemToArray(sure(cJSON_AddArrayToObject(root, "objects")), object);
-    return root;
-}
-
-/* The object of a template, whose path is from the file's folder; NULL: an error was reported. */
-static const cJSON *find_template(objects *to, const char *name) {
-    cJSON *known = cJSON_GetObjectItemCaseSensitive(to->templates, name);
-    if (!known) {
-        char *own = join_text(to->file, folder_length(to->file), name);
-        size_t size;
-        bool broken = true;
-        char *bytes = try_read_bytes(own, &size);
-        known = bytes ? read_tree(own, bytes, size, &broken) : NULL;
-        if (!get(known, "objects") && !broken)
-            report_at(own, 0, "it is no template of an object");
-        known = known ? known : sure(cJSON_CreateNull());
-        cJSON_AddItemToObject(to->templates, name, known);
-        free(bytes);
-        free(own);
-    }
-    return cJSON_GetArrayItem(get(known, "objects"), 0);
-}
-
-/* Objects of templates get what they do not have of their own. */
-static void fill_templates(objects *to, cJSON *of) {
-    const char *name = word(of, "template");
-    const cJSON *item = cJSON_IsObject(of) && *name ? find_template(to, name) : NULL;
-    cJSON_ArrayForEach(item, item) {
-        if (item->string && !get(of, item->string))
-            cJSON_AddItemToObject(of, item->string, sure(cJSON_Duplicate(item, true)));
-    }
-    for (cJSON *inside = of->child; inside; inside = inside->next)
-        fill_templates(to, inside);
-}
-
 /* ---------------------------------------------------------------------------- engines */
 
 /* R.U.B.E.: a body's fixtures are a circle, polygon or chain each, around the body's position. */
@@ -408,22 +350,68 @@ static void draw_fixtures(objects *to, const cJSON *body, bool draws, size_t *co
     }
 }
 
+static cJSON *parse(const char *file, const char *bytes, size_t size, bool *out_broken) {
+    char *text = join_text(bytes, size, "");
+    narc_error error;
+    cJSON *root = NULL;
+    const bool clean = narc_clean_text(text, size, &error) == NARC_OK;
+    *out_broken = false;
+    if (text[strspn(text, " \t\r\n")] == '<')
+        root = clean ? read_xml(file, text, strlen(text), out_broken) : NULL;
+    else if (narc_parse_json(text, &root, &error) != NARC_OK)
+        root = NULL;
+    free(text);
+    return root;
+}
+
+/* Tiled's templates, files beside this one: what an object does not say itself, its template says. False if one is none: that
+ * was reported. */
+static bool fill_from_templates(const char *file, cJSON *of) {
+    const char *name = word(of, "template");
+    cJSON *item;
+    bool right = true;
+    if (*name) {
+        char *path = name[0] == '/' ? join_text(name, strlen(name), "") : join_text(file, folder_length(file), name);
+        size_t size;
+        char *bytes = try_read_bytes(path, &size);
+        bool broken = false;
+        cJSON *root = bytes ? parse(path, bytes, size, &broken) : NULL;
+        const cJSON *object = get(root, "object") ? get(root, "object") : cJSON_GetArrayItem(get(root, "objects"), 0),
+                    *part;
+        if (bytes && !broken && !object)
+            report_at(path, 0, "it is no template of an object");
+        cJSON_ArrayForEach(part, object) {
+            if (part->string && !get(of, part->string))
+                cJSON_AddItemToObject(of, part->string, sure(cJSON_Duplicate(part, true)));
+        }
+        right = object && check_numbers(path, "object", object);
+        cJSON_Delete(root);
+        free(bytes);
+        free(path);
+    }
+    cJSON_ArrayForEach(item, of) {
+        if (!(item->string && strcmp(item->string, "properties") == 0)) /* which are the user's */
+            right = fill_from_templates(file, item) && right;
+    }
+    return right;
+}
+
 bool read_objects(const char *file, const char *bytes, size_t size, begin_object *begin, void *context) {
+    objects to = {file, begin, context, 0};
     bool broken;
-    cJSON *root = read_tree(file, bytes, size, &broken);
-    objects to = {file, begin, context, 0, sure(cJSON_CreateObject())};
+    cJSON *root = parse(file, bytes, size, &broken);
+    const char *type = word(root, "type");
     const cJSON *tileset, *body;
-    const bool is_tiled = is_root(word(root, "type")), is_rube = !is_tiled && cJSON_IsArray(get(root, "body"));
+    const bool is_tiled = strcmp(type, "map") == 0 || strcmp(type, "tileset") == 0,
+               is_rube = !is_tiled && cJSON_IsArray(get(root, "body"));
     bool known = is_tiled || is_rube || broken;
     cJSON_ArrayForEach(body, root) { /* PhysicsEditor's */
         known = known || (body->string && cJSON_IsArray(get(body, "fixtures")));
     }
-    if (is_tiled)
-        fill_templates(&to, root);
-    broken = broken || (known && !check_numbers(file, "objects", root));
+    broken =
+        broken || (known && !check_numbers(file, "objects", root)) || (is_tiled && !fill_from_templates(file, root));
     if (known && !broken) {
         if (is_tiled) {
-            draw_group(&to, root, "object", 0, 0, 0); /* a template's */
             draw_layers(&to, root, 0, 0);
             draw_tiles(&to, root);
             cJSON_ArrayForEach(tileset, get(root, "tilesets")) { draw_tiles(&to, tileset); }
@@ -439,7 +427,6 @@ bool read_objects(const char *file, const char *bytes, size_t size, begin_object
         if (to.count == 0)
             report_at(file, 0, "it has no collision objects");
     }
-    cJSON_Delete(to.templates);
     cJSON_Delete(root);
     return known;
 }

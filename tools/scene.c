@@ -47,10 +47,9 @@ static void run(int argc, char **argv) {
                                {"--bodies", true, NULL},
                                {"--density", true, NULL},
                                {"--seed", true, NULL},
-                               {"--out", true, NULL}};
+                               {"--out", OUTPUT_FILE, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     const char *path = required_option(&options[SHAPES]), *out = options[OUT].value ? options[OUT].value : "-";
-    refuse_pattern(options[OUT].name, out);
     const uint64_t count = whole_option(&options[BODIES], 1, UINT32_MAX);
     required_option(&options[DENSITY]);
     const double density = number_option(&options[DENSITY], DBL_MIN, 10, "more than 0 and at most 10", 0);

@@ -143,13 +143,12 @@ static void write_page(FILE *file, const narc_shape_list *shapes, const outline_
 }
 
 static void run(int argc, char **argv) {
-    option options[OPTIONS] = {[OUT] = {"--out", true, NULL}};
+    option options[OPTIONS] = {[OUT] = {"--out", OUTPUT_FILE, NULL}};
     name_reading_options(&options[READING]);
     const char **files = allocate((size_t)argc + 1, sizeof *files);
     const size_t count = parse_options(argc, argv, options, OPTIONS, "SHAPES", files);
     reading how = take_reading(&options[READING]);
     how.keep_images = true;
-    refuse_pattern(options[OUT].name, options[OUT].value);
     narc_shape_list *shapes = read_shapes(files[0], NULL);
     outline_list outlines = {0};
     read_outlines(files + 1, count - 1, &how, &outlines);

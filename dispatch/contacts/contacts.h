@@ -80,7 +80,7 @@ typedef struct narc_array {
     size_t *count; /* how many items a step leaves to the next; NULL: none */
 } narc_array;
 
-enum { NARC_ARRAYS = 37 };
+enum { NARC_ARRAYS = 38 };
 
 /* How a step asks. */
 typedef struct narc_asked {
@@ -96,11 +96,12 @@ struct narc_contacts {
     narc_broad_phase *broad;
     narc_step_result result;
     narc_asked last;
-    bool again;       /* all pairs are to be asked: they are asked differently */
-    bool marked;      /* `state` has marks of the last step */
-    bool changed;     /* something is to be done with pairs */
-    bool marks_known; /* `marks` are those of the list */
-    bool lists_known; /* `touching`, `sensors` are right but for what crosses, or has parted, in this step */
+    bool again;        /* all pairs are to be asked: they are asked differently */
+    bool marked;       /* `state` has marks of the last step */
+    bool changed;      /* something is to be done with pairs */
+    bool marks_known;  /* `marks` are those of the list, */
+    bool ground_known; /* and so is `ground_pairs` */
+    bool lists_known;  /* `touching`, `sensors` are right but for what crosses, or has parted, in this step */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */
     uint32_t *a, *b;                  /* the pair's bodies; 0 without a pair */
@@ -117,7 +118,8 @@ struct narc_contacts {
 
     size_t order_capacity, filtered_capacity, ground_capacity, event_capacity; /* of pairs: */
     uint32_t *order, *next_order;
-    narc_pair_work *work;           /* what is to be done with pairs of ground, in the order of pairs */
+    narc_pair_work *ground_pairs;   /* pairs of ground: all of the list, in its order; */
+    narc_pair_work *work;           /* and what is to be done with some */
     uint32_t *asked, *known, *left; /* slots: asked plainly, by their entries, and what these do not decide; before,
                                        `known`: of ground_asked, `left`: what has moved of that */
     uint32_t *candidates;           /* slots whose rows may follow, and then those whose rows are to be kept */
@@ -125,8 +127,8 @@ struct narc_contacts {
     float *ground_margins;
     uint64_t *bits;
     narc_touch_event *events; /* what began, and then what ended */
-    size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, parted_count,
-        crossed_count, event_count;
+    size_t work_count, asked_count, known_count, candidate_count, sensor_count, ground_count, ground_pair_count,
+        parted_count, crossed_count, event_count;
 
     unsigned wait, waits; /* so many steps no entry is made; so many it was the last time */
 
@@ -254,8 +256,8 @@ bool narc_are_smooth(const narc_contact_step *s, uint32_t a, uint32_t b);
 /* A body is a piece of a chain; it is said to be of a run. A pair is of ground if one of both is the one, or B is the other. */
 enum { NARC_IS_PIECE = 1, NARC_IS_OF_RUN = 2 };
 
-/* Marks of slots beside those of pairs: neither body moves; there is no pair. */
-enum { NARC_RESTS = 32, NARC_GONE = 64 };
+/* Marks of slots beside those of pairs: nothing but 0 is in `kept`; it is of ground; neither body moves; there is no pair. */
+enum { NARC_KEEPS_NOTHING = 8, NARC_WITH_GROUND = 16, NARC_RESTS = 32, NARC_GONE = 64 };
 
 /* ------------------------------------------------------------------------------------------------ ground.c */
 

@@ -99,7 +99,7 @@ static inline unsigned find_stale(unsigned flags, unsigned marks) {
 }
 
 static inline bool is_ground(const pair_view *v, size_t k) {
-    return !(v->marks[k] & NARC_SENSOR) && (v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE));
+    return !(v->marks[k] & NARC_SENSOR) & ((v->grounds[v->b[k]] | (v->grounds[v->a[k]] & NARC_IS_PIECE)) != 0);
 }
 
 /* Was a pair ground that is none, or no sensor's? */
@@ -108,70 +108,115 @@ static inline bool was_ground(const pair_view *v, size_t k) {
     return slot != UINT32_MAX && (v->changed[v->b[k]] & NARC_RESHAPED || (v->marks[k] ^ v->flags[slot]) & NARC_SENSOR);
 }
 
-/* What is known of a pair with ground while it is planned. OF_OLD: it must be asked, whatever has moved. OF_OTHER: so must
- * all ground of the body, as a pair was ground, or is no sensor's any more. OF_HELD: what is kept of it still counts.
- * OF_FIRST: it is the first one of its body. */
+/* What is known of a pair with ground while it is planned. FIRST: it is the first one of its body; RESTS: neither body moves.
+ * OLD: it must be asked, whatever has moved; OTHER: so must all ground of the body, as a pair was ground, or is no sensor's
+ * any more. What all pairs of the body are lies in the bits from OF_BODY on. */
 enum {
-    OF_CHANGED = 1,
-    OF_OLD = 2,
-    OF_BARE = 4,
-    OF_KEPT = 8,
-    OF_MOVING = 16,
-    OF_OTHER = 32,
-    OF_HELD = 64,
-    OF_FIRST = 128
+    OF_FIRST = 1,
+    OF_RESTS = 2,
+    OF_OTHER = 4,
+    OF_CHANGED = 8,
+    OF_OLD = 16,
+    OF_MOVING = 32,
+    OF_KEPT = 64,
+    OF_BARE = 128,
+    OF_TOUCHING = 256,
+    OF_BODY = 512,
+    OF_PAIR = OF_BODY - 1
 };
 
-static inline unsigned look_at_ground(const pair_view *v, size_t k, uint32_t slot, unsigned changed_a) {
-    const unsigned changed_b = v->changed[v->b[k]], moves = changed_b ? OF_MOVING : 0u;
-    if (slot == UINT32_MAX)
-        return OF_OLD | OF_CHANGED | OF_BARE | moves;
-    const unsigned flags = v->flags[slot], bare = v->state[slot] & NARC_TOUCHING ? 0u : OF_BARE;
-    if (find_stale(flags, v->marks[k]) || (changed_a | changed_b) & NARC_RESHAPED)
-        return OF_OLD | OF_CHANGED | bare | moves;
-    return (changed_a | changed_b ? OF_CHANGED : 0u) | (flags & NARC_SLOT_KEPT ? OF_KEPT : 0u) | bare | moves;
+/* Of the body of pair k, was another pair ground that is none? */
+static unsigned find_other(const pair_view *v, size_t k, size_t count) {
+    const uint32_t a = v->a[k];
+    while (k > 0 && v->a[k - 1] == a)
+        k--;
+    for (; k < count && v->a[k] == a; k++)
+        if (!is_ground(v, k) && was_ground(v, k))
+            return OF_OTHER | OF_CHANGED;
+    return 0;
 }
 
-/* Of the pairs from `first` on, those of one body: these with ground are listed, and what is kept of them and may decide, if
- * something has changed. Returns the end. */
-static size_t list_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t count) {
+/* Lists all pairs of ground. */
+static void list_ground(const narc_contact_step *s, const pair_view *v) {
     narc_contacts *const c = s->contacts;
-    const uint32_t a = v->a[first];
-    size_t k = first;
-    while (k < count && v->a[k] == a && !is_ground(v, k))
-        k++;
-    if (k == count || v->a[k] != a)
-        return k;
-    const unsigned keeps =
-        s->step->recycling > 0 ? OF_KEPT : OF_KEPT | OF_BARE; /* rows follow, or pairs without one stay so */
-    narc_pair_work *const work = c->work + c->work_count;
-    size_t listed = 0;
-    unsigned any = 0;
-    for (size_t i = first; i < k; i++)
-        any |= was_ground(v, i) ? OF_OTHER | OF_CHANGED : 0u;
-    do {
-        if (listed == 0 || is_ground(v, k)) {
-            const uint32_t slot = slot_of(v, k);
-            const unsigned what = look_at_ground(v, k, slot, v->changed[a]);
-            any |= what;
-            work[listed++] = (narc_pair_work){(uint32_t)k, slot, what};
-        } else {
-            any |= was_ground(v, k) ? OF_OTHER | OF_CHANGED : 0u;
-        }
-    } while (++k < count && v->a[k] == a);
-    if (!(any & OF_CHANGED))
-        return k;
-    work->what |= (any & OF_OTHER) | OF_FIRST;
-    c->work_count += listed;
-    for (size_t i = 0; i < listed; i++) {
-        if (s->step->ahead.base)
-            c->ground_margins[work[i].pair] = narc_find_margin(s, a, v->b[work[i].pair]);
-        if ((work[i].what & keeps) != keeps)
+    const size_t count = s->list->pairs.count;
+    narc_pair_work *to = c->ground_pairs;
+    for (size_t k = 0; k < count; k++) {
+        if (!is_ground(v, k))
             continue;
-        c->known[c->ground_count] = work[i].slot;
-        c->ground_asked[c->ground_count++] = work[i].pair;
+        const unsigned first = to == c->ground_pairs || v->a[to[-1].pair] != v->a[k] ? OF_FIRST : 0;
+        const unsigned rests = is_at_rest(s, v->a[k]) && is_at_rest(s, v->b[k]) ? OF_RESTS : 0;
+        *to++ = (narc_pair_work){(uint32_t)k, slot_of(v, k), first | rests};
     }
-    return k;
+    c->ground_pair_count = (size_t)(to - c->ground_pairs);
+}
+
+/* What is known of a pair, by what its bodies and its slot are: a number below LOOKS, from find_look(). */
+enum { LOOK_TOUCHING = 2, LOOK_CHANGED = 16, LOOK_CHANGED_B = 64, LOOKS = 256 };
+_Static_assert((NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT) == 13,
+               "with LOOK_TOUCHING all below LOOK_CHANGED");
+
+static void list_looks(uint32_t out[LOOKS]) {
+    for (unsigned look = 0; look < LOOKS; look++) {
+        const unsigned changed = look / LOOK_CHANGED & NARC_ALL_CHANGED;
+        const bool old = look & (NARC_SLOT_STALE | NARC_SLOT_SENSOR) || changed & NARC_RESHAPED;
+        out[look] = (changed || old ? OF_CHANGED : 0u) | (old ? OF_OLD : 0u) |
+                    (look / LOOK_CHANGED_B ? OF_MOVING : 0u) | (look & NARC_SLOT_KEPT && !old ? OF_KEPT : 0u) |
+                    (look & LOOK_TOUCHING ? OF_TOUCHING : OF_BARE);
+    }
+}
+
+/* Here and below what differs from pair to pair as chance has it is without a branch. */
+static inline unsigned find_look(const pair_view *v, const narc_pair_work *work) {
+    const size_t k = work->pair;
+    const unsigned changed_b = v->changed[v->b[k]] & NARC_ALL_CHANGED, changed_a = v->changed[v->a[k]];
+    const unsigned changed = ((changed_a & NARC_ALL_CHANGED) | changed_b) * LOOK_CHANGED + changed_b * LOOK_CHANGED_B;
+    if (work->slot == UINT32_MAX)
+        return changed | NARC_SLOT_STALE;
+    const unsigned flags = v->flags[work->slot] | (v->marks[k] / NARC_FLIPPED) * NARC_SLOT_STALE;
+    return changed | (flags & (NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT)) |
+           (v->state[work->slot] & NARC_TOUCHING) * LOOK_TOUCHING;
+}
+
+/* What a pair is, with what those behind it of its body are; `all` is that on return, or 0 in front of the first one. */
+static inline uint32_t gather_back(unsigned what, uint32_t *all) {
+    const uint32_t both = *all | what;
+    *all = both & ((what & OF_FIRST) - 1u);
+    return what + both * OF_BODY;
+}
+
+/* The same of all pairs of its body, from what gather_back() has made. */
+static inline uint32_t gather(uint32_t what, uint32_t *all) {
+    const uint32_t is_first = 0u - (what & OF_FIRST), own = what & OF_PAIR;
+    *all = ((what - own) & is_first) | (*all & ~is_first);
+    return own | *all;
+}
+
+/* Finds what all pairs of ground are, and lists in `ground_asked` those of which something is kept that may decide, of bodies of
+ * which something has changed. Returns how many these are. */
+static size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, uint32_t *out, uint32_t keeps) {
+    const narc_contacts *const c = s->contacts;
+    const narc_pair_work *const pairs = c->ground_pairs;
+    const size_t count = c->ground_pair_count;
+    uint32_t *const known = c->known, *const asked = c->ground_asked;
+    uint32_t looks[LOOKS], all = 0;
+    size_t kept = 0;
+    list_looks(looks);
+    for (size_t i = count; i-- > 0;) {
+        unsigned what = pairs[i].what | looks[find_look(v, &pairs[i])];
+        if (!c->ground_known && what & OF_FIRST)
+            what |= find_other(v, pairs[i].pair, s->list->pairs.count);
+        out[i] = gather_back(what, &all);
+    }
+    for (size_t i = 0; i < count; i++) {
+        out[i] = gather(out[i], &all);
+        known[kept] = pairs[i].slot;
+        asked[kept] = pairs[i].pair;
+        kept += (out[i] & keeps) == keeps;
+    }
+    for (size_t i = 0; s->step->ahead.base && i < count; i++)
+        c->ground_margins[pairs[i].pair] = narc_find_margin(s, v->a[pairs[i].pair], v->b[pairs[i].pair]);
+    return kept;
 }
 
 /* May all further rows of a slot follow? */
@@ -184,65 +229,73 @@ static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *wo
     return may;
 }
 
-/* Do all rows that a body has with ground follow it, and are there some? Rows tell of other ground only while none moves. */
-static bool do_all_follow(const narc_contact_step *s, size_t first, size_t end) {
-    const narc_pair_work *const work = s->contacts->work;
-    unsigned any = 0, bare = OF_BARE;
-    for (size_t i = first; i < end; i++) {
-        any |= work[i].what;
-        bare &= work[i].what;
-        if (!(work[i].what & (OF_BARE | OF_HELD)))
-            return false;
-    }
-    if (bare || any & (OF_OLD | OF_OTHER) || (any & OF_MOVING && any & OF_BARE))
-        return false;
-    for (size_t i = first; i < end; i++)
-        if (!(work[i].what & OF_BARE) && !may_more_follow(s, &work[i]))
-            return false;
-    return true;
+/* The pairs of ground while it is found out what is done with them. */
+typedef struct ground_plan {
+    const narc_pair_work *pairs;
+    const uint32_t *what;
+    size_t count;
+    uint32_t keeps;       /* what a pair is of which something is kept that may decide; */
+    const uint32_t *left; /* those whose bodies have moved too far for it */
+    size_t moved, moved_count;
+} ground_plan;
+
+/* Does what is kept of pair i count still? Pairs are asked about in their order. */
+static inline uint32_t take_held(ground_plan *p, size_t i) {
+    const uint32_t kept = (p->what[i] & p->keeps) == p->keeps;
+    const uint32_t goes = kept & (p->moved < p->moved_count) & (p->left[p->moved] == p->pairs[i].pair);
+    p->moved += goes;
+    return kept - goes;
 }
 
-/* The plan of the listed pairs of one body, which are asked together, as their rows are merged; but those that have none are
- * not while what is kept of them holds. Returns the end of what is planned. */
-static size_t plan_ground(const narc_contact_step *s, const pair_view *v, size_t first, size_t end, size_t to) {
-    narc_pair_work *const work = s->contacts->work;
-    const uint32_t a = v->a[work[first].pair];
-    const bool follows = s->step->recycling > 0 && do_all_follow(s, first, end), rests = is_at_rest(s, a);
-    unsigned all = OF_HELD | OF_BARE;
-    for (size_t i = first; i < end; i++)
-        all &= work[i].what;
-    bool apart = all == OF_BARE; /* one that touches is better asked */
-    for (size_t i = first; i < end && apart && !follows; i++)
-        apart = are_apart(v, a, v->b[work[i].pair]);
-    const unsigned planned = follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
-    for (size_t i = first; i < end; i++) {
-        const narc_pair_work one = work[i];
-        const unsigned what = rests && is_at_rest(s, v->b[one.pair]) ? NARC_REST : planned;
-        work[to] = (narc_pair_work){one.pair, one.slot, what};
-        to += what != NARC_ASK_GROUND || (one.what & (OF_HELD | OF_BARE)) != (OF_HELD | OF_BARE);
-    }
-    return to;
+/* What is done with all pairs of a body, the first one of which is number `first`. All its rows with ground follow it, if there
+ * are some; rows tell of other ground only while none moves. */
+static unsigned plan_body(const narc_contact_step *s, const pair_view *v, const ground_plan *plan, size_t first) {
+    const uint32_t all = plan->what[first] / OF_BODY;
+    const bool touches = all & OF_TOUCHING;
+    ground_plan p = *plan;
+    bool follows =
+        s->step->recycling > 0 && touches && !(all & (OF_OLD | OF_OTHER)) && !(all & OF_MOVING && all & OF_BARE);
+    bool all_held = true;
+    size_t end = first;
+    do {
+        const bool held = take_held(&p, end);
+        all_held = all_held && held;
+        if (follows && p.what[end] & OF_TOUCHING)
+            follows = held && may_more_follow(s, &p.pairs[end]);
+    } while (++end < p.count && !(p.what[end] & OF_FIRST));
+    bool apart = !touches && !all_held; /* one that touches is better asked */
+    for (size_t i = first; apart && i < end; i++)
+        apart = are_apart(v, v->a[p.pairs[i].pair], v->b[p.pairs[i].pair]);
+    return follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
 }
 
+/* Pairs of a body are asked together, as their rows are merged; but those that have none are not while what is kept of them
+ * holds. */
 static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
     narc_contacts *const c = s->contacts;
-    const size_t kept_count = c->ground_count, moved_count = narc_find_moved(s, kept_count);
-    size_t moved = 0, at = 0, to = 0;
-    for (size_t i = 0; i < kept_count; i++) {
-        if (moved < moved_count && c->left[moved] == c->ground_asked[i]) {
-            moved++;
-            continue;
-        }
-        while (c->work[at].pair != c->ground_asked[i])
-            at++;
-        c->work[at].what |= OF_HELD;
-    }
-    for (size_t i = 0, end; i < c->work_count; i = end) {
-        for (end = i + 1; end < c->work_count && !(c->work[end].what & OF_FIRST);)
-            end++;
-        to = plan_ground(s, v, i, end, to);
+    narc_pair_work *const work = c->work;
+    uint32_t *const asked = c->ground_asked, *const what = c->asked; /* which is not in use yet */
+    const bool recycles = s->step->recycling > 0;                    /* rows follow, or pairs without one stay so */
+    const uint32_t keeps = OF_CHANGED * OF_BODY + (recycles ? OF_KEPT : OF_KEPT | OF_BARE);
+    const size_t kept_count = look_at_all_ground(s, v, what, keeps), moved_count = narc_find_moved(s, kept_count);
+    ground_plan plan = {c->ground_pairs, what, c->ground_pair_count, keeps, c->left, 0, moved_count};
+    unsigned planned = NARC_ASK_GROUND;
+    size_t to = 0, asked_count = 0;
+    for (size_t i = 0; i < plan.count; i++) {
+        const uint32_t one = what[i], changed = one / (OF_CHANGED * OF_BODY) & 1;
+        if (one & OF_TOUCHING * OF_BODY && !recycles)
+            planned = NARC_ASK_GROUND;
+        else if (one & OF_FIRST && changed)
+            planned = plan_body(s, v, &plan, i);
+        const uint32_t held = take_held(&plan, i) & one / OF_BARE;
+        const unsigned own = one & OF_RESTS ? NARC_REST : planned, asks = own == NARC_ASK_GROUND;
+        work[to] = (narc_pair_work){plan.pairs[i].pair, plan.pairs[i].slot, own};
+        to += changed & ~(asks & held);
+        asked[asked_count] = plan.pairs[i].pair;
+        asked_count += changed & asks & ~held;
     }
     c->work_count = to;
+    c->ground_count = asked_count;
 }
 
 /* The first slot from `k` on with a body that has changed. Four at a time, as most of them have none. */
@@ -293,12 +346,14 @@ static void note_lost_ground(const narc_contact_step *s) {
 void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
-    const bool has_ground = NARC_PIECES && s->has_ground;
-    const size_t count = s->list->pairs.count, bodies = s->step->bodies->count;
+    const bool has_ground = s->has_ground;
+    const size_t bodies = s->step->bodies->count;
     c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
+    c->ground_known = c->ground_known && has_ground && is_list_kept(s) && c->marks_known;
     for (size_t k = 0; c->changed && (k = c->again ? k : find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies;
          k++) {
+        c->ground_known = false;
         c->room[k] = find_room(s, (uint32_t)k);
         c->grounds[k] = find_ground(s, (uint32_t)k);
     }
@@ -306,9 +361,9 @@ void narc_plan_ground(const narc_contact_step *s) {
         c->flags[slot] |= NARC_SLOT_STALE;
     if (has_ground && !s->list->kept)
         note_lost_ground(s);
-    for (size_t k = 0; k < count && has_ground && c->changed;)
-        k = list_ground(s, &v, k, count);
-    if (NARC_PIECES)
+    if (has_ground && !c->ground_known)
+        list_ground(s, &v);
+    if (has_ground && c->changed)
         plan_all_ground(s, &v);
 }
 
@@ -357,7 +412,13 @@ static void mark_slots(const narc_contact_step *s) {
     for (size_t slot = 0; slot < c->slot_count; slot++)
         if (marks[slot] == NARC_GONE)
             c->a[slot] = c->b[slot] = 0;
+    for (size_t i = 0; s->has_ground && i < c->ground_pair_count; i++) {
+        narc_pair_work *const pair = &c->ground_pairs[i];
+        pair->slot = c->order[pair->pair];
+        marks[pair->slot] |= NARC_WITH_GROUND;
+    }
     c->marks_known = true;
+    c->ground_known = s->has_ground;
 }
 
 /* What is to be done with a slot whose bodies have changed, or are `stale`, and not both of which move, or which are no
@@ -386,7 +447,7 @@ NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) 
 }
 
 /* Marks of slots that are no plain pair of two bodies that may move. */
-enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE };
+enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE | NARC_WITH_GROUND };
 
 /* What of its flags a slot keeps. */
 static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
@@ -409,17 +470,15 @@ typedef struct slot_lists {
 
 /* Finds out what is to be done with a slot, the bodies of which have changed in the ways `found`. What differs from slot to
  * slot as chance has it is without a branch. */
-INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool special, bool more,
+INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, unsigned found, bool more,
                       uint8_t *all_flags, slot_lists *to) {
     const uint32_t slot = (uint32_t)k;
     const unsigned changed = found & NARC_ALL_CHANGED, was = all_flags[k], marks = v->marks[k];
     const unsigned stale = find_stale(was, marks);
-    if (!(changed | stale))
+    if (!(changed | stale) || marks & NARC_WITH_GROUND) /* that is planned */
         return;
     unsigned what = NARC_ASK;
-    if (special && is_ground(v, k) && !(marks & NARC_GONE))
-        return; /* it is planned */
-    if (special || marks & SPECIAL)
+    if (marks & SPECIAL)
         what = find_special(s, v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
     if (what == NARC_ASK) { /* one that touches is better asked */
@@ -443,28 +502,31 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
 enum { CHUNK = 64 };
 
 /* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: something is kept of them, they
- * are as they were, and a body has moved. Puts the numbers of all others, less `first`, into `other`, and what has changed
- * of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but time. */
+ * are as they were, and a body has moved. Puts the numbers of all others but those of ground, less `first`, into `other`, and
+ * what has changed of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but
+ * time. */
 static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
                              uint8_t other[CHUNK], uint32_t **candidates) {
     const uint32_t *const a = v->a + first, *const b = v->b + first;
     const uint8_t *const changed = v->changed;
-    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, odd[CHUNK];
+    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, follows[CHUNK], passed[CHUNK];
     uint32_t *to = *candidates;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
         now[i] = changed[a[i]] | changed[b[i]];
     memcpy(flags, v->flags + first, n);
     memcpy(marks, v->marks + first, n);
-    for (size_t i = 0; i < CHUNK; i++)
-        odd[i] = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
-                 (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
+    for (size_t i = 0; i < CHUNK; i++) {
+        const uint8_t odd = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
+                            (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
+        follows[i] = (odd == 0) & ((now[i] & NARC_ALL_CHANGED) != 0);
+        passed[i] = (odd == 0) | (kept & (now[i] == 0)) | ((marks[i] & NARC_WITH_GROUND) != 0);
+    }
     for (size_t i = 0; i < n; i++) {
-        const unsigned stirs = now[i] & NARC_ALL_CHANGED;
         *to = (uint32_t)(first + i);
-        to += (odd[i] == 0) & (stirs != 0);
+        to += follows[i];
         other[count] = (uint8_t)i;
-        count += (odd[i] != 0) & (!kept | (now[i] != 0));
+        count += 1u - passed[i];
     }
     memcpy(found, now, sizeof now);
     *candidates = to;
@@ -475,8 +537,9 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
  * uses lies in variables of its own, as whatever is written in bytes might be any of it. */
 void narc_sort_pairs(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
-    const bool ground = s->has_ground, more = s->step->ahead.base || c->more.count > 0;
-    const bool kept = (is_list_kept(s) && c->marks_known) || (!s->list->kept && mark_new_slots(s));
+    const bool more = s->step->ahead.base || c->more.count > 0;
+    const bool known = c->marks_known && c->ground_known == s->has_ground;
+    const bool kept = (is_list_kept(s) && known) || (!s->list->kept && mark_new_slots(s));
     c->lists_known = kept;
     if (!kept)
         mark_slots(s);
@@ -488,21 +551,22 @@ void narc_sort_pairs(const narc_contact_step *s) {
     uint8_t *const flags = c->flags;
     slot_lists to = {c->asked, c->known, c->candidates};
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
-    const bool rests = !ground && !more && c->candidate_count > count / 4; /* as in the last step */
+    /* As in the last step; where ground lies between other slots, these are picked out. */
+    const bool rests = !s->step->ahead.base && (s->has_ground || c->candidate_count > count / 4);
     c->sensor_count = 0;
     for (size_t first = 0; first < count && rests; first += CHUNK) {
         uint8_t found[CHUNK], other[CHUNK];
         const size_t n = count - first < CHUNK ? count - first : CHUNK;
         const size_t others = pass_followers(&v, kept, first, n, found, other, &to.candidates);
         for (size_t i = 0; i < others; i++)
-            sort_slot(s, &v, first + other[i], found[other[i]], ground, more, flags, &to);
+            sort_slot(s, &v, first + other[i], found[other[i]], more, flags, &to);
     }
     for (size_t k = 0; k < count && !rests; k++) {
         const unsigned found = v.changed[v.a[k]] | v.changed[v.b[k]];
         if (kept && !found)
             k = find_changed(&v, k, count) - 1;
         else
-            sort_slot(s, &v, k, found, ground, more, flags, &to);
+            sort_slot(s, &v, k, found, more, flags, &to);
     }
     for (size_t i = 0; i < c->work_count; i++) {
         const uint32_t slot = c->work[i].slot = c->order[c->work[i].pair], what = c->work[i].what;

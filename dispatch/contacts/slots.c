@@ -91,6 +91,7 @@ size_t narc_list_arrays(narc_contacts *c, narc_array out[NARC_ARRAYS]) {
                                  ARRAY(NARC_OF_PAIRS, c->left, sizeof *c->left, none),
                                  ARRAY(NARC_OF_FILTERED_PAIRS, c->sensors_asked, sizeof *c->sensors_asked, none),
                                  ARRAY(NARC_OF_GROUND_PAIRS, c->ground_asked, sizeof *c->ground_asked, none),
+                                 ARRAY(NARC_OF_GROUND_PAIRS, c->ground_pairs, sizeof *c->ground_pairs, none),
                                  ARRAY(NARC_OF_GROUND_PAIRS, c->ground_margins, sizeof *c->ground_margins, none),
                                  ARRAY(NARC_OF_FILTERED_PAIRS, c->bits, 1, none),
                                  ARRAY(NARC_OF_PARTNERS, c->partners, sizeof *c->partners, none),

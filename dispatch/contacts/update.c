@@ -70,13 +70,77 @@ static void list_parted(const narc_contact_step *s) {
     }
 }
 
+/* Does one slot's pair come before another's? */
+static bool is_before(const narc_contacts *c, uint32_t one, uint32_t other) {
+    return c->a[one] < c->a[other] || (c->a[one] == c->a[other] && c->b[one] < c->b[other]);
+}
+
+/* Puts a slot into a list in the order of pairs, or takes it out. */
+static void mend_list(const narc_contacts *c, uint32_t *list, size_t *count, uint32_t slot, bool is_in) {
+    size_t low = 0, high = *count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (is_before(c, list[middle], slot))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const bool was_in = low < *count && list[low] == slot;
+    if (is_in && !was_in)
+        memmove(list + low + 1, list + low, ((*count)++ - low) * sizeof *list);
+    if (is_in)
+        list[low] = slot;
+    else if (was_in)
+        memmove(list + low, list + low + 1, (--*count - low) * sizeof *list);
+}
+
+/* The event of a slot, if it began or ended to touch. */
+static void note_crossing(const narc_contact_step *s, uint32_t slot) {
+    narc_contacts *const c = s->contacts;
+    if (!(c->flags[slot] & NARC_SLOT_CROSSED))
+        return;
+    c->flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
+    const narc_touch_event event = {
+        slot, (uint8_t)(c->marks[slot] & NARC_KINDS), 0, 0, id_of(s, c->a[slot]), id_of(s, c->b[slot])};
+    add_event(c, c->state[slot] & NARC_TOUCHING, event);
+}
+
+/* So few crossings change lists that are right but for these. */
+enum { FEW_CROSSINGS = 16 };
+
+static void mend_lists(const narc_contact_step *s) {
+    narc_contacts *const c = s->contacts;
+    narc_step_result *const r = &c->result;
+    const uint8_t *const flags = c->flags;
+    uint32_t crossed[FEW_CROSSINGS];
+    size_t count = 0;
+    for (size_t slot = 0; slot < c->slot_count && count < c->crossed_count; slot++) {
+        if (!(flags[slot] & NARC_SLOT_CROSSED))
+            continue;
+        size_t at = count++;
+        for (; at > 0 && is_before(c, (uint32_t)slot, crossed[at - 1]); at--)
+            crossed[at] = crossed[at - 1];
+        crossed[at] = (uint32_t)slot;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t slot = crossed[i], marks = c->marks[slot];
+        const bool touches = c->state[slot] & NARC_TOUCHING, is_sensor = marks & NARC_SENSOR;
+        note_crossing(s, slot);
+        if (is_sensor)
+            mend_list(c, c->sensors, &r->sensor_count, slot, touches);
+        else if (!(marks & NARC_RESTS))
+            mend_list(c, c->touching, &r->touching_count, slot, touches);
+    }
+    c->crossed_count = 0;
+}
+
 /* What touches, began and ended, in the order of pairs. */
 static void make_lists(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     narc_step_result *const r = &c->result;
     const uint32_t *const order = c->order;
     const uint8_t *const state = c->state, *const all_marks = c->marks;
-    uint8_t *const flags = c->flags;
+    const uint8_t *const flags = c->flags;
     uint32_t *const touching = c->touching;
     const size_t count = s->list->pairs.count;
     size_t touching_count = 0, sensor_count = 0;
@@ -84,13 +148,9 @@ static void make_lists(const narc_contact_step *s) {
         const uint32_t slot = order[k];
         const unsigned marks = all_marks[slot];
         const unsigned touches = state[slot] & NARC_TOUCHING;
-        if (flags[slot] & NARC_SLOT_CROSSED) {
-            flags[slot] &= (uint8_t)~NARC_SLOT_CROSSED;
-            const narc_touch_event event = {slot, (uint8_t)(marks & NARC_KINDS), 0,
-                                            0,    id_of(s, c->a[slot]),          id_of(s, c->b[slot])};
-            add_event(c, touches, event);
-        }
-        if (touches && marks & NARC_SENSOR)
+        if (flags[slot] & NARC_SLOT_CROSSED)
+            note_crossing(s, slot);
+        if (touches & (marks / NARC_SENSOR)) /* one is rare, the other one not */
             c->sensors[sensor_count++] = slot;
         touching[touching_count] = slot; /* as chance has it: without a branch */
         touching_count += touches & !(marks & (NARC_SENSOR | NARC_RESTS));
@@ -204,8 +264,10 @@ static narc_status carry_out(const narc_contact_step *s) {
     r->began_count = r->ended_count = 0;
     if (!s->list->kept)
         list_parted(s);
-    if (c->crossed_count > 0 || r->ended_count > 0 || !c->lists_known)
+    if (c->crossed_count > FEW_CROSSINGS || r->ended_count > 0 || !c->lists_known)
         make_lists(s);
+    else if (c->crossed_count > 0)
+        mend_lists(s);
     gather_events(c);
     narc_show_arrays(c);
     r->skipped = s->list->skipped;
@@ -218,8 +280,8 @@ narc_status narc_update_contacts(narc_contacts *contacts, const narc_shapes *sha
     narc_status status = check_step(contacts, shapes, step, out_result, error);
     if (status != NARC_OK)
         return status;
-    narc_contact_step s = {contacts, shapes, step,
-                           NULL,     error,  shapes->piece_count > shapes->plane_count || step->run.base};
+    const bool has_ground = NARC_PIECES && (shapes->piece_count > shapes->plane_count || step->run.base);
+    narc_contact_step s = {contacts, shapes, step, NULL, error, has_ground};
     const narc_asked asked = describe_asking(step);
     contacts->again = !are_asked_alike(&asked, &contacts->last);
     contacts->partners_listed = false;

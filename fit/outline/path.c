@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "error.h"
+#include "outline/ellipse.h"
 
 narc_status narc_create_path(narc_path **out_path) {
     if (!out_path)
@@ -139,4 +140,26 @@ narc_status narc_cubic_to(narc_path *path, const narc_point *control_1, const na
 
 narc_status narc_arc_to(narc_path *path, const narc_point *middle, const narc_point *point, narc_error *error) {
     return add_move(path, NARC_ARC_MOVE + 2, (const narc_point *const[]){middle, point}, error);
+}
+
+narc_status narc_ellipse_to(narc_path *path, const narc_point *center, const narc_point *u, const narc_point *v,
+                            double from, double to, const narc_point *point, narc_error *error) {
+    if (!path || path->move_count == 0 || !center || !u || !v || !point)
+        return add_move(path, 1, (const narc_point *const[]){center && u && v ? point : NULL}, error);
+    if (!(fabs(to - from) <= 2 * PI * (1 + 1e-9)))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, to - from, "from %g to %g is more than a turn", from, to);
+    const narc_path_mark mark = narc_mark_path(path);
+    const ellipse_part part = divide_ellipse(&(ellipse){*center, *u, *v}, from, to);
+    narc_status status = NARC_OK;
+    for (double k = 0; k < part.count && !status; k++) {
+        const narc_point begin = path->points[path->point_count - 1];
+        const narc_point end = k + 1 < part.count ? end_step(&part, k) : *point, middle = halve_step(&part, k);
+        narc_point bend[2];
+        bend_step(&part, k, begin, end, bend);
+        status =
+            part.round ? narc_arc_to(path, &middle, &end, error) : narc_cubic_to(path, &bend[0], &bend[1], &end, error);
+    }
+    if (status)
+        narc_rewind_path(path, mark);
+    return status;
 }

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ellipse.h"
 #include "error.h"
 #include "lines.h"
 #include "number.h"
+#include "outline/ellipse.h"
 #include "outline/path.h"
 #include "outline/vector.h"
 #include "read/dxf_entities.h"

@@ -267,14 +267,24 @@ static narc_status find_scale(const struct subject *of, double *out_scale, narc_
 
 /* ---------------------------------------------------------------------------- the outline */
 
-/* Which of a row's bytes are at least so large. */
+/* Which of up to 8 bytes are at least so large. Most are all 0 or all 255. */
+static uint64_t list_bytes(const unsigned char *bytes, size_t count, int least) {
+    uint64_t all = 0, listed = 0;
+    if (count == sizeof all) {
+        memcpy(&all, bytes, sizeof all);
+        if (all == 0 || all == UINT64_MAX)
+            return all & 255;
+    }
+    for (size_t k = 0; k < count; k++)
+        listed |= (uint64_t)(bytes[k] >= least) << k;
+    return listed;
+}
+
+/* And of a row's. */
 static void list_row(const unsigned char *row, size_t width, int least, uint64_t *out) {
-    for (size_t x = 0; x < width; x += 64) {
-        const size_t count = width - x < 64 ? width - x : 64;
-        uint64_t word = 0;
-        for (size_t k = 0; k < count; k++)
-            word |= (uint64_t)(row[x + k] >= least) << k;
-        out[x / 64] = word;
+    for (size_t x = 0; x < width; x += 8) {
+        const uint64_t listed = list_bytes(row + x, width - x < 8 ? width - x : 8, least);
+        out[x / 64] = x % 64 ? out[x / 64] | listed << x % 64 : listed;
     }
 }
 

@@ -14,11 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ellipse.h"
 #include "error.h"
 #include "outline/crossings.h"
+#include "outline/ellipse.h"
 #include "outline/path.h"
-#include "outline/vector.h"
 
 /* A point (x, y) goes to x a + y b + c. */
 struct frame {
@@ -112,20 +111,13 @@ static void quadratic_to(struct reader *r, narc_point p, narc_point end) {
 /* The part of an ellipse from one parameter to another, where the pen is, to `end`. */
 static void ellipse_to(struct reader *r, const ellipse *e, double from, double to, narc_point end) {
     const struct frame straight = {r->frame.a, r->frame.b, {0, 0}};
-    const ellipse placed = {place(&r->frame, e->center), place(&straight, e->u), place(&straight, e->v)};
-    const ellipse_part part = divide_ellipse(&placed, from, to);
-    narc_point p = place(&r->frame, r->pen);
-    for (double k = 0; k < part.count; k++) {
-        const narc_point q = k + 1 < part.count ? end_step(&part, k) : place(&r->frame, end);
-        narc_point c[2] = {halve_step(&part, k)};
-        begin(r);
-        if (!part.round)
-            bend_step(&part, k, p, q, c);
-        note(r, part.round ? narc_arc_to(r->path, &c[0], &q, r->error)
-                           : narc_cubic_to(r->path, &c[0], &c[1], &q, r->error));
-        p = q;
-        r->pen = end;
-    }
+    const narc_point c = place(&r->frame, e->center), u = place(&straight, e->u), v = place(&straight, e->v),
+                     p = place(&r->frame, end);
+    if (from == to)
+        return;
+    begin(r);
+    note(r, narc_ellipse_to(r->path, &c, &u, &v, from, to, &p, r->error));
+    r->pen = end;
 }
 
 static void add_shape(struct reader *r, bool even_odd) {

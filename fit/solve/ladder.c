@@ -27,7 +27,7 @@ static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *run
     const size_t n = rung->count, starts = ladder->starts;
     if (starts)
         return (narc_effort){n <= MANY_ARCS ? starts : (starts + 3) / 4, .exchanges = 1, .round = ladder->round};
-    if (ladder->quick)
+    if (ladder->quick || (ladder->fewest && rung->family != ladder->family))
         return (narc_effort){n <= FEW_ARCS ? QUICK_STARTS[n] : 1, .exchanges = n <= MANY_ARCS, .quick = true};
     const bool plain = rung->family == NARC_FIT_N_ARC && rung->goal == NARC_FIT_BOUND_AREA;
     const size_t most = plain ? USUAL_STARTS : STARTS_OF_OTHERS;
@@ -40,7 +40,8 @@ static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *run
  * time. */
 static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_rung *out) {
     size_t count = 0;
-    if (rung->count > least_count(rung->family))
+    if (rung->count > least_count(rung->family) && (!ladder->fewest || rung->goal != NARC_FIT_BOUND_DISTANCE ||
+                                                    ladder->found[rung->family][rung->goal][rung->count - 1]))
         out[count++] = (narc_rung){rung->family, rung->goal, rung->count - 1};
     if (rung->goal == NARC_FIT_BOUND_DISTANCE || rung->goal == NARC_FIT_DIFFERENCE)
         out[count++] = (narc_rung){rung->family, NARC_FIT_DISTANCE, rung->count};

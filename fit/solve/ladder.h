@@ -24,7 +24,10 @@ typedef struct narc_ladder {
     double min_radius, max_radius; /* of arcs, in units of the hull's radius */
     unsigned starts;               /* 0: the usual number */
     bool quick;                    /* fewer, and less of each */
-    unsigned round;                /* of searches from as many starts: each from other random ones */
+    bool fewest;            /* for a tolerance: what bounds builds on fewer arcs only if these were asked for, and
+                                      other families are searched quickly */
+    narc_fit_family family; /* the one that is asked for */
+    unsigned round;         /* of searches from as many starts: each from other random ones */
     narc_progress *progress;
     narc_ranking *found[LADDER_FAMILIES][LADDER_GOALS][MAX_CHAIN + 1]; /* those that were searched for */
 } narc_ladder;

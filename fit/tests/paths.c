@@ -133,4 +133,34 @@ TEST(keeps_repeated_points) {
     narc_destroy_path(path);
 }
 
+/* A quarter of a slanted ellipse, a whole circle; the points of both fulfil their equations. */
+TEST(draws_parts_of_ellipses) {
+    static const narc_point center = {2, 3}, u = {4, 1}, v = {-1, 2}, start = {6, 4}, end = {1, 5};
+    static const narc_point along = {3, 0}, up = {0, 3}, side = {5, 3}, left = {-7, 0};
+    narc_path *path = make_path();
+    narc_error error;
+    expect_error(narc_ellipse_to(path, &center, &u, &v, 0, 1, &end, &error), NARC_ERROR_ARGUMENT, &error, "no contour");
+    expect_ok(narc_move_to(path, &start, &error), &error);
+    expect_ok(narc_ellipse_to(path, &center, &u, &v, 0, PI / 2, &end, &error), &error);
+    expect_ok(narc_move_to(path, &side, &error), &error);
+    expect_ok(narc_ellipse_to(path, &center, &along, &up, 0, -2 * PI, &side, &error), &error);
+    expect_error(narc_ellipse_to(path, &center, &u, &v, 0, 7, &end, &error), NARC_ERROR_ARGUMENT, &error, "a turn");
+    expect_error(narc_ellipse_to(path, &center, &u, &v, 0, NAN, &end, &error), NARC_ERROR_ARGUMENT, &error, "a turn");
+    expect_error(narc_ellipse_to(path, &center, NULL, &v, 0, 1, &end, &error), NARC_ERROR_ARGUMENT, &error, "NULL");
+    expect_error(narc_ellipse_to(path, &center, &(narc_point){2e9, 0}, &v, 0, 1, &left, &error), NARC_ERROR_SIZE,
+                 &error, "control point");
+    narc_contours contours;
+    expect_ok(narc_flatten_path(path, 1e-4, &contours, &error), &error);
+    assert_int_equal(contours.count, 2);
+    assert_true(contours.ends[0] > 20 && contours.ends[1] > contours.ends[0] + 100);
+    for (size_t k = 0; k < contours.point_count; k++) {
+        const double x = contours.points[k].x - 2, y = contours.points[k].y - 3, s = (2 * x + y) / 9,
+                     t = (4 * y - x) / 9;
+        assert_true(fabs(k < contours.ends[0] ? hypot(s, t) - 1 : hypot(x, y) / 3 - 1) < 1e-10);
+    }
+    assert_memory_equal(&contours.points[contours.ends[0] - 1], &end, sizeof end);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+}
+
 TEST_MAIN("paths")

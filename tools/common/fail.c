@@ -36,20 +36,20 @@ static size_t print_place(char *line, const char *path, size_t line_number) {
                                 : snprintf(line, LINE_SIZE, "narc: %.*s: ", LINE_SIZE / 2, shown));
 }
 
-/* Makes one line of UTF-8 of `line`, and prints it; the last one of the command behind those that were held. */
+/* Makes one line of UTF-8 of `line`, and prints it; before a last one what was held. */
 static void print_line(char *line, bool last) {
-    narc_make_printable(line);
     if (holding && !last)
         return;
-    hide_progress();
-    for (size_t i = 0; holding && i < message_count; i++) {
-        char held[LINE_SIZE];
-        const size_t used = print_place(held, messages[i].path, messages[i].line);
-        snprintf(held + used, sizeof held - used, "%s", messages[i].text);
-        narc_make_printable(held);
-        fprintf(stderr, "%s\n", held);
-    }
+    const size_t held = holding ? message_count : 0;
     holding = false;
+    for (size_t i = 0; i < held; i++) {
+        char before[LINE_SIZE];
+        const size_t used = print_place(before, messages[i].path, messages[i].line);
+        snprintf(before + used, sizeof before - used, "%s", messages[i].text);
+        print_line(before, true);
+    }
+    narc_make_printable(line);
+    hide_progress();
     fprintf(stderr, "%s\n", line);
 }
 
@@ -74,15 +74,18 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     abandon();
 }
 
-/* A file that is given twice tells the same twice. */
-static void keep_told(const char *path, size_t line, bool is_error, const char *text) {
-    for (size_t i = 0; i < message_count; i++)
-        if (messages[i].line == line && messages[i].is_error == is_error && strcmp(messages[i].text, text) == 0 &&
-            strcmp(messages[i].path, path) == 0)
-            return;
+/* False if it was told before, as of a file that is given twice. */
+static bool keep_told(const char *path, size_t line, bool is_error, const char *text) {
+    for (size_t i = 0; i < message_count; i++) {
+        const told *other = &messages[i];
+        if (other->line == line && other->is_error == is_error && strcmp(other->path, path) == 0 &&
+            strcmp(other->text, text) == 0)
+            return false;
+    }
     messages = grow(messages, &message_capacity, message_count + 1, sizeof *messages);
     messages[message_count++] =
         (told){join_text(path, strlen(path), ""), line, is_error, join_text(text, strlen(text), "")};
+    return true;
 }
 
 void report_at(const char *path, size_t line_number, const char *format, ...) {
@@ -92,11 +95,13 @@ void report_at(const char *path, size_t line_number, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line, !going_on);
-    keep_told(path, line_number, true, line + used);
-    report_count++;
-    if (!going_on)
+    if (!going_on) {
+        print_line(line, true);
         abandon();
+    }
+    if (keep_told(path, line_number, true, line + used))
+        print_line(line, false);
+    report_count++;
 }
 
 void warn_at(const char *path, const char *format, ...) {
@@ -106,8 +111,8 @@ void warn_at(const char *path, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    print_line(line, false);
-    keep_told(path, 0, false, line + used);
+    if (keep_told(path, 0, false, line + used))
+        print_line(line, false);
 }
 
 const told *list_told(size_t *out_count) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "fail.h"
+#include "output.h"
 #include "text.h"
 
 static option *find_option(option *options, size_t count, const char *name, size_t length) {
@@ -39,6 +40,8 @@ static int parse_option(int argc, char **argv, option *options, size_t count) {
         found->value = argv[1];
     if (!found->value || !*found->value)
         fail("%s needs a value", found->name);
+    if (found->takes_value == OUTPUT_FILE && strstr(found->value, NAME_MARK))
+        fail("%s is one file, it takes no " NAME_MARK, found->name);
     return equals ? 1 : 2;
 }
 

@@ -9,13 +9,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What an option may take besides nothing (false) and a value (true): the name of a file that is read, as operands are. "-"
- * may be given for one of all these. */
-enum { INPUT_FILE = 2 };
+/* What an option may take besides nothing (false) and a value (true): the name of a file that is read, as operands are, "-"
+ * for one of all these; the name of one that is written, without {name}. */
+enum { INPUT_FILE = 2, OUTPUT_FILE };
 
 typedef struct option {
     const char *name;     /* with its dashes */
-    unsigned takes_value; /* false, true or INPUT_FILE */
+    unsigned takes_value; /* false, true, INPUT_FILE or OUTPUT_FILE */
     const char *value;    /* NULL: not given; "" for a flag that was */
 } option;
 

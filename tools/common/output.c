@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,25 +16,15 @@
 typedef struct output output;
 struct output {
     output *volatile next;
-    char *path;                      /* as the user gave it */
-    char *target;                    /* the file to replace, symbolic links followed; NULL: written directly */
-    char *volatile temporary;        /* NULL: nothing to remove. The signal handler reads it. */
-    FILE *file;                      /* NULL: not opened yet, or written and closed */
-    uint64_t path_hash, target_hash; /* of many most differ */
+    char *path;               /* as the user gave it */
+    char *target;             /* the file to replace, symbolic links followed; NULL: written directly */
+    char *volatile temporary; /* NULL: nothing to remove. The signal handler reads it. */
+    FILE *file;               /* NULL: not opened yet, or written and closed */
 };
 
 static output *volatile first;
-static output *last, *opened; /* last in the list; the one that was opened last */
 static char **inputs;
 static size_t input_count, input_capacity;
-static char *writable; /* the folder that was found to be so */
-
-static uint64_t hash(const char *text) {
-    uint64_t value = 14695981039346656037U;
-    while (*text)
-        value = (value ^ (unsigned char)*text++) * 1099511628211U;
-    return value;
-}
 
 /* The file that a path means, symbolic links followed, always by the same name; the caller's to free. NULL, and errno, if
  * neither it nor its folder exists. */
@@ -80,31 +69,30 @@ static void check_target(const output *out) {
         if (strcmp(out->target, inputs[i]) == 0)
             fail("%s: this output is one of the inputs", out->path);
     for (const output *other = first; other; other = other->next)
-        if (other->target && out->target_hash == other->target_hash && strcmp(out->target, other->target) == 0)
+        if (other->target && strcmp(out->target, other->target) == 0)
             fail("%s: two outputs are the same file", out->path);
 }
 
 static output *find_output(const char *path) {
-    const uint64_t wanted = hash(path);
     output *out = first;
-    while (out && (out->path_hash != wanted || strcmp(out->path, path) != 0))
+    while (out && strcmp(out->path, path) != 0)
         out = out->next;
     return out;
 }
 
 static output *add_output(const char *path) {
-    output *out = allocate(1, sizeof *out);
-    *out = (output){.path = join_text(path, strlen(path), ""), .path_hash = hash(path)};
+    output *out = allocate(1, sizeof *out), *volatile *end = &first;
+    *out = (output){.path = join_text(path, strlen(path), "")};
     if (strcmp(path, "-") != 0 && !is_special(path)) {
         if (!(out->target = find_target(path)))
             fail("%s: %s", path, strerror(errno));
-        out->target_hash = hash(out->target);
         check_target(out);
     }
     if (!first)
         watch_signals(discard_outputs);
-    *(first ? &last->next : &first) = out;
-    last = out;
+    while (*end)
+        end = &(*end)->next;
+    *end = out;
     return out;
 }
 
@@ -112,10 +100,7 @@ void reserve_output(const char *path) {
     if (find_output(path))
         fail("%s: two outputs are the same file", path);
     output *out = add_output(path);
-    const size_t length = out->target ? folder_length(out->target) : 0;
-    const bool is_known = writable && strlen(writable) == length && strncmp(writable, out->target, length) == 0;
-    char *there = out->target ? find_real_path(out->target) : NULL;
-    if (out->target && (there || !is_known)) {
+    if (out->target) {
         FILE *file = open_temporary(out->target, &out->temporary);
         if (!file)
             fail("%s: %s", path, strerror(errno));
@@ -124,10 +109,7 @@ void reserve_output(const char *path) {
         remove_file(name);
         out->temporary = NULL;
         free(name);
-        free(writable);
-        writable = join_text(out->target, length, "");
     }
-    free(there);
 }
 
 FILE *open_output(const char *path) {
@@ -139,19 +121,13 @@ FILE *open_output(const char *path) {
                                        : open_file(path, "wb");
     if (!out->file)
         fail("%s: %s", path, strerror(errno));
-    opened = out;
     return out->file;
 }
 
-static output *find_file(const FILE *file) {
-    output *out = opened && opened->file == file ? opened : first;
+void flush_output(FILE *file) {
+    const output *out = first;
     while (out && out->file != file)
         out = out->next;
-    return out;
-}
-
-void flush_output(FILE *file) {
-    const output *out = find_file(file);
     const bool failed = ferror(file);
     if ((fflush(file) != 0 || failed) && out)
         fail("%s: %s", file == stdout ? "standard output" : out->path, strerror(errno));
@@ -166,9 +142,9 @@ static void close_file(output *out) {
 }
 
 void close_output(FILE *file) {
-    output *out = file == stdout ? NULL : find_file(file);
-    if (out)
-        close_file(out);
+    for (output *out = first; out; out = out->next)
+        if (out->file == file && file != stdout)
+            close_file(out);
 }
 
 FILE *finish_outputs(void) {
@@ -201,7 +177,6 @@ void commit_outputs(void) {
         if (out->temporary && !replace_file(out->temporary, out->target))
             fail("%s: %s", out->path, strerror(errno));
         first = out->next; /* before a signal finds it freed */
-        opened = NULL;
         free(out->temporary);
         free(out->target);
         free(out->path);
@@ -209,15 +184,9 @@ void commit_outputs(void) {
     }
 }
 
-static const char mark[] = "{name}";
-
-void refuse_pattern(const char *option, const char *path) {
-    if (path && strstr(path, mark))
-        fail("%s is one file, it takes no {name}", option);
-}
-
 char *expand_pattern(const char *pattern, const char *name) {
     static const char odd[] = "/\\:*?<>|";
+    static const char mark[] = NAME_MARK;
     if (!strstr(pattern, mark))
         return NULL;
     const bool is_dots = !name[strspn(name, ".")]; /* which are folders */

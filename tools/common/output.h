@@ -20,11 +20,10 @@ FILE *open_output(const char *path);
 void reserve_output(const char *path);
 void close_output(FILE *file);
 
+#define NAME_MARK "{name}"
+
 /* A path with a body's name for each {name}, in which what paths cannot have is _, to be freed; NULL: it has no {name}. */
 char *expand_pattern(const char *pattern, const char *name);
-
-/* Of an option that names one file: {name} is an error. The path may be NULL. */
-void refuse_pattern(const char *option, const char *path);
 
 /* Writes out what an output has so far, and checks it: after the last line of a file, while the reason why it cannot be
  * written is known. */

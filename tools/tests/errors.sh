@@ -26,6 +26,9 @@ fails "unknown command" "narc: .*'fly'" fly
 fails "unknown option" "narc: .*'--fly'" --fly
 fails "unknown option of a command" "narc: .*'--fly'" collide $known --fly --out new.csv
 fails "missing value" "narc: --out needs a value" collide $known --out
+for option in --out --picture; do
+    fails "a pattern for one file" "narc: $option is one file, it takes no {name}" collide $known $option "a-{name}.svg"
+done
 fails "option for a value" "narc: --out needs a value" collide --shapes shapes.json --out --bodies bodies.csv
 fails "value for a flag" "narc: --all takes no value" collide $known --all=1
 fails "option twice" "narc: --shapes is given twice" collide --shapes shapes.json --shapes shapes.json

@@ -50,6 +50,12 @@ KNOWN = {"disc": ("circle", 2.25 * math.pi, [3, 4]), "box": ("box", 8, [1, -7]),
 for form in ("tmj", "box2d", "phaser", *(["tmx"] if SVG else [])):
     narc(0, "export", "shapes.json", "--to", form, "--tolerance", "1e-5", "--out", "out." + form)
     same(fitted("out." + form), KNOWN)
+tiled = shutil.which("tiled")
+if tiled and SVG: # as Tiled itself reads it
+    subprocess.run([tiled, "--export-map", "json", "out.tmx", "tiled.tmj"], check=True, capture_output=True, timeout=120, env={**os.environ, "HOME": folder, "QT_QPA_PLATFORM": "offscreen"})
+    same(fitted("tiled.tmj"), KNOWN)
+else:
+    print("skipped: Tiled, without tiled")
 
 # Tiled's own: turned about the upper left corner, clockwise; ellipses; tiles, whose lower left corner is 0, 0; what is no outline.
 TILESET = {"type": "tileset", "tileheight": 32, "tilewidth": 32, "tiles": [
@@ -82,6 +88,8 @@ if SVG:
 </tileset>""")
     same(fitted("set.tsx"), TILES)
 write("none.tmj", {"type": "map", "layers": []})
+write("pills.tmj", {"type": "map", "layers": [{"objects": [{"name": "lies", "x": 1, "y": 2, "width": 6, "height": 2, "rotation": 90, "capsule": True}, {"name": "stands", "width": 2, "height": 6, "capsule": True}, {"name": "round", "width": 4, "height": 4, "capsule": True}, {"name": "disc", "width": 4, "height": 4, "ellipse": True}]}]})
+same(fitted("pills.tmj"), {**{name: ("circle", 4 * math.pi, [2, -2]) for name in ("round", "disc")}, "lies": ("capsule", 8 + math.pi, [0, -5]), "stands": ("capsule", 8 + math.pi, [1, -3])})
 assert narc(2, "fit", "none.tmj", "--arcs", "3").stderr == "narc: none.tmj: it has no collision objects\n"
 write("wrong.json", {"type": "map", "layers": [{"objects": [{"polygon": [{"x": 1e300, "y": 0}]}]}]})
 assert narc(2, "fit", "wrong.json", "--arcs", "3").stderr.startswith("narc: wrong.json: ")
@@ -135,26 +143,17 @@ if SVG:
             (tmx('<object name="flat"><polyline points="0,0 1,0 2,0"/></object>' + BOX), "broken5.tmx: 'flat': ")), 0):
         write("broken%d.tmx" % number, text)
         assert re.match("(narc: )?(%s)" % message, said := narc(2, "fit", "broken%d.tmx" % number, "--arcs", "3").stderr), (message, said)
-    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object/><object width="-4" height="2"/>'))
-    assert "some.tmx: 'a': 2 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
-
-    # Capsules, whose ends are half circles; templates beside the file, which objects add to.
-    capsule = '<capsule/></object>'
-    write("pills.tmx", tmx('<object name="lying" x="1" y="2" width="6" height="2">' + capsule + '<object name="turned" width="2" height="6" rotation="90">' + capsule +
-                           '<object name="round" width="4" height="4">' + capsule))
-    area = 8 + math.pi
-    same(fitted("pills.tmx"), {"lying": ("capsule", area, [4, -3]), "turned": ("capsule", area, [-3, -1]), "round": ("circle", 4 * math.pi, [2, -2])})
-    os.mkdir("kit")
-    write("kit/post.tx", '<template><object name="post" width="2" height="6">' + capsule + "</template>")
-    write("kit/roof.tj", {"type": "template", "object": {"name": "roof", "polygon": [{"x": 0, "y": 0}, {"x": 6, "y": 0}, {"x": 3, "y": -6}]}})
-    write("kit.tmx", tmx('<object template="kit/post.tx" x="10" y="20"/><object template="kit/post.tx" name="tall" height="10"/><object template="kit/roof.tj" x="2" y="10"/>'))
-    same(fitted("kit.tmx"), {"post": ("capsule", area, [11, -23]), "tall": ("capsule", 16 + math.pi, [1, -5]), "roof": ("polygon", 18, [5, -8])})
-    same(fitted("kit/post.tx"), {"post": ("capsule", area, [1, -3])})
-    for template, message in ("absent.tx", "absent.tx: No such file"), ("kit.tmx", "kit.tmx: it is no template"), ("pills.svg", "pills.svg: "):
-        write("lost.tmx", tmx('<object template="%s"/>' % template + BOX))
-        write("pills.svg", "<svg/>")
-        assert message in narc(2, "fit", "lost.tmx", "--arcs", "3").stderr, template
-        assert message in narc(1, "fit", "lost.tmx", "--arcs", "3", "--keep-going", "--out", "lost.json").stderr, template
+    write("some.tmx", '<?xml version="1.0"?><!-- <svg> -->' + tmx(BOX + '<object width="-4" height="2"/>'))
+    assert "some.tmx: 'a': 1 objects without width and height" in narc(0, "fit", "some.tmx", "--arcs", "3", "--out", "some.json").stderr
+    os.mkdir("kinds")
+    write("kinds/pill.tx", '<?xml version="1.0" encoding="UTF-8"?><template><object name="pill" width="6" height="2"><capsule/></object></template>')
+    write("kinds/wide.tj", {"type": "template", "object": {"name": "wide", "width": 8, "height": 2, "rotation": 0}})
+    write("kinds.tmx", tmx('<object template="kinds/pill.tx" x="10" y="20"/><object template="kinds/wide.tj" name="tall" x="1" y="2" height="9"/>'))
+    PILL = ("capsule", 8 + math.pi, [13, -21])
+    same(fitted("kinds.tmx"), {"pill": PILL, "tall": ("box", 72, [5, -6.5])})
+    for inside, message in (('<object template="kinds/absent.tx"/>', "kinds/absent.tx: No such file"), ('<object template="a.tmx"/>', "a.tmx: it is no template of an object")):
+        write("a.tmx", tmx(inside))
+        assert message in narc(2, "fit", "a.tmx", "--arcs", "3").stderr
     write("moved.tmx", '<map><group offsetx="100" offsety="50"><objectgroup name="a" offsetx="7">%s</objectgroup></group></map>' % BOX)
     (_, _, middle), = fitted("moved.tmx").values()
     assert math.dist(middle, [109, -51]) < 0.1, middle
@@ -175,30 +174,31 @@ write("wrong.json", {"shapes": [{"name": name, "circle": 2} for name in ("walk-1
 for cells, message in ("16x16", "shapes 'walk-1' and 'jump-1' are the same cell"), ("64x64", "shape 'walk-1' is cell 1 of a sheet that has 0"):
     assert message in narc(2, "export", "wrong.json", "--to", "tsj", "--image", "art/sheet.png", "--grid", cells, "--tolerance", "0.1").stderr
 
-# A Godot resource for each body; one of two pieces has none.
-write("plain.json", {"shapes": [{"name": "a", "box": {"width": 4, "height": 2}, "origin": [1, 0]}, {"name": "b", "circle": 1, "origin": [9, 0]}, {"name": "c", "arcs": [{"center": [0, 2], "radius": 1, "start": 0, "end": math.pi}, {"center": [0, -2], "radius": 1, "start": -math.pi, "end": 0}]}]})
-for form, words in ("tres", ("format=3", "Packed")), ("tres3", ("format=2", "Pool")):
+# A Godot resource for each body, plain where its numbers say all; one of two pieces has none.
+write("plain.json", {"shapes": [{"name": "far", "box": {"width": 4, "height": 2}, "origin": [1, 0]}, {"name": "box", "box": {"width": 4, "height": 2}}, {"name": "ball", "circle": 1.5},
+                                {"name": "up", "arcs": [{"center": [0, y], "radius": 1, "start": start, "end": start + math.pi} for y, start in ((1.5, 0), (-1.5, -math.pi))]}, {"name": "flat", "capsule": {"length": 3, "radius": 1}}]})
+NUMBER = r"[-\d., ]*"
+for form, words, box, height in ("tres", r"format=3", r"size = Vector2\(4, 2\)", 5), ("tres3", r"format=2", r"extents = Vector2\(2, 1\)", 3):
+    polygon = r"ConvexPolygonShape2D", r"points = P\w+Vector2Array\(%s\)" % NUMBER
     narc(0, "export", "plain.json", "--to", form, "--tolerance", "0.1", "--out", "{name}." + form)
-    with open("a." + form, encoding="utf-8") as file:
-        text = file.read()
-    assert re.fullmatch(r'\[gd_resource type="ConvexPolygonShape2D" %s\]\n\n\[resource\]\npoints = %sVector2Array\(([-\d., ]*)\)\n\n' % words, text), text
+    for name, (kind, value) in {"far": polygon, "flat": polygon, "box": ("RectangleShape2D", box), "ball": ("CircleShape2D", "radius = 1.5"),
+                                "up": ("CapsuleShape2D", r"radius = 1\nheight = %d" % height)}.items():
+        with open(name + "." + form, encoding="utf-8") as file:
+            text = file.read()
+        assert re.fullmatch(r'\[gd_resource type="%s" %s\]\n\n\[resource\]\n%s\n\n' % (kind, words, value), text), text
     assert "a file of %s holds one shape" % form in narc(2, "export", "shapes.json", "--to", form, "--tolerance", "0.1", "--out", "{name}.x").stderr
     assert "a file of %s holds one shape" % form in narc(2, "export", "plain.json", "--to", form, "--tolerance", "0.1").stderr
-    narc(0, "export", "plain.json", "--to", form, "--origin", "center", "--tolerance", "0.1", "--out", "{name}-plain." + form)
-    size, height = ("size = Vector2(4, 2)", 6) if form == "tres" else ("extents = Vector2(2, 1)", 4)
-    for name, kind, lines in ("a", "Rectangle", size), ("b", "Circle", "radius = 1"), ("c", "Capsule", "radius = 1\nheight = %d" % height):
-        with open(name + "-plain." + form, encoding="utf-8") as file:
-            assert file.read() == '[gd_resource type="%sShape2D" %s]\n\n[resource]\n%s\n\n' % (kind, words[0], lines), name
 godot = shutil.which("godot3-server")
 if not godot:
     print("skipped: Godot 3, without godot3-server")
 else:
     os.mkdir("game")
-    shutil.copy("b.tres3", "game/b.tres")
+    for name in "far", "up":
+        shutil.copy(name + ".tres3", "game/%s.tres" % name)
     write("game/project.godot", "config_version=4\n")
-    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tvar shape = load('res://b.tres')\n\tprint('SHAPE ', shape.get_class(), ' ', shape.points.size())\n\tquit()\n")
+    write("game/list.gd", "extends SceneTree\nfunc _init():\n\tfor name in ['far', 'up']:\n\t\tprint('SHAPE ', load('res://' + name + '.tres').get_class())\n\tprint('HEIGHT ', load('res://up.tres').height)\n\tquit()\n")
     listed = subprocess.run([godot, "--path", "game", "-s", "list.gd"], capture_output=True, text=True, timeout=120, env={**os.environ, "HOME": folder})
-    assert re.search(r"^SHAPE ConvexPolygonShape2D \d+$", listed.stdout, re.M), listed
+    assert re.search(r"^SHAPE ConvexPolygonShape2D\nSHAPE CapsuleShape2D\nHEIGHT 3$", listed.stdout, re.M), listed
 
 # DXF: layers and arcs come back; a spline with weights is named.
 narc(0, "export", "shapes.json", "--to", "dxf", "--out", "out.dxf")

@@ -54,6 +54,14 @@ assert (el["kind"], el["arcs"], el["edges"], el["out"]) == ("chain", 0, 6, "-") 
 done = narc(2, "fit", "in.csv", "--keep-going", "--arcs", "3", "--report", "json", "--out", "new.json")
 assert json.loads(done.stdout)["inputs"][0]["errors"] and done.stderr.endswith("no outline is left to fit\n")
 
+with open("thin.tmj", "w", encoding="utf-8") as file:
+    json.dump({"type": "map", "layers": [{"name": "a", "objects": [{"width": 1, "height": 1}, {"width": 0, "height": 1}]}]}, file)
+done = narc(2, "fit", "thin.tmj", "in.csv", "--arcs", "3", "--report", "json") # a report that does not come leaves the lines
+assert done.stderr.startswith("narc: thin.tmj: 'a': 1 objects without") and done.stderr.splitlines()[1].startswith("in.csv:2: "), done
+done = narc(0, "fit", "el.csv", "thin.tmj", "el.csv", "thin.tmj", "--arcs", "3", "--report", "json", "--out", "new.json") # told once
+assert [(len(at["shapes"]), len(at["warnings"])) for at in json.loads(done.stdout)["inputs"]] == [(1, 0), (1, 1)] * 2, done
+os.remove("new.json")
+
 # Each body a scene; a pattern without a folder, and two bodies in one file, are told before anything is made.
 narc(0, "fit", "el.csv", "disc.csv", "--parts", "2", "--tolerance", "0.2", "--out", "all.json")
 done = narc(0, "export", "all.json", "--to", "godot3", "--out", "out/{name}.tscn", "--tolerance", "0.1", "--report", "json")
@@ -87,21 +95,6 @@ for pattern in "deep/{name}/{name}.svg", "{name}":
     assert [body["pieces"] for body in bodies] == [1, 1, 1, 2, 1] and all(os.path.isfile(body["out"]) for body in bodies)
 os.chdir("..")
 assert "--picture is one file" in narc(2, "fit", "el.csv", "--arcs", "3", "--out", "new.json", "--picture", "{name}.png").stderr
-with open("bodies.csv", "w", encoding="utf-8") as file:
-    file.write("shape,x,y,angle\ndisc,0,0,0\n")
-for command in ["collide", "--shapes", "all.json", "--bodies", "bodies.csv"], ["cast", "--shapes", "all.json", "--bodies", "bodies.csv", "--rays", "bodies.csv"], ["scene", "--shapes", "all.json", "--bodies", "2", "--density", "0.1", "--seed", "1"]:
-    assert "--out is one file, it takes no {name}" in narc(2, *command, "--out", "{name}.csv").stderr, command
-    assert command[0] == "scene" or "--picture is one file" in narc(2, *command, "--picture", "{name}.svg").stderr, command
-
-# Of an input that is given twice each message is told once for each; what comes before a fatal error is not lost.
-with open("map.json", "w", encoding="utf-8") as file:
-    json.dump({"type": "map", "layers": [{"name": "a", "objects": [{"width": 4, "height": 2}, {"width": 4}]}]}, file)
-for at in json.loads(narc(0, "fit", "map.json", "map.json", "--arcs", "3", "--report", "json", "--out", "new.json").stdout)["inputs"]:
-    assert len(at["warnings"]) == 1, at
-os.remove("new.json")
-done = narc(2, "fit", "map.json", "in.csv", "--arcs", "3", "--report", "json")
-assert done.stdout == "" and done.stderr.count("\n") == 2, done
-assert "1 objects without" in done.stderr.splitlines()[0] and done.stderr.splitlines()[1].startswith("in.csv:2: "), done
 
 # What cannot be replaced is told before anything is fitted; a signal leaves all files or none.
 if os.sep == "/":

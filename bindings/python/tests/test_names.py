@@ -21,7 +21,7 @@ OWN = """create_shapes destroy_shapes create_index destroy_index create_contacts
 destroy_broad_phase get_layout get_constant find_layout write_layouts view_bodies openmp_workers copy_pairs status_name version
 reserve_shapes get_aabb""".split()
 # Fits read whole drawings, so a pen, one curve and lists of characters and layers are left out; readers of files have their places here.
-OWN += """create_path destroy_path release_contours release_parts release_chains close_font quadratic_to cubic_to arc_to
+OWN += """create_path destroy_path release_contours release_parts release_chains close_font quadratic_to cubic_to arc_to ellipse_to
 next_character fit_bezier list_dxf_layers find_named_shape destroy_shape_list""".split()
 # A library of its own, which wheels don't hold: other algorithms' answers, for those who compare them in C (docs/methods.md).
 METHODS = """create_methods refresh_methods destroy_methods method_name find_overlaps_by find_contacts_by""".split()

@@ -5,25 +5,16 @@
 #ifndef NARC_ELLIPSE_H
 #define NARC_ELLIPSE_H
 
-#include <math.h>
-#include <stdbool.h>
-
-#include "elementary.h"
-#include "narc_shapes.h"
+#include "outline/vector.h"
 
 /* center + cos t u + sin t v */
 typedef struct ellipse {
     narc_point center, u, v;
 } ellipse;
 
-/* Quarter turns, which t has no digits for, are exact. */
 static inline narc_point find_on(const ellipse *e, double t) {
-    const double nothing = 4e-16;
-    double cosine, sine;
-    narc_find_cosine(t, &cosine, &sine);
-    cosine = fabs(cosine) < nothing ? 0 : cosine;
-    sine = fabs(sine) < nothing ? 0 : sine;
-    return (narc_point){e->center.x + cosine * e->u.x + sine * e->v.x, e->center.y + cosine * e->u.y + sine * e->v.y};
+    const narc_point way = unit_at(t);
+    return along(along(e->center, way.x, e->u), way.y, e->v);
 }
 
 /* The part from one parameter to another, in equal steps. */
@@ -36,10 +27,10 @@ typedef struct ellipse_part {
 /* A cubic through a 32nd of half a turn is within 1e-12 of the ellipse; an arc turns by at most half a turn. What differs
  * from a circle by less than 1e-9 of its size is one. */
 static inline ellipse_part divide_ellipse(const ellipse *e, double from, double to) {
-    const double uu = e->u.x * e->u.x + e->u.y * e->u.y, vv = e->v.x * e->v.x + e->v.y * e->v.y,
-                 uv = e->u.x * e->v.x + e->u.y * e->v.y, nothing = 1e-9, half_turn = 3.14159265358979323846;
-    const bool round = fabs(uu - vv) <= nothing * (uu + vv) && fabs(uv) <= nothing * (uu + vv);
-    const double count = fmax(from != to, ceil(fabs(to - from) / (round ? half_turn : half_turn / 32) - nothing));
+    const double size = dot(e->u, e->u) + dot(e->v, e->v), nothing = 1e-9;
+    const bool round =
+        fabs(dot(e->u, e->u) - dot(e->v, e->v)) <= nothing * size && fabs(dot(e->u, e->v)) <= nothing * size;
+    const double count = fmax(from != to, ceil(fabs(to - from) / (round ? PI : PI / 32) - nothing));
     return (ellipse_part){*e, from, (to - from) / fmax(1, count), count, round};
 }
 
@@ -51,12 +42,10 @@ static inline narc_point halve_step(const ellipse_part *part, double k) {
     return find_on(&part->of, part->from + (k + 0.5) * part->step);
 }
 static inline void bend_step(const ellipse_part *part, double k, narc_point p, narc_point q, narc_point *out_controls) {
-    const double s = part->from + k * part->step, quarter = part->step / 4,
-                 reach = 4 * narc_sin(quarter) / narc_cos(quarter) / 3;
-    const ellipse *e = &part->of, leave = {p, {reach * e->v.x, reach * e->v.y}, {-reach * e->u.x, -reach * e->u.y}},
-                  arrive = {q, {-leave.u.x, -leave.u.y}, {-leave.v.x, -leave.v.y}};
-    out_controls[0] = find_on(&leave, s);
-    out_controls[1] = find_on(&arrive, s + part->step);
+    const ellipse slope = {{0, 0}, part->of.v, {-part->of.u.x, -part->of.u.y}};
+    const double s = part->from + k * part->step, reach = 4 * tangent(part->step / 4) / 3;
+    out_controls[0] = along(p, reach, find_on(&slope, s));
+    out_controls[1] = along(q, -reach, find_on(&slope, s + part->step));
 }
 
 #endif
