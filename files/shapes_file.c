@@ -211,22 +211,37 @@ static narc_status build_four_arc(reader *at, const cJSON *item, double radius, 
     return narc_build_four_arc(&form, out_arcs, out_count, error);
 }
 
+static narc_status build_half_plane(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                    narc_error *error) {
+    (void)radius, (void)out_arcs, (void)error;
+    if (!cJSON_IsTrue(item))
+        fail_value(at, item, "half_plane", "is not true");
+    *out_count = 0;
+    return NARC_OK;
+}
+
 static const struct {
     const char *key;
     bool takes_radius; /* a key "radius" may stand beside it */
     build_form *build;
 } forms[] = {
-    {"arcs", false, build_arcs},         {"points", true, build_points},    {"polygon", true, build_polygon},
-    {"circle", false, build_circle},     {"capsule", false, build_capsule}, {"box", false, build_box},
-    {"four_arc", false, build_four_arc},
+    {"arcs", false, build_arcs},         {"points", true, build_points},          {"polygon", true, build_polygon},
+    {"circle", false, build_circle},     {"capsule", false, build_capsule},       {"box", false, build_box},
+    {"four_arc", false, build_four_arc}, {"half_plane", false, build_half_plane},
 };
 enum { FORM_COUNT = sizeof forms / sizeof forms[0], CHAIN = FORM_COUNT, NO_FORM };
+
+static bool is_chain(const narc_named_shape *shape) {
+    return shape->form == NARC_FORM_OPEN_CHAIN || shape->form == NARC_FORM_CLOSED_CHAIN;
+}
 
 /* What files hold the store takes: a shape is added to it, of a chain it is asked. */
 static narc_status offer(narc_shapes *store, const narc_arc *arcs, size_t count, narc_form form, uint32_t *out_index,
                          narc_error *error) {
     if (form == NARC_FORM_SHAPE)
         return narc_add_shape(store, arcs, count, out_index, error);
+    if (form == NARC_FORM_HALF_PLANE)
+        return narc_add_half_plane(store, out_index, error);
     const narc_chain_options options = {.closed = form == NARC_FORM_CLOSED_CHAIN};
     size_t entries;
     const narc_status status = narc_add_chain(store, arcs, count, &options, NULL, 0, &entries, error);
@@ -348,7 +363,7 @@ static size_t find_form(reader *at, const cJSON *object) {
     }
     if (found == NO_FORM)
         fail_shape(at, NARC_ERROR_FORMAT, object, 0,
-                   "none of arcs, points, polygon, circle, capsule, box, four_arc and chain is there");
+                   "none of arcs, points, polygon, circle, capsule, box, four_arc, half_plane and chain is there");
     return found;
 }
 
@@ -380,6 +395,7 @@ static void fail_build(reader *at, const cJSON *item, const narc_error *error) {
 static const narc_arc *read_convex(reader *at, const cJSON *item, size_t form, double radius, narc_shapes *store,
                                    narc_arc *arcs, narc_named_shape *shape) {
     narc_error error;
+    shape->form = forms[form].build == build_half_plane ? NARC_FORM_HALF_PLANE : NARC_FORM_SHAPE;
     if (forms[form].build(at, item, radius, arcs, &shape->arc_count, &error) != NARC_OK ||
         (!at->status && offer(store, arcs, shape->arc_count, shape->form, &shape->index, &error) != NARC_OK))
         fail_build(at, item, &error);
@@ -424,8 +440,8 @@ static void keep_shape(reader *at, list *shapes, const char *name, const narc_ar
 }
 
 static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list *shapes) {
-    static const char *const keys[] = {"name",   "origin",  "arcs",     "points", "polygon", "circle", "box",
-                                       "radius", "capsule", "four_arc", "chain",  "user",    NULL};
+    static const char *const keys[] = {"name",   "origin",  "arcs",     "points", "polygon", "circle",     "box",
+                                       "radius", "capsule", "four_arc", "chain",  "user",    "half_plane", NULL};
     narc_named_shape *shape = &shapes->items[shapes->shown.count];
     snprintf(at->shape, sizeof at->shape, "shape %zu", shapes->shown.count);
     if (!cJSON_IsObject(object))
@@ -492,7 +508,7 @@ static list *read_list(reader *at, const narc_allocator *allocator, narc_shapes 
     if (!at->status)
         return shapes;
     for (size_t i = shapes->shown.count; i > 0; i--)
-        if (shapes->items[i - 1].form == NARC_FORM_SHAPE)
+        if (!is_chain(&shapes->items[i - 1]))
             narc_remove_shape(store, shapes->items[i - 1].index, NULL);
     narc_destroy_shape_list(&shapes->shown);
     return NULL;
@@ -619,7 +635,9 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
         put_name(to, shape->name);
         put_number(to, "\", \"origin\": [", shape->origin.x);
         put_number(to, ", ", shape->origin.y);
-        if (shape->form == NARC_FORM_SHAPE && put_plain(to, shape))
+        if (shape->form == NARC_FORM_HALF_PLANE)
+            put(to, "], \"half_plane\": true}");
+        if (shape->form == NARC_FORM_HALF_PLANE || (shape->form == NARC_FORM_SHAPE && put_plain(to, shape)))
             continue;
         put(to, shape->form == NARC_FORM_SHAPE        ? "], \"arcs\": ["
                 : shape->form == NARC_FORM_OPEN_CHAIN ? "], \"chain\": {\"closed\": false, \"arcs\": ["
@@ -640,7 +658,7 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
 
 /* Would the shape be read again? */
 static narc_status check_shape(const narc_named_shape *shape, size_t index, narc_shapes *store, narc_error *error) {
-    if (!shape->name || !shape->arcs)
+    if (!shape->name || (!shape->arcs && shape->form != NARC_FORM_HALF_PLANE))
         return narc_fail(error, NARC_ERROR_ARGUMENT, index, 0, "shape %zu: %s is NULL", index,
                          shape->name ? "arcs" : "name");
     const char *problem = check_name(shape->name, index);
@@ -650,7 +668,7 @@ static narc_status check_shape(const narc_named_shape *shape, size_t index, narc
     if (!isfinite(shape->origin.x) || !isfinite(shape->origin.y))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, index, shape->origin.x + shape->origin.y,
                          "shape '%s': origin is not finite", narc_make_excerpt(shape->name).text);
-    if ((unsigned)shape->form > NARC_FORM_CLOSED_CHAIN)
+    if ((unsigned)shape->form > NARC_FORM_HALF_PLANE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, index, shape->form, "shape %zu: there is no form %d", index,
                          (int)shape->form);
     narc_error wrong;
@@ -658,7 +676,7 @@ static narc_status check_shape(const narc_named_shape *shape, size_t index, narc
     if (offer(store, shape->arcs, shape->arc_count, shape->form, &added, &wrong) != NARC_OK)
         return narc_fail(error, wrong.status, index, wrong.value, "shape '%s': %s", narc_make_excerpt(shape->name).text,
                          wrong.message);
-    return shape->form == NARC_FORM_SHAPE ? narc_remove_shape(store, added, error) : NARC_OK;
+    return is_chain(shape) ? NARC_OK : narc_remove_shape(store, added, error);
 }
 
 /* Do all names differ? */

@@ -27,18 +27,24 @@
 extern "C" {
 #endif
 
-/* What a named shape is: convex and closed, or a chain of pieces, such as ground, open or closed. A chain's arcs go with
+/* What a named shape is: convex and closed; a chain of pieces, such as ground, open or closed; or ground without end, the
+ * half-plane of narc_add_half_plane(), which has no arcs. A chain's arcs go with
  * the solid on their left, like those of shapes. One with a radius below 0 is concave: the solid is outside of its circle,
  * its normals turn clockwise from `start` to `end`, and its points are center + radius * normal too. Radius -0 is the
  * bottom of a valley, and so is 0 where normals turn clockwise. An arc of radius 0 whose start is its end is a plain
  * point, such as the free end of an edge. */
-typedef enum narc_form { NARC_FORM_SHAPE = 0, NARC_FORM_OPEN_CHAIN = 1, NARC_FORM_CLOSED_CHAIN = 2 } narc_form;
+typedef enum narc_form {
+    NARC_FORM_SHAPE = 0,
+    NARC_FORM_OPEN_CHAIN = 1,
+    NARC_FORM_CLOSED_CHAIN = 2,
+    NARC_FORM_HALF_PLANE = 3
+} narc_form;
 
 typedef struct narc_named_shape {
     /* UTF-8, NUL-terminated, and fit to be a field of a CSV file: not empty, no comma, quote or control character, no
      * blank at either end. Digits alone may only be the shape's own number in its file. */
     const char *name;
-    const narc_arc *arcs; /* 1 .. NARC_MAX_ARCS; of chains any number */
+    const narc_arc *arcs; /* 1 .. NARC_MAX_ARCS; of chains any number, of half-planes none */
     size_t arc_count;
     narc_point origin; /* of a fit: where the shape's origin is in the coordinates of its outline; else 0 */
     uint32_t index;    /* in the store it was added to; 0 without a store and of chains, and not written */

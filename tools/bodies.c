@@ -109,6 +109,10 @@ static void put_part(compound *out, size_t item, uint32_t shape, double x, doubl
     out->parts[out->count++] = (body_part){item, shape, {x, y}};
 }
 
+static bool is_chain(const narc_named_shape *shape) {
+    return shape->form == NARC_FORM_OPEN_CHAIN || shape->form == NARC_FORM_CLOSED_CHAIN;
+}
+
 /* The parts of a shape: itself, or those of a chain, or NAME/1, NAME/2 ...; none if there is no such name. */
 static void find_parts(catalogue *c, const char *name, compound *out) {
     enum { SIZE = 1024 };
@@ -118,7 +122,7 @@ static void find_parts(catalogue *c, const char *name, compound *out) {
     const size_t found = find_shape(shapes, name);
     out->count = 0;
     out->centroid = (narc_point){0, 0};
-    if (found < shapes->count && shapes->items[found].form != NARC_FORM_SHAPE) {
+    if (found < shapes->count && is_chain(&shapes->items[found])) {
         if (!c->chains[found].items)
             add_chain(c, found);
         for (size_t k = 0; k < c->chains[found].count; k++) {
@@ -244,13 +248,24 @@ void read_pairs(const char *path, const body_list *bodies, pair_list *out_pairs)
     *out_pairs = pairs;
 }
 
+/* Around the origin; of a half-plane without end but upwards, if up is along an axis. */
+static narc_aabb bound_shape(const narc_shapes *store, const body *at) {
+    narc_aabb box = {-INFINITY, -INFINITY, INFINITY, INFINITY};
+    if (!(narc_shape_flags(store, at->shape) & NARC_SHAPE_HALF_PLANE))
+        narc_get_aabb(store, at->shape, at->cosine, at->sine, at->scale, &box);
+    else if (at->sine == 0)
+        *(at->cosine > 0 ? &box.max_y : &box.min_y) = 0;
+    else if (at->cosine == 0)
+        *(at->sine > 0 ? &box.min_x : &box.max_x) = 0;
+    return box;
+}
+
 /* Rounded outwards: the kernels subtract positions exactly, a box must not lose a pair to rounding. */
 narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies) {
     narc_aabb *boxes = allocate(bodies->count, sizeof *boxes);
     for (size_t i = 0; i < bodies->count; i++) {
         const body *at = &bodies->items[i];
-        narc_aabb box;
-        narc_get_aabb(store, at->shape, at->cosine, at->sine, at->scale, &box);
+        const narc_aabb box = bound_shape(store, at);
         boxes[i] = (narc_aabb){nextafter(at->x + box.min_x, -INFINITY), nextafter(at->y + box.min_y, -INFINITY),
                                nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
     }

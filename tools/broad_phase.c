@@ -30,8 +30,13 @@ static int compare_numbers(const void *left, const void *right) {
 static double find_middle(const narc_aabb *boxes, size_t count, bool along_y) {
     double sides[SAMPLES];
     size_t taken = 0;
-    for (size_t i = 0; i < count; i += count / SAMPLES + 1)
-        sides[taken++] = along_y ? boxes[i].min_y : boxes[i].min_x;
+    for (size_t i = 0; i < count; i += count / SAMPLES + 1) {
+        const double side = along_y ? boxes[i].min_y : boxes[i].min_x;
+        sides[taken] = side;
+        taken += isfinite(side) ? 1 : 0; /* of ground without end not */
+    }
+    if (taken == 0)
+        return 0;
     qsort(sides, taken, sizeof *sides, compare_numbers);
     return sides[taken / 2];
 }

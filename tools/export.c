@@ -495,6 +495,9 @@ static exported make_bodies(const exporting *how, const narc_shape_list *shapes)
             continue;
         *body = (export_body){.name = name, .origin = shapes->items[k].origin};
         for (size_t i = 0; i < count; i++) {
+            if (shapes->items[parts[i]].form == NARC_FORM_HALF_PLANE)
+                fail_at(how->path, 0, "shape '%s' is a half-plane, which has no outline: a wide box may do",
+                        shapes->items[parts[i]].name);
             const piece part = outline_shape(&shapes->items[parts[i]], body->origin, how);
             add_piece(body, &part);
         }

@@ -51,6 +51,15 @@ static double clamp(double value, double low, double high) { return fmin(fmax(va
 
 static double box_size(narc_aabb box) { return fmax(box.max_x - box.min_x, box.max_y - box.min_y); }
 
+static bool is_endless(const body_scene *scene, size_t index) {
+    return scene->shapes->items[scene->bodies->items[index].item].form == NARC_FORM_HALF_PLANE;
+}
+
+/* In pixels, for lines and marks: ground without end is like other bodies. */
+static double pixel_size(const view *seen, const body_scene *scene, size_t index) {
+    return is_endless(scene, index) ? GOOD_BODY : seen->zoom * box_size(scene->boxes[index]);
+}
+
 /* What the picture will have. */
 static void find_samples(const body_scene *scene, bool *shown) {
     for (size_t i = 0; i < scene->bodies->count; i++)
@@ -70,10 +79,11 @@ static bool has_legend(const bool *shown) { return shown[HIT] || shown[TOUCHING]
 static view choose_view(const char *path, const body_scene *scene) {
     view seen = {0};
     const size_t count = scene->bodies->count;
-    narc_aabb world = count ? scene->boxes[0] : (narc_aabb){-1, -1, 1, 1};
+    narc_aabb world = count ? (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY} : (narc_aabb){-1, -1, 1, 1};
     double sizes = 0;
     for (size_t i = 0; i < count; i++) {
-        const narc_aabb box = scene->boxes[i];
+        const body *b = &scene->bodies->items[i]; /* of ground without end its place */
+        const narc_aabb box = is_endless(scene, i) ? (narc_aabb){b->x, b->y, b->x, b->y} : scene->boxes[i];
         world = (narc_aabb){fmin(world.min_x, box.min_x), fmin(world.min_y, box.min_y), fmax(world.max_x, box.max_x),
                             fmax(world.max_y, box.max_y)};
         sizes += box_size(box);
@@ -147,14 +157,31 @@ static void paint_entry(canvas *page, const placement *where, const narc_shapes 
     stroke_path(page, hit ? HIT_LINE : FREE_LINE, clamp(2 * OUTLINE * size, THINNEST, THICKEST));
 }
 
+/* The part of it that may be on the page, seen from the page's middle. */
+static void paint_half_plane(canvas *page, const view *seen, narc_point origin, double cosine, double sine, bool hit) {
+    const double reach = seen->width + seen->height, x = seen->width / 2, y = seen->height / 2;
+    const double above = clamp((x - origin.x) * -sine + (y - origin.y) * -cosine, -2 * reach, 2 * reach);
+    const double corners[4][2] = {{-reach, 0}, {reach, 0}, {reach, -4 * reach}, {-reach, -4 * reach}};
+    for (int k = 0; k < 4; k++) {
+        const double side = corners[k][0], up = corners[k][1] - above;
+        cairo_line_to(page->pen, x + side * cosine - up * sine, y - side * sine - up * cosine);
+    }
+    cairo_close_path(page->pen);
+    paint_path(page, hit ? HIT_FILL : FREE_FILL, hit ? HIT_LINE : FREE_LINE, THICKEST);
+}
+
 static void draw_body(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t index) {
     const body *drawn = &scene->bodies->items[index];
     const narc_named_shape *form = &scene->shapes->items[drawn->item];
-    const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
+    const double zoom = seen->zoom * (double)drawn->scale, size = pixel_size(seen, scene, index);
     const double cosine = (double)drawn->cosine, sine = (double)drawn->sine;
     const narc_point origin = to_page(seen, drawn->x, drawn->y);
     const placement where = {origin.x, origin.y, zoom * cosine, zoom * sine};
     const bool hit = scene->marked[index];
+    if (form->form == NARC_FORM_HALF_PLANE) {
+        paint_half_plane(page, seen, origin, cosine, sine, hit);
+        return;
+    }
     if (form->form != NARC_FORM_SHAPE) {
         paint_entry(page, &where, scene->store, drawn->shape, hit, size);
         return;
@@ -187,7 +214,7 @@ static void paint_contact(canvas *page, narc_point p, narc_point normal, bool to
 static void draw_contact(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t k) {
     const narc_contact *contact = &scene->contacts[k];
     const pair of = scene->pairs->items[contact->pair];
-    const double size = seen->zoom * fmin(box_size(scene->boxes[of.a]), box_size(scene->boxes[of.b]));
+    const double size = fmin(pixel_size(seen, scene, of.a), pixel_size(seen, scene, of.b));
     const body *a = &scene->bodies->items[of.a];
     const narc_point p = to_page(seen, a->x + (double)contact->point_x, a->y + (double)contact->point_y);
     const narc_point normal = {(double)contact->normal_x, (double)contact->normal_y};
@@ -225,7 +252,7 @@ static void draw_ray(canvas *page, const view *seen, const body_scene *scene, si
         draw_dot(page, from, THICKEST);
     }
     if (ray->hit.count) {
-        const double size = seen->zoom * box_size(scene->boxes[ray->hit.body]);
+        const double size = pixel_size(seen, scene, ray->hit.body);
         paint_contact(page, to, (narc_point){(double)ray->hit.normal_x, (double)ray->hit.normal_y}, true, size);
     }
 }

@@ -61,7 +61,8 @@ static void run(int argc, char **argv) {
     for (size_t k = 0; k < shapes->count; k++) {
         narc_mass mass;
         if (shapes->items[k].form != NARC_FORM_SHAPE)
-            fail_at(path, 0, "shape '%s' is a chain, which this command does not take", shapes->items[k].name);
+            fail_at(path, 0, "shape '%s' is %s, which this command does not take", shapes->items[k].name,
+                    shapes->items[k].form == NARC_FORM_HALF_PLANE ? "a half-plane" : "a chain");
         narc_compute_mass(shapes->items[k].arcs, shapes->items[k].arc_count, &mass);
         areas[k] = mass.area;
     }

@@ -113,6 +113,10 @@ static void write_page(FILE *file, const narc_shape_list *shapes, const outline_
         const size_t count = list_parts(shapes, k, parts, &name);
         if (count == 0)
             continue;
+        if (shapes->items[k].form == NARC_FORM_HALF_PLANE) { /* of which a page has no outline */
+            free(name);
+            continue;
+        }
         fputs(bodies++ ? ",\n{\"name\":" : "\n{\"name\":", file);
         put_json_text(file, name);
         fprintf(file, ",\"area\":%.17g,\"parts\":[", measure_area(shapes, parts, count));

@@ -62,6 +62,8 @@ void dem_read_shapes(const json_value *name, const char *path, dem *d) {
     for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++)
         if (s->form == NARC_FORM_SHAPE)
             dem_add_shape(d, s->name, s->arcs, s->arc_count);
+        else if (s->form == NARC_FORM_HALF_PLANE)
+            dem_quit("%s: shape '%s' is a half-plane: a plate is one", path, s->name);
         else
             dem_add_chain(d, s->name, s->arcs, s->arc_count, s->form == NARC_FORM_CLOSED_CHAIN);
     for (size_t k = 0; k < shapes->count; k++) {

@@ -34,12 +34,25 @@ static narc_status answer(const narc_contact_step *s, narc_batch *batch, void *r
                                      : narc_answer_manifolds(batch, rows, capacity, out_count, s->error);
 }
 
+/* One thread takes a group of pairs at a time, so that what is checked is in the cache when it is asked. */
 narc_status narc_ask_pairs(const narc_contact_step *s, const uint32_t *list, size_t count, void *rows, size_t capacity,
                            size_t *out_count) {
-    const narc_query query = make_query(s, s->contacts->ground_margins, list, count);
-    narc_batch batch;
-    const narc_status status = narc_begin_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, s->error);
-    return status == NARC_OK ? answer(s, &batch, rows, capacity, out_count) : status;
+    narc_query query = make_query(s, s->contacts->ground_margins, list, count);
+    const size_t part = narc_count_workers(query.workers, 2) > 1 ? count : NARC_ROW_GROUP;
+    narc_status status = NARC_OK;
+    size_t found = 0;
+    for (; query.first < count && (status == NARC_OK || status == NARC_ERROR_CAPACITY); query.first += part) {
+        const size_t listed = found < capacity ? found : capacity;
+        size_t own = 0;
+        narc_batch batch;
+        query.count = count - query.first < part ? count - query.first : part;
+        status = narc_begin_batch(s->shapes, s->step->bodies, &s->list->pairs, &query, &batch, s->error);
+        if (status == NARC_OK)
+            status = answer(s, &batch, narc_row_at(s->contacts, rows, listed), capacity - listed, &own);
+        found += own;
+    }
+    *out_count = found;
+    return status == NARC_OK && found > capacity ? NARC_ERROR_CAPACITY : status;
 }
 
 const narc_kernel_table *narc_fill_slots(const narc_contact_step *s, const narc_pairs *pairs, const narc_query *query,

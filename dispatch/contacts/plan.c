@@ -346,7 +346,7 @@ static void note_lost_ground(const narc_contact_step *s) {
 void narc_plan_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const pair_view v = view_pairs(s);
-    const bool has_ground = s->has_ground;
+    const bool has_ground = NARC_PIECES && s->has_ground; /* known while it is compiled where there are none */
     const size_t bodies = s->step->bodies->count;
     c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;

@@ -119,12 +119,49 @@ static narc_status check_options(const narc_index *index, const narc_ray_options
     return status == NARC_OK ? narc_check_reserved(options->reserved, 3, "options", error) : status;
 }
 
+/* Is a call whose pointers and bodies are there right, with one ray? */
+static bool has_one_ray(const narc_index *index, const narc_rays *rays, const narc_ray_options *options) {
+    return rays->count == 1 && narc_has_positions(&rays->x, &rays->y) && rays->motion_x.base && rays->motion_y.base &&
+           !rays->reserved[0] && !rays->reserved[1] && check_options(index, options, NULL) == NARC_OK;
+}
+
+/* A ray by itself, without the machine of a batch: of a scene, or at a body. False if something is wrong, which the call's checks
+ * tell. */
+static bool cast_one(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                     const narc_rays *rays, const narc_index_column *body, const narc_ray_options *options, size_t most,
+                     narc_ray_hit *out_rows, size_t capacity) {
+    narc_status status = NARC_OK;
+    if (!shapes || !bodies || !rays || !out_rows || capacity < most || options->out_order ||
+        !(index ? bodies->count == index->count && narc_has_columns(bodies)
+                : narc_is_one(shapes, bodies, rays->count, body)) ||
+        !has_one_ray(index, rays, options))
+        return false;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    if (!kernels)
+        return false;
+    narc_ray_batch batch; /* an initialiser would clear all of it */
+    batch.index = index;
+    batch.shapes = shapes;
+    batch.bodies = bodies;
+    batch.rays = rays;
+    batch.options = options;
+    batch.most = most;
+    batch.out = out_rows;
+    batch.body = body ? *body : (narc_index_column){NULL, 0};
+    const size_t skipped = (index ? kernels->rays : kernels->ray_pairs)(&batch, 0, 1);
+    if (options->out_skipped)
+        *options->out_skipped = skipped;
+    return true;
+}
+
 narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
                            const narc_rays *rays, const narc_ray_options *options, narc_ray_hit *out_rows,
                            size_t capacity, narc_error *error) {
     static const narc_ray_options defaults = {0};
     const narc_ray_options *const o = options ? options : &defaults;
     const size_t most = o->most > 0 ? o->most : 1;
+    if (index && cast_one(index, shapes, bodies, rays, NULL, o, most, out_rows, capacity))
+        return NARC_OK;
     if (!index || !shapes || !bodies || !rays)
         return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "rays");
     narc_status status = check_rays(rays, error);
@@ -158,38 +195,13 @@ static void cast_pairs_part(void *argument, size_t part, size_t first, size_t en
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
-/* A ray by itself; false if something is wrong. */
-static bool cast_one(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
-                     const narc_index_column *body, const narc_ray_options *options, narc_ray_hit *out_row,
-                     size_t capacity) {
-    narc_status status = NARC_OK;
-    if (!shapes || !bodies || !rays || !out_row || capacity == 0 || !narc_is_one(shapes, bodies, rays->count, body) ||
-        !narc_has_positions(&rays->x, &rays->y) || !rays->motion_x.base || !rays->motion_y.base || rays->reserved[0] ||
-        rays->reserved[1] || check_options(NULL, options, NULL) != NARC_OK)
-        return false;
-    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
-    if (!kernels)
-        return false;
-    narc_ray_batch batch; /* an initialiser would clear all of it */
-    batch.shapes = shapes;
-    batch.bodies = bodies;
-    batch.rays = rays;
-    batch.options = options;
-    batch.out = out_row;
-    batch.body = body ? *body : (narc_index_column){NULL, 0};
-    const size_t skipped = kernels->ray_pairs(&batch, 0, 1);
-    if (options->out_skipped)
-        *options->out_skipped = skipped;
-    return true;
-}
-
 narc_status narc_cast_ray_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_rays *rays,
                                 const narc_index_column *body, const narc_ray_options *options, narc_ray_hit *out_rows,
                                 size_t capacity, narc_error *error) {
     static const narc_ray_options defaults = {0};
     const narc_ray_options *const o = options ? options : &defaults;
     const narc_index_column column = body ? *body : (narc_index_column){NULL, 0};
-    if (cast_one(shapes, bodies, rays, body, o, out_rows, capacity))
+    if (cast_one(NULL, shapes, bodies, rays, body, o, 1, out_rows, capacity))
         return NARC_OK;
     if (!shapes || !bodies || !rays)
         return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "rays");

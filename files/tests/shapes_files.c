@@ -100,6 +100,34 @@ static void expect_same(const narc_named_shape *a, const narc_named_shape *b) {
     assert_memory_equal(&a->origin, &b->origin, sizeof a->origin);
 }
 
+TEST(half_planes_are_shapes_without_arcs) {
+    narc_shapes *store = empty_store();
+    const narc_arc disc = {0, 0, 1, 0, 6.283185307179586};
+    const narc_named_shape shapes[] = {{"floor", NULL, 0, {0, 0}, 0, NARC_FORM_HALF_PLANE},
+                                       {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE}};
+    char *text = NULL;
+    size_t size;
+    narc_error error;
+    expect_ok(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), &error);
+    assert_non_null(strstr(text, "{\"name\": \"floor\", \"origin\": [0, 0], \"half_plane\": true}"));
+    narc_shape_list *list = read_text(text, store);
+    assert_int_equal(list->items[0].form, NARC_FORM_HALF_PLANE);
+    assert_int_equal(list->items[0].arc_count, 0);
+    assert_int_equal(list->items[1].form, NARC_FORM_SHAPE);
+    assert_int_equal(narc_shape_flags(store, list->items[0].index), NARC_SHAPE_HALF_PLANE);
+    narc_destroy_shape_list(list);
+    free(text);
+    list = NULL; /* what is in the store before an error is removed again */
+    const size_t before = narc_count_shapes(store);
+    static const char *const wrong[] = {
+        "{\"shapes\": [{\"name\": \"f\", \"half_plane\": true}, {\"name\": \"g\", \"half_plane\": false}]}",
+        "{\"shapes\": [{\"name\": \"f\", \"half_plane\": true, \"radius\": 1}]}"};
+    for (size_t k = 0; k < 2; k++)
+        assert_int_equal(read_exactly(wrong[k], strlen(wrong[k]), NULL, store, &list, &error), NARC_ERROR_FORMAT);
+    assert_int_equal(narc_count_shapes(store), before);
+    narc_destroy_shapes(store);
+}
+
 /* Written and read they have the same bits; written again the file has the same bytes. */
 static void expect_round_trip(const narc_named_shape *shapes, size_t count) {
     char *text = NULL, *again = NULL;

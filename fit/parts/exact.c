@@ -408,14 +408,14 @@ static void tidy_arcs(narc_arc *arcs, size_t *count) {
     bool round = true, sharp = true;
     narc_point corners[NARC_MAX_ARCS];
     for (size_t k = 0; k < *count; k++) {
-        round = round && arcs[k].radius > 0 && arcs[k].center_x == arcs[0].center_x &&
-                arcs[k].center_y == arcs[0].center_y && arcs[k].radius == arcs[0].radius;
+        const double x = arcs[k].center_x, y = arcs[k].center_y, nothing = STRAIGHT * arcs[0].radius;
+        round = round && arcs[k].radius > 0 && fabs(arcs[k].radius - arcs[0].radius) <= nothing &&
+                narc_hypot(x, y) <= nothing;
         sharp = sharp && arcs[k].radius == 0;
         corners[k] = (narc_point){arcs[k].center_x, arcs[k].center_y};
     }
-    if (round) {
-        arcs[0].start = -PI;
-        arcs[0].end = PI;
+    if (round) { /* about its centroid */
+        arcs[0] = (narc_arc){0, 0, arcs[0].radius, -PI, PI};
         *count = 1;
     }
     if (!sharp)

@@ -267,25 +267,25 @@ static narc_status find_scale(const struct subject *of, double *out_scale, narc_
 
 /* ---------------------------------------------------------------------------- the outline */
 
-/* Which of up to 8 bytes are at least so large. Most are all 0 or all 255. */
-static uint64_t list_bytes(const unsigned char *bytes, size_t count, int least) {
-    uint64_t all = 0, listed = 0;
-    if (count == sizeof all) {
-        memcpy(&all, bytes, sizeof all);
-        if (all == 0 || all == UINT64_MAX)
-            return all & 255;
+/* Which of a row's next 64 bytes from x on are at least so large. Most are all 0 or all 255. */
+static uint64_t list_word(const unsigned char *row, size_t width, size_t x, int least) {
+    const unsigned char *const bytes = row + x;
+    const size_t count = width - x < 64 ? width - x : 64;
+    uint64_t word = 0;
+    for (size_t k = 0; k < count;) {
+        uint64_t eight;
+        if (k + sizeof eight <= count) {
+            memcpy(&eight, bytes + k, sizeof eight);
+            if (eight == 0 || eight == UINT64_MAX) {
+                word |= (eight & 255) << k;
+                k += sizeof eight;
+                continue;
+            }
+        }
+        for (const size_t end = k + 8 < count ? k + 8 : count; k < end; k++)
+            word |= (uint64_t)(bytes[k] >= least) << k;
     }
-    for (size_t k = 0; k < count; k++)
-        listed |= (uint64_t)(bytes[k] >= least) << k;
-    return listed;
-}
-
-/* And of a row's. */
-static void list_row(const unsigned char *row, size_t width, int least, uint64_t *out) {
-    for (size_t x = 0; x < width; x += 8) {
-        const uint64_t listed = list_bytes(row + x, width - x < 8 ? width - x : 8, least);
-        out[x / 64] = x % 64 ? out[x / 64] | listed << x % 64 : listed;
-    }
+    return word;
 }
 
 /* Adds the neighbours that are `by` pixels away in a row, fewer than 64. */
@@ -326,17 +326,17 @@ static uint64_t *mark_ink(const struct drawing *drawing, struct extent part, int
     const size_t width = (size_t)(part.right - part.left), height = (size_t)(part.bottom - part.top);
     const unsigned char *first = drawing->alpha + (size_t)part.top * drawing->stride + part.left;
     for (size_t y = 0; y < height; y++)
-        list_row(first + y * drawing->stride, width, least, words + y * stride);
+        for (size_t x = 0; x < width; x += 64)
+            words[y * stride + x / 64] = list_word(first + y * drawing->stride, width, x, least);
     for (size_t k = 0; k < SPREADS; k++, swap(&words, &spare))
         for (size_t y = 0; y < height; y++)
             spread_row(words + y * stride, stride, spreads[k], spare + y * stride);
     for (size_t k = 0; k < SPREADS; k++, swap(&words, &spare))
         spread_rows(words, stride, height, spreads[k], spare);
-    for (size_t y = 0; y < height; y++) {
-        list_row(first + y * drawing->stride, width, 1, spare);
-        for (size_t k = 0; k < stride; k++)
-            words[y * stride + k] &= spare[k];
-    }
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x += 64)
+            if (words[y * stride + x / 64])
+                words[y * stride + x / 64] &= list_word(first + y * drawing->stride, width, x, 1);
     return words;
 }
 

@@ -24,7 +24,7 @@ static const struct depth FIRST = {60, 1e-7}, SECOND = {40, 1e-6}, EXCHANGE = {1
 /* Who has no hope to come before the best but so many that were found goes on no further: with this times the gain of
  * its last step, or less in a quick search, which also makes exchanges in the best chain alone. */
 enum { RANKED_FIRST = 3, RANKED_SECOND = 2, RANKED_QUICK = 1 };
-static const double HOPE = 100, QUICK_HOPE = 5;
+static const double HOPE = 300, QUICK_HOPE = 5;
 
 /* Steps take time in proportion to the cube of the arcs or so: of more arcs there are fewer. */
 static unsigned count_steps(struct depth depth, size_t arcs) {

@@ -49,10 +49,25 @@ static size_t cast_rays(const narc_ray_batch *batch, const narc_box *scene, stru
     return skipped;
 }
 
+/* A ray by itself; has it no answer? */
+static bool cast_one_ray(const narc_ray_batch *batch, const narc_box *scene, size_t k, struct read_rays *rays) {
+    struct walk w;
+    read_rays(batch, scene, k, 1, rays);
+    if (!empty_rows(batch, rays, 0))
+        return true;
+    if (rays->base[0] >= 0) {
+        begin_walk(batch, rays, 0, &w);
+        walk_alone(batch, &w);
+    }
+    return false;
+}
+
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
     const narc_box scene = narc_find_index_box(batch->index);
     size_t skipped = 0;
     struct read_rays rays;
+    if (count == 1)
+        return cast_one_ray(batch, &scene, first, &rays);
     for (size_t k = first; k < first + count; k += READ) {
         const size_t left = first + count - k;
         read_rays(batch, &scene, k, left < READ ? left : READ, &rays);

@@ -159,4 +159,20 @@ printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,0.1,0,0\ndisc,1e39,0,0\ndisc,-1e300,0,
 works "bodies without a box" collide --shapes shapes.json --bodies far.csv
 check "they are told of" says "without a box 2 bodies, beyond the range of single precision"
 
+# Half-planes: a slope meets what is on it, level ground nothing above it; a picture has them, what has outlines does not.
+cat >plane.json <<'END'
+{"shapes": [{"name": "floor", "half_plane": true}, {"name": "disc", "circle": 1}]}
+END
+printf 'shape,x,y,angle\nfloor,0,0,0.3\ndisc,0,0.5,0\ndisc,3,1.9,0\ndisc,-2,4,0\n' >plane.csv
+plane="--shapes plane.json --bodies plane.csv"
+works "ground without end" collide $plane --out plane.txt --picture plane.svg
+check "the slope meets two discs" test "$(tail -n +2 plane.txt | cut -d, -f1,2 | tr '\n' ' ')" = "0,1 0,2 "
+check "deep in the slope" contact plane.txt 2 "0 1 -0.522331755 -0.295520207 0.955336489"
+printf 'shape,x,y,angle\ndisc,0,0.5,0\nfloor,1e6,-0.25,0\ndisc,2,9,0\nfloor,5,-7,-1.5707963267948966\n' >level.csv
+works "level ground, a wall" collide --shapes plane.json --bodies level.csv --out level.txt --picture level.png
+check "the disc meets the ground" contact level.txt 2 "0 1 -0.25 0 -1"
+fails "a half-plane as a drawing" "narc: plane.json: shape 'floor' is a half-plane" export plane.json --to svg --out new.svg
+fails "a half-plane in a scene" "narc: plane.json: shape 'floor' is a half-plane" scene --shapes plane.json --bodies 3 --density 0.1 \
+    --seed 1 --out new.csv
+
 finish

@@ -50,6 +50,12 @@ KNOWN = {"disc": ("circle", 2.25 * math.pi, [3, 4]), "box": ("box", 8, [1, -7]),
 for form in ("tmj", "box2d", "phaser", *(["tmx"] if SVG else [])):
     narc(0, "export", "shapes.json", "--to", form, "--tolerance", "1e-5", "--out", "out." + form)
     same(fitted("out." + form), KNOWN)
+tiled = shutil.which("tiled")
+if tiled and SVG: # as Tiled itself reads it
+    subprocess.run([tiled, "--export-map", "json", "out.tmx", "tiled.tmj"], check=True, capture_output=True, timeout=120, env={**os.environ, "HOME": folder, "QT_QPA_PLATFORM": "offscreen"})
+    same(fitted("tiled.tmj"), KNOWN)
+else:
+    print("skipped: Tiled, without tiled")
 
 # Tiled's own: turned about the upper left corner, clockwise; ellipses; tiles, whose lower left corner is 0, 0; what is no outline.
 TILESET = {"type": "tileset", "tileheight": 32, "tilewidth": 32, "tiles": [
@@ -82,8 +88,8 @@ if SVG:
 </tileset>""")
     same(fitted("set.tsx"), TILES)
 write("none.tmj", {"type": "map", "layers": []})
-write("pills.tmj", {"type": "map", "layers": [{"objects": [{"name": "lies", "x": 1, "y": 2, "width": 6, "height": 2, "rotation": 90, "capsule": True}, {"name": "stands", "width": 2, "height": 6, "capsule": True}]}]})
-same(fitted("pills.tmj"), {"lies": ("capsule", 8 + math.pi, [0, -5]), "stands": ("capsule", 8 + math.pi, [1, -3])})
+write("pills.tmj", {"type": "map", "layers": [{"objects": [{"name": "lies", "x": 1, "y": 2, "width": 6, "height": 2, "rotation": 90, "capsule": True}, {"name": "stands", "width": 2, "height": 6, "capsule": True}, {"name": "round", "width": 4, "height": 4, "capsule": True}, {"name": "disc", "width": 4, "height": 4, "ellipse": True}]}]})
+same(fitted("pills.tmj"), {**{name: ("circle", 4 * math.pi, [2, -2]) for name in ("round", "disc")}, "lies": ("capsule", 8 + math.pi, [0, -5]), "stands": ("capsule", 8 + math.pi, [1, -3])})
 assert narc(2, "fit", "none.tmj", "--arcs", "3").stderr == "narc: none.tmj: it has no collision objects\n"
 write("wrong.json", {"type": "map", "layers": [{"objects": [{"polygon": [{"x": 1e300, "y": 0}]}]}]})
 assert narc(2, "fit", "wrong.json", "--arcs", "3").stderr.startswith("narc: wrong.json: ")

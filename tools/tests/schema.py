@@ -26,7 +26,7 @@ JUDGE.check_schema(JUDGE.schema)
 
 
 def complaint(value):
-    done = subprocess.run([NARC, "export", "-", "--to", "svg", "--dry-run"], input=json.dumps(value), capture_output=True, encoding="utf-8")
+    done = subprocess.run([NARC, "view", "-"], input=json.dumps(value), capture_output=True, encoding="utf-8")
     return done.stderr
 
 
@@ -37,7 +37,7 @@ GOOD = [
     {"name": "square", "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]], "radius": 0.125},
     {"name": "arcs", "points": [[1, 0], [0, 1], [-1, 0], [0, -1]], "radius": 1},
     {"name": "lens", "four_arc": {"radius_low": 5, "radius_high": 5, "distance": 8, "radius_left": 0.25}},
-    {"name": "ground", "chain": {"closed": False, "arcs": [
+    {"name": "floor", "half_plane": True}, {"name": "ground", "chain": {"closed": False, "arcs": [
         {"center": [-4, 0], "radius": 2, "start": math.pi / 2, "end": math.pi},
         {"center": [-8, 0], "radius": -2, "start": math.pi, "end": math.pi / 2}]}}]
 BAD = [{"shapes": [{"name": "a", "circle": 1, "box": {"width": 1, "height": 1}}]}, {"shapes": [{"name": "a", "circle": 1, "origin": [1]}]}, {}, [], {"shapes": []}, {"shapes": [], "x": 1}, {"shapes": [{"circle": 1}]}, {"shapes": [{"name": "a"}]}]

@@ -26,7 +26,7 @@ Family = Literal["n-arc", "edges", "polygon", "paper", "plain"]
 Goal = Literal["area", "perimeter", "distance", "nearest", "difference"]
 _FAMILIES = ("n-arc", "edges", "polygon", "paper", "plain")
 _GOALS = ("area", "perimeter", "distance", "nearest", "difference")
-_FORMS: tuple[Literal["shape"], Literal["open"], Literal["closed"]] = ("shape", "open", "closed")
+_FORMS: tuple[Literal["shape"], Literal["open"], Literal["closed"], Literal["half_plane"]] = ("shape", "open", "closed", "half_plane")
 _READERS = ("svg", "png", "dxf", "csv", "json")
 
 
@@ -177,11 +177,11 @@ def hull(xy: ArrayLike) -> NDArray[np.float64]:
 
 @dataclasses.dataclass(frozen=True)
 class NamedShape:
-    """A shape of a shapes file, or a chain, such as ground."""
+    """A shape of a shapes file, or a chain, such as ground, or a half-plane, which has no arcs: Shapes.half_plane()."""
 
     arcs: Arcs  #: rows of narc.ARC, for Shapes.add(), of chains for Shapes.chain()
     origin: tuple[float, float] = (0.0, 0.0)  #: of a fit, where its origin is in its outline's coordinates
-    form: Literal["shape", "open", "closed"] = "shape"
+    form: Literal["shape", "open", "closed", "half_plane"] = "shape"
 
 
 def read_shapes(file: str | pathlib.Path) -> dict[str, NamedShape]:

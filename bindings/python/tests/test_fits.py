@@ -133,6 +133,9 @@ def test_files_keep_shapes(tmp_path):
     box = box.arcs(box.box(2, 1))
     ground, = narc.fit_chains(np.array([[3, 0], [2, 0.5], [0, 0]]), 1e-3, open=True)
     narc.write_shapes(file, {"l": fit, "box": box, "hill": narc.NamedShape(ground, form="open")})
+    narc.write_shapes(tmp_path / "floor.json", {"floor": narc.NamedShape(np.empty(0, narc.ARC), form="half_plane")})
+    floor = narc.read_shapes(tmp_path / "floor.json")["floor"]
+    assert floor.form == "half_plane" and len(floor.arcs) == 0
     read = narc.read_shapes(file)
     assert list(read) == ["l", "box", "hill"] and read["l"].origin == fit.origin and read["hill"].form == "open"
     assert (read["l"].arcs == fit.arcs).all() and (read["hill"].arcs == ground).all()

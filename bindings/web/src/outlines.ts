@@ -322,7 +322,7 @@ export interface NamedShape {
     /** Of a fit: where its origin is in the coordinates of its outline. */
     origin: readonly [number, number];
     /** A chain is ground, and in no store by itself. */
-    form: "shape" | "open chain" | "closed chain";
+    form: "shape" | "open chain" | "closed chain" | "half-plane";
     /** In the store that it was added to. */
     shape?: number;
 }
@@ -375,6 +375,7 @@ export function readShapes(outlines: Outlines, text: string, store?: Shapes): Na
             return outlines.fourArc({ radiusLow: value(of, "radius_low", what), radiusHigh: value(of, "radius_high", what), distance: value(of, "distance", what),
                 radiusLeft: value(of, "radius_left", what, 0), radiusRight: value(of, "radius_right", what, 0) });
         },
+        half_plane: (item, what) => item["half_plane"] === true ? new Float64Array(0) : fail(`${what}: half_plane is not true`),
         chain: (item, what) => arcsOf(only(item["chain"], what, "closed", "arcs")["arcs"], what),
     };
     const names = new Set<string>();
@@ -391,6 +392,8 @@ export function readShapes(outlines: Outlines, text: string, store?: Shapes): Na
         if ("radius" in item && kind[0] !== "points" && kind[0] !== "polygon")
             fail(`${what}: radius is not known`);
         const arcs = kinds[kind[0]!]!(item, what), origin = "origin" in item ? pair(item["origin"], `${what}, origin`) : [0, 0] as const;
+        if (kind[0] === "half_plane")
+            return { name, arcs, origin, form: "half-plane" };
         if (kind[0] !== "chain") {
             outlines.validate(arcs);
             return { name, arcs, origin, form: "shape" };
@@ -403,6 +406,8 @@ export function readShapes(outlines: Outlines, text: string, store?: Shapes): Na
         for (const shape of read)
             if (shape.form === "shape")
                 shape.shape = store.add(shape.arcs);
+            else if (shape.form === "half-plane")
+                shape.shape = store.halfPlane();
     return read;
 }
 
@@ -412,7 +417,7 @@ export function writeShapes(shapes: readonly Pick<NamedShape, "name" | "arcs" | 
         const list = [];
         for (let k = 0; k < arcs.length; k += ARC)
             list.push({ center: [arcs[k], arcs[k + 1]], radius: arcs[k + 2], start: arcs[k + 3], end: arcs[k + 4] });
-        return { name, ...(origin[0] || origin[1] ? { origin } : {}), ...(form === "shape" ? { arcs: list } : { chain: { closed: form === "closed chain", arcs: list } }) };
+        return { name, ...(origin[0] || origin[1] ? { origin } : {}), ...(form === "half-plane" ? { half_plane: true } : form === "shape" ? { arcs: list } : { chain: { closed: form === "closed chain", arcs: list } }) };
     });
     return `${JSON.stringify({ shapes: listed }, null, 1)}\n`;
 }

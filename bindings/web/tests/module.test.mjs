@@ -292,6 +292,9 @@ test("shapes files and stores", () => {
     for (const narc of builds) {
         const store = narc.shapes(), read = narc.readShapes(file, store);
         assert.deepEqual(read.map(({ name, shape, form }) => [name, shape, form]), [["p", 0, "shape"], ["c", 1, "shape"], ["b", 2, "shape"], ["g", undefined, "open chain"]]);
+        const floor = '{"shapes": [{"name": "floor", "half_plane": true}]}';
+        assert.deepEqual(JSON.parse(narc.writeShapes(narc.readShapes(floor))), JSON.parse(floor));
+        assert.throws(() => narc.readShapes(floor.replace("true", "1")), /half_plane is not true/);
         assert.deepEqual(narc.readShapes(narc.writeShapes(read)).map(({ arcs, origin }) => [[...arcs], origin]), read.map(({ arcs, origin }) => [[...arcs], origin]));
         assert.deepEqual(narc.loadShapes(store.save()).save(), store.save());
         for (const [text, pattern] of [["{}", /shapes/], ['{"shapes": []}', /none/], ['{"shapes": [{"name": "a", "circle": 1, "box": 2}]}', /'a'/], ['{"shapes": [{"circle": 1}]}', /name/],
