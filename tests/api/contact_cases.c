@@ -692,7 +692,7 @@ TEST(bare_pairs_are_loaded_as_they_were) {
     const double x[] = {1.9, 1.901, 1.902, 1.903, 1.904, 2.1, 1.9, 1.901, 4, 1.9};
     struct few *const few = make_few(box_of(sqrt(2), sqrt(2), 0), 2, NULL);
     narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
-    struct bytes from = {0}, to = {0};
+    struct bytes from = {0};
     narc_error error;
     few->step.skin = 0.5f;
     for (int k = 0; k < 2; k++)
@@ -702,20 +702,18 @@ TEST(bare_pairs_are_loaded_as_they_were) {
         const narc_step_result *const r = step_few(few);
         const size_t asked = r->asked_count;
         assert_int_equal(r->touching_count, 0);
-        save(saved, &from);
-        if (k == 4)
+        if (k == 4) {
+            save(saved, &from);
             expect_ok(narc_load_contacts(loaded, few->store, from.all, from.count, NULL, &error), &error);
+        }
         if (k <= 4)
             continue;
         few->contacts = loaded;
         assert_int_equal(step_few(few)->asked_count, asked);
         few->contacts = saved;
-        save(loaded, &to);
-        assert_int_equal(from.count, to.count);
-        assert_memory_equal(from.all, to.all, to.count);
+        check_saved_alike(saved, loaded);
     }
     free(from.all);
-    free(to.all);
     narc_destroy_contacts(loaded);
     destroy_few(few);
 }
@@ -846,7 +844,7 @@ TEST(the_origin_is_saved) {
     struct few *const few = make_crowd(1e7, 1e7);
     narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     narc_point origin = {1e7, 1e7};
-    struct bytes from = {0}, to = {0};
+    struct bytes from = {0};
     few->step.origin = &origin;
     step_few(few);
     save(saved, &from);
@@ -858,13 +856,9 @@ TEST(the_origin_is_saved) {
         step_few(few);
         few->contacts = saved;
         step_few(few);
-        save(saved, &from);
-        save(loaded, &to);
-        assert_int_equal(from.count, to.count);
-        assert_memory_equal(from.all, to.all, to.count);
+        check_saved_alike(saved, loaded);
     }
     free(from.all);
-    free(to.all);
     narc_destroy_contacts(loaded);
     destroy_few(few);
 }

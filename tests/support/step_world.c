@@ -410,6 +410,16 @@ void save(const narc_contacts *contacts, struct bytes *out) {
     expect_ok(narc_save_contacts(contacts, out->all, out->count, &error), &error);
 }
 
+void check_saved_alike(const narc_contacts *one, const narc_contacts *other) {
+    struct bytes first = {0}, second = {0};
+    save(one, &first);
+    save(other, &second);
+    assert_int_equal(first.count, second.count);
+    assert_memory_equal(first.all, second.all, first.count);
+    free(first.all);
+    free(second.all);
+}
+
 narc_contacts *make_contacts(uint32_t row_kind, const narc_allocator *allocator) {
     narc_contacts *contacts;
     narc_error error;

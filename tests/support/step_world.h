@@ -52,6 +52,7 @@ struct bytes {
 };
 
 void save(const narc_contacts *contacts, struct bytes *out);
+void check_saved_alike(const narc_contacts *one, const narc_contacts *other);
 
 narc_contacts *make_contacts(uint32_t row_kind, const narc_allocator *allocator); /* with a struct mark in each slot */
 struct mark mark_of(uint64_t a, uint64_t b);
