@@ -350,6 +350,8 @@ void narc_plan_ground(const narc_contact_step *s) {
     const size_t bodies = s->step->bodies->count;
     c->work_count = c->ground_count = 0;
     c->changed = !is_list_kept(s) || find_body(v.changed, UINT8_MAX, 0, bodies) < bodies;
+    if (c->ground_known && !has_ground) /* slots have marks of it */
+        c->marks_known = false;
     c->ground_known = c->ground_known && has_ground && is_list_kept(s) && c->marks_known;
     for (size_t k = 0; c->changed && (k = c->again ? k : find_body(v.changed, NARC_RESHAPED, k, bodies)) < bodies;
          k++) {
