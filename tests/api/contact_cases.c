@@ -940,4 +940,46 @@ TEST(worlds_do_not_meet) {
     destroy_few(few);
 }
 
+/* A box rests on a chain whose entry's body becomes a plain box, and the chain goes: the list stays, the pair is asked. */
+TEST(ground_that_goes_away) {
+    const double half = 1.5707963267948966;
+    const narc_arc line[] = {{10, 0, 0, half / 2, half}, {-10, 0, 0, half, 3 * half / 2}};
+    const narc_chain_options options = {.weld = 100};
+    narc_shapes *shapes;
+    narc_contacts *kept;
+    narc_arc arcs[8];
+    narc_chain_entry entries[8];
+    narc_error error;
+    size_t count = 8, entry_count;
+    uint32_t box, slab;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    expect_ok(narc_build_box(1, 1, 0, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(shapes, arcs, count, &box, &error), &error);
+    count = 8;
+    expect_ok(narc_build_box(20, 2, 0.5, arcs, &count, &error), &error);
+    expect_ok(narc_add_shape(shapes, arcs, count, &slab, &error), &error);
+    expect_ok(narc_add_chain(shapes, line, 2, &options, entries, 8, &entry_count, &error), &error);
+    assert_int_equal(entry_count, 1);
+    narc_body body[] = {
+        {0, 0.505, 1, 0, 1, box}, {500, 500, 1, 0, 1, box}, {entries[0].x, entries[0].y, 1, 0, 1, entries[0].shape}};
+    narc_bodies bodies;
+    narc_view_bodies(body, 3, &bodies);
+    const narc_step step = {.bodies = &bodies, .margin = 0.02f, .skin = 0.3f};
+    const narc_step_result *result;
+    assert_int_equal(narc_create_contacts(NULL, &kept, &error), NARC_OK);
+    expect_ok(narc_update_contacts(kept, shapes, &step, &result, &error), &error);
+    assert_int_equal(result->count, 1);
+    body[2] = (narc_body){0, -1, 1, 0, 1, slab};
+    expect_ok(narc_remove_shape(shapes, entries[0].shape, &error), &error);
+    for (int k = 0; k < 4; k++) {
+        body[0].y -= 0.002;
+        expect_ok(narc_update_contacts(kept, shapes, &step, &result, &error), &error);
+        const uint32_t slot = result->order[0];
+        assert_int_equal(result->manifolds[slot].count > 0, 1);
+        assert_true(fabs((double)result->manifolds[slot].point[0].separation - (body[0].y - 0.5)) < 1e-5);
+    }
+    narc_destroy_contacts(kept);
+    narc_destroy_shapes(shapes);
+}
+
 TEST_MAIN("contact cases")
