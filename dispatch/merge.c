@@ -22,9 +22,7 @@
 
 enum { LOOK_BACK = 64 };
 
-typedef narc_merging row_list;
-
-static narc_manifold get_row(const row_list *list, size_t k) {
+static narc_manifold get_row(const narc_merging *list, size_t k) {
     if (list->manifolds)
         return list->manifolds[k];
     const narc_contact *c = &list->contacts[k];
@@ -37,14 +35,14 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
 
-static void drop_row(const row_list *list, size_t k) {
+static void drop_row(const narc_merging *list, size_t k) {
     if (list->manifolds)
         list->manifolds[k].count = 0;
     else
         list->contacts[k].count = 0;
 }
 
-static void move_row(const row_list *list, size_t from, size_t to) {
+static void move_row(const narc_merging *list, size_t from, size_t to) {
     if (from == to)
         return;
     if (list->manifolds)
@@ -53,11 +51,11 @@ static void move_row(const row_list *list, size_t from, size_t to) {
         list->contacts[to] = list->contacts[from];
 }
 
-static uint32_t get_count(const row_list *list, size_t k) {
+static uint32_t get_count(const narc_merging *list, size_t k) {
     return list->manifolds ? list->manifolds[k].count : list->contacts[k].count;
 }
 
-static size_t find_body_of(const row_list *list, size_t k) {
+static size_t find_body_of(const narc_merging *list, size_t k) {
     const narc_pairs *const pairs = list->pairs;
     const uint32_t pair = list->manifolds ? list->manifolds[k].pair : list->contacts[k].pair;
     if (pairs->a.base)
@@ -65,7 +63,7 @@ static size_t find_body_of(const row_list *list, size_t k) {
     return pairs->other_bodies ? pair : 2 * (size_t)pair;
 }
 
-static uint32_t find_run(const row_list *list, uint32_t pair) {
+static uint32_t find_run(const narc_merging *list, uint32_t pair) {
     const narc_pairs *pairs = list->pairs;
     const size_t own = pairs->other_bodies ? pair : 2 * (size_t)pair + 1;
     return list->run.base ? narc_index_at(list->run, pairs->b.base ? narc_index_at(pairs->b, pair) : own) : NARC_NO_RUN;
@@ -195,7 +193,7 @@ static bool goes_over(const narc_manifold *a, const narc_manifold *b) {
 }
 
 /* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
-static void drop_seam(const row_list *list, size_t from, size_t to) {
+static void drop_seam(const narc_merging *list, size_t from, size_t to) {
     const narc_manifold gone = get_row(list, from), left = get_row(list, to);
     for (uint32_t i = 0; i < gone.count; i++) {
         const uint32_t k = find_point(&gone, i, &left);
@@ -207,13 +205,13 @@ static void drop_seam(const row_list *list, size_t from, size_t to) {
 }
 
 /* Is it of an entry of a chain? What is concave has its radius below 0, or -0, and nothing else has. */
-static bool is_ground(const row_list *list, const narc_manifold *row) {
+static bool is_ground(const narc_merging *list, const narc_manifold *row) {
     return find_run(list, row->pair) != NARC_NO_RUN || signbit(row->radius_b);
 }
 
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
  * has two sides that face each other. Returns whether row j has grown. */
-static bool compare_rows(const row_list *list, size_t j, size_t k) {
+static bool compare_rows(const narc_merging *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
     if (!is_ground(list, &a) || !is_ground(list, &b))
@@ -244,7 +242,7 @@ static bool compare_rows(const row_list *list, size_t j, size_t k) {
 }
 
 /* Compares row k with those from `first` to `last`, and what it is joined to again with all of them. */
-static void compare_with(const row_list *list, size_t k, size_t first, size_t last) {
+static void compare_with(const narc_merging *list, size_t k, size_t first, size_t last) {
     for (size_t i = last + 1; i-- > first && get_count(list, k) > 0;)
         if (i != k && get_count(list, i) > 0 && compare_rows(list, i < k ? i : k, i < k ? k : i)) {
             k = i < k ? i : k;
@@ -256,7 +254,7 @@ static void compare_with(const row_list *list, size_t k, size_t first, size_t la
 
 /* Puts rows k .. end - 1, of one body, behind those that are kept, but for those that go. Returns how many rows are
  * kept then. */
-static size_t merge_body(const row_list *list, size_t kept, size_t k, size_t end) {
+static size_t merge_body(const narc_merging *list, size_t kept, size_t k, size_t end) {
     const size_t first = kept;
     for (; k < end; k++) {
         move_row(list, k, kept);
@@ -275,7 +273,7 @@ size_t narc_merge_body(const narc_merging *rows, size_t first, size_t end) {
     return merge_body(rows, first, first, end);
 }
 
-static size_t merge_rows(const row_list *list, size_t count) {
+static size_t merge_rows(const narc_merging *list, size_t count) {
     size_t kept = 0, next = count > 0 ? find_body_of(list, 0) : 0;
     for (size_t k = 0, end; k < count; k = end) {
         const size_t body = next;
@@ -287,9 +285,9 @@ static size_t merge_rows(const row_list *list, size_t count) {
 }
 
 size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count) {
-    return merge_rows(&(row_list){pairs, run, rows, NULL}, count);
+    return merge_rows(&(narc_merging){pairs, run, rows, NULL}, count);
 }
 
 size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count) {
-    return merge_rows(&(row_list){pairs, run, NULL, rows}, count);
+    return merge_rows(&(narc_merging){pairs, run, NULL, rows}, count);
 }

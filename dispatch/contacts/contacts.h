@@ -100,7 +100,7 @@ struct narc_contacts {
     bool marked;       /* `state` has marks of the last step */
     bool changed;      /* something is to be done with pairs */
     bool marks_known;  /* `marks` are those of the list, */
-    bool ground_known; /* and so is `ground_pairs` */
+    bool ground_known; /* and those of ground are in `ground_pairs` */
     bool lists_known;  /* `touching`, `sensors` are right but for what crosses, or has parted, in this step */
 
     size_t slot_capacity, slot_count; /* slots that were ever in use are the first slot_count */

@@ -540,7 +540,7 @@ static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t
 void narc_sort_pairs(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const bool more = s->step->ahead.base || c->more.count > 0;
-    const bool known = c->marks_known && c->ground_known == s->has_ground;
+    const bool known = c->marks_known && (c->ground_known || !s->has_ground);
     const bool kept = (is_list_kept(s) && known) || (!s->list->kept && mark_new_slots(s));
     c->lists_known = kept;
     if (!kept)

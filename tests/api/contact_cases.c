@@ -8,52 +8,11 @@
 
 #include "expect.h"
 #include "families.h"
+#include "few_bodies.h"
 #include "guard.h"
 #include "narc.h"
 #include "narc_chains.h"
 #include "step_world.h"
-
-/* Bodies of one shape by their places, with ids from 1 on. */
-struct few {
-    narc_shapes *store;
-    narc_body body[600];
-    uint64_t id[600];
-    uint8_t kind[600];
-    narc_bodies bodies;
-    narc_pair_filter filter;
-    narc_step step;
-    narc_contacts *contacts;
-};
-
-static struct few *make_few(struct shape shape, size_t count, const narc_allocator *allocator) {
-    struct few *const few = calloc(1, sizeof *few);
-    assert_non_null(few);
-    few->store = empty_store();
-    store_shape(few->store, shape);
-    for (size_t k = 0; k < count; k++) {
-        few->body[k] = (narc_body){.x = (double)(k / 2) * 10 + 0.9 * (double)(k % 2), .cosine = 1, .scale = 1};
-        few->id[k] = k + 1;
-    }
-    narc_view_bodies(few->body, count, &few->bodies);
-    few->filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind)};
-    few->step = (narc_step){
-        .bodies = &few->bodies, .margin = 0.02f, .skin = 1, .id = NARC_ARRAY(few->id), .filter = &few->filter};
-    few->contacts = make_contacts(NARC_MANIFOLD_ROWS, allocator);
-    return few;
-}
-
-static const narc_step_result *step_few(struct few *few) {
-    const narc_step_result *r;
-    narc_error error;
-    expect_ok(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), &error);
-    return r;
-}
-
-static void destroy_few(struct few *few) {
-    narc_destroy_contacts(few->contacts);
-    narc_destroy_shapes(few->store);
-    free(few);
-}
 
 /* All slots that there is room for are asked, and new. */
 TEST(slots_have_room) {
@@ -515,6 +474,26 @@ TEST(ground_that_carries_is_not_all) {
     destroy_few(few);
 }
 
+/* A box sinks into ground that becomes a plain body, while there is no ground any more: the list stays, the pair is asked. */
+TEST(ground_that_goes_away) {
+    const narc_arc line[] = {{10, 0, 0, PI / 4, PI / 2}, {-10, 0, 0, PI / 2, 3 * PI / 4}};
+    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    static uint32_t run[600];
+    const uint32_t slab = store_shape(few->store, box_of(20, 2, 0.5));
+    narc_error error;
+    assert_int_equal(lay_entries(few, line, 2, 100, run), 1);
+    few->step.skin = 0.3f;
+    few->body[0].y = 0.505;
+    assert_int_equal(step_few(few)->touching_count, 1);
+    expect_ok(narc_remove_shape(few->store, few->body[1].shape, &error), &error);
+    few->body[1] = (narc_body){0, -1, 1, 0, 1, slab};
+    for (int k = 0; k < 4; k++) {
+        few->body[0].y -= 0.002;
+        check_with_fresh(few);
+    }
+    destroy_few(few);
+}
+
 /* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. Where trials are few,
  * one bit or two of each byte. */
 TEST(damaged_bytes_do_no_harm) {
@@ -754,232 +733,6 @@ TEST(bodies_that_creep_are_found) {
         assert_true(found > 0 && listed > 0);
         destroy_few(few);
     }
-}
-
-/* A crowd of boxes, 20 in a row, that nearly touch. */
-static struct few *make_crowd(double x, double y) {
-    struct few *const few = make_few(box_of(1, 1, 0), 600, NULL);
-    for (size_t k = 0; k < 600; k++) {
-        few->body[k].x = x + (double)(k % 20) * 1.0001;
-        few->body[k].y = y + (double)(k / 20) * 1.0001;
-    }
-    few->step.skin = 0.03f;
-    return few;
-}
-
-/* However far away a crowd is, it has the pairs that it has at home: eight neighbours each. */
-TEST(worlds_far_away_have_the_pairs_of_near_ones) {
-    static const double far[] = {0, 1e6, 1e7, 1e8, 1e9};
-    size_t here = 0;
-    for (size_t k = 0; k < sizeof far / sizeof *far; k++) {
-        const narc_point origin = {far[k], -far[k]};
-        struct few *const few = make_crowd(far[k], -far[k]);
-        few->step.origin = k > 0 ? &origin : NULL;
-        const narc_step_result *const r = step_few(few);
-        here = k > 0 ? here : r->count;
-        assert_int_equal(r->count, here);
-        assert_true(r->count < 4 * 600);
-        destroy_few(few);
-    }
-}
-
-/* Nothing begins, ends, comes, goes or is asked where nothing moves but the origin, near or far; and those who move then are
- * found. */
-TEST(an_origin_that_moves_keeps_everything) {
-    static const double ways[] = {0.5, 20, 300, 4e3, 1e6, -1e6, 7};
-    for (int recycling = 0; recycling < 2; recycling++) {
-        struct few *const few = make_crowd(3e5, 2e5);
-        narc_point origin = {3e5, 2e5};
-        narc_manifold rows[600 * 8];
-        uint32_t order[600 * 8];
-        few->step.origin = &origin;
-        few->step.recycling = recycling ? 0.01f : 0;
-        const narc_step_result *r = step_few(few);
-        few->body[7].x += 1e-4; /* within its box, so that it follows */
-        r = step_few(few);
-        const size_t count = r->count;
-        assert_true(count < 600 * 4);
-        memcpy(order, r->order, count * sizeof *order);
-        memcpy(rows, r->manifolds, count * sizeof *rows);
-        for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
-            origin.x += ways[k];
-            origin.y -= ways[k];
-            r = step_few(few);
-            assert_int_equal(r->began_count + r->ended_count + r->asked_count, 0);
-            assert_int_equal(r->count, count);
-            assert_memory_equal(r->order, order, count * sizeof *order);
-            assert_memory_equal(r->manifolds, rows, count * sizeof *rows);
-            for (size_t i = 0; i < count; i++)
-                assert_false(r->state[order[i]] & (NARC_NEW | NARC_ASKED | NARC_FOLLOWED));
-        }
-        few->body[0].x += 1.5; /* over the next one */
-        r = step_few(few);
-        assert_true(r->began_count > 0);
-        destroy_few(few);
-    }
-}
-
-/* A step that is refused while its origin moves: the next one finds what comes, though all others stand where they stood. */
-TEST(a_step_that_is_refused_forgets_no_origin) {
-    struct few *const few = make_crowd(0, 0);
-    narc_point origin = {0, 0};
-    few->step.origin = &origin;
-    step_few(few);
-    for (int k = 1; k < 4; k++) {
-        const narc_step_result *r;
-        narc_error error;
-        origin.x = 1e6 * k;
-        few->body[599].shape = 7;
-        expect_error(narc_update_contacts(few->contacts, few->store, &few->step, &r, &error), NARC_ERROR_INDEX, &error,
-                     "body 599: shape is 7");
-        few->body[599].shape = few->body[0].shape;
-        few->body[20 * k].x += 1.5; /* over the next one */
-        assert_true(step_few(few)->began_count > 0);
-    }
-    destroy_few(few);
-}
-
-/* Contacts that were saved go on from their boxes' origin. */
-TEST(the_origin_is_saved) {
-    struct few *const few = make_crowd(1e7, 1e7);
-    narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
-    narc_point origin = {1e7, 1e7};
-    struct bytes from = {0};
-    few->step.origin = &origin;
-    step_few(few);
-    save(saved, &from);
-    expect_ok(narc_load_contacts(loaded, few->store, from.all, from.count, NULL, NULL), NULL);
-    for (int k = 0; k < 3; k++) {
-        origin.x += 5;
-        few->body[k].x += 0.02;
-        few->contacts = loaded;
-        step_few(few);
-        few->contacts = saved;
-        step_few(few);
-        check_saved_alike(saved, loaded);
-    }
-    free(from.all);
-    narc_destroy_contacts(loaded);
-    destroy_few(few);
-}
-
-/* ------------------------------------------------------------------------------------------------ worlds */
-
-enum { WORLDS = 6, EACH = 100 };
-
-/* A crowd of bodies in each world, all at the same place. */
-static struct few *make_worlds(uint32_t *world, uint32_t *counts, narc_pair_filter *filter) {
-    struct few *const few = make_few(circle_of(0.5), WORLDS * EACH, NULL);
-    for (size_t k = 0; k < WORLDS * EACH; k++) {
-        few->body[k].x = 0.9 * (double)(k % 10) + 0.01 * (double)(k / EACH);
-        few->body[k].y = 0.95 * (double)(k / 10 % 10);
-        world[k] = (uint32_t)(k / EACH);
-    }
-    *filter = (narc_pair_filter){.kind = NARC_ARRAY(few->kind), .world = {world, sizeof *world}};
-    few->step.filter = filter;
-    few->step.skin = 0.05f;
-    few->step.out_world_count = counts;
-    few->step.world_count = WORLDS;
-    return few;
-}
-
-/* Rows of each world are those of a step of its bodies alone, a range of `touching`; and so they stay where all move, where
- * a world is reset, where bodies go to another one. */
-TEST(worlds_do_not_meet) {
-    struct test_random random = test_random_named("worlds of contacts");
-    static uint32_t world[WORLDS * EACH], counts[WORLDS];
-    narc_pair_filter filter;
-    struct few *const few = make_worlds(world, counts, &filter);
-    for (size_t step = 0; step < 30; step++) {
-        if (step % 5 == 4) { /* world 2 begins again */
-            uint64_t *const gone = few->id + (size_t)2 * EACH;
-            narc_error error;
-            expect_ok(narc_forget_bodies(few->contacts, gone, EACH, &error), &error);
-            for (size_t k = 2 * EACH; k < (size_t)3 * EACH; k++)
-                few->body[k].x = 0.9 * (double)(k % 10);
-        }
-        const narc_step_result *const r = step_few(few);
-        size_t first = 0;
-        for (uint32_t w = 0; w < WORLDS; w++) {
-            narc_contacts *const alone = make_contacts(NARC_MANIFOLD_ROWS, NULL);
-            narc_bodies bodies;
-            narc_view_bodies(few->body + (size_t)w * EACH, EACH, &bodies);
-            const narc_step own = {.bodies = &bodies, .margin = few->step.margin, .skin = few->step.skin};
-            const narc_step_result *s;
-            assert_int_equal(narc_update_contacts(alone, few->store, &own, &s, NULL), NARC_OK);
-            assert_int_equal(s->touching_count, counts[w]);
-            assert_true(counts[w] > EACH);
-            for (size_t k = 0; k < counts[w]; k++) {
-                narc_manifold row = r->manifolds[r->touching[first + k]], other = s->manifolds[s->touching[k]];
-                row.pair = other.pair;
-                assert_memory_equal(&row, &other, sizeof row);
-            }
-            first += counts[w];
-            narc_destroy_contacts(alone);
-        }
-        assert_int_equal(first, r->touching_count);
-        for (size_t k = 0; k < r->ended_count && step % 5 == 4; k++)
-            if (r->ended[k].parted && r->ended[k].id_a > (size_t)2 * EACH && r->ended[k].id_a <= (size_t)3 * EACH)
-                first = 0;
-        assert_int_equal(first == 0, step % 5 == 4);
-        for (size_t k = 0; k < WORLDS * EACH; k++) {
-            few->body[k].x += random_between(&random, -0.04, 0.04);
-            few->body[k].y += random_between(&random, -0.04, 0.04);
-        }
-    }
-    world[7] = 3;
-    step_few(few);
-    const uint32_t before = counts[0];
-    world[7] = 0;
-    step_few(few);
-    assert_true(counts[0] > before);
-    few->step.world_count = 2;
-    counts[2] = 77;
-    step_few(few);
-    assert_int_equal(counts[2], 77);
-    destroy_few(few);
-}
-
-/* A box rests on a chain whose entry's body becomes a plain box, and the chain goes: the list stays, the pair is asked. */
-TEST(ground_that_goes_away) {
-    const double half = 1.5707963267948966;
-    const narc_arc line[] = {{10, 0, 0, half / 2, half}, {-10, 0, 0, half, 3 * half / 2}};
-    const narc_chain_options options = {.weld = 100};
-    narc_shapes *shapes;
-    narc_contacts *kept;
-    narc_arc arcs[8];
-    narc_chain_entry entries[8];
-    narc_error error;
-    size_t count = 8, entry_count;
-    uint32_t box, slab;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    expect_ok(narc_build_box(1, 1, 0, arcs, &count, &error), &error);
-    expect_ok(narc_add_shape(shapes, arcs, count, &box, &error), &error);
-    count = 8;
-    expect_ok(narc_build_box(20, 2, 0.5, arcs, &count, &error), &error);
-    expect_ok(narc_add_shape(shapes, arcs, count, &slab, &error), &error);
-    expect_ok(narc_add_chain(shapes, line, 2, &options, entries, 8, &entry_count, &error), &error);
-    assert_int_equal(entry_count, 1);
-    narc_body body[] = {
-        {0, 0.505, 1, 0, 1, box}, {500, 500, 1, 0, 1, box}, {entries[0].x, entries[0].y, 1, 0, 1, entries[0].shape}};
-    narc_bodies bodies;
-    narc_view_bodies(body, 3, &bodies);
-    const narc_step step = {.bodies = &bodies, .margin = 0.02f, .skin = 0.3f};
-    const narc_step_result *result;
-    assert_int_equal(narc_create_contacts(NULL, &kept, &error), NARC_OK);
-    expect_ok(narc_update_contacts(kept, shapes, &step, &result, &error), &error);
-    assert_int_equal(result->count, 1);
-    body[2] = (narc_body){0, -1, 1, 0, 1, slab};
-    expect_ok(narc_remove_shape(shapes, entries[0].shape, &error), &error);
-    for (int k = 0; k < 4; k++) {
-        body[0].y -= 0.002;
-        expect_ok(narc_update_contacts(kept, shapes, &step, &result, &error), &error);
-        const uint32_t slot = result->order[0];
-        assert_int_equal(result->manifolds[slot].count > 0, 1);
-        assert_true(fabs((double)result->manifolds[slot].point[0].separation - (body[0].y - 0.5)) < 1e-5);
-    }
-    narc_destroy_contacts(kept);
-    narc_destroy_shapes(shapes);
 }
 
 TEST_MAIN("contact cases")
