@@ -229,17 +229,20 @@ static bool are_shapes_there(const narc_batch *batch, const narc_bodies *bodies,
     return are_below(bodies->shape, body, end, clip(batch->shapes->count));
 }
 
+static bool is_one_set(const narc_batch *batch) {
+    return batch->a->shape.base == batch->b->shape.base && batch->a->shape.stride == batch->b->shape.stride &&
+           batch->a->count == batch->b->count;
+}
+
 /* Are all bodies of a part's pairs in range, and all shapes of a part of the bodies? Reads columns from front to back,
  * which is much faster than looking up every pair's bodies. */
 static void look_at_columns(void *argument, size_t part) {
     struct search *const search = argument;
     const narc_batch *batch = search->batch;
-    const bool one_set = batch->a->shape.base == batch->b->shape.base &&
-                         batch->a->shape.stride == batch->b->shape.stride && batch->a->count == batch->b->count;
     size_t first, end;
     find_part(search, part, &first, &end);
     if (!are_bodies_there(batch, first, end) || !are_shapes_there(batch, batch->a, search->parts, part) ||
-        !(one_set || are_shapes_there(batch, batch->b, search->parts, part)))
+        !(is_one_set(batch) || are_shapes_there(batch, batch->b, search->parts, part)))
         atomic_store_explicit(&search->fine, false, memory_order_relaxed);
 }
 
@@ -300,7 +303,8 @@ size_t narc_find_bad_pair(const narc_batch *batch) {
     atomic_init(&search.bad, first + count);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
-    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 4 <= count) {
+    const size_t others = is_one_set(batch) ? 0 : batch->b->count;
+    if (!batch->query->selection.base && (batch->a->count + others) / 4 <= count) {
         narc_run_parts(batch->query->workers, search.parts, look_at_columns, &search);
         if (atomic_load(&search.fine))
             return first + count;

@@ -25,7 +25,7 @@ struct call {
     const struct question *question; /* theirs */
     struct box_queue *boxes;         /* pairs of forms that wait (box/box_detour.inl), or NULL */
     bool pieces, planes;             /* are there pieces of chains; half-planes? */
-    struct queue *concave;           /* rows, with pieces: where pairs with a concave arc wait; else NULL */
+    struct queue *concave, *runs;    /* rows, with pieces: where pairs with a concave arc, with a run wait; or NULL */
 };
 
 /* Are there pieces of chains, and are they asked of as such? */

@@ -33,20 +33,17 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
                   vm open, int32_t number);
 
-/* Settles pairs of a kind, of those with pieces in the lanes `open`, and returns the others. */
-typedef vm settling(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k, vm open,
-                    vf margin, const vf item[FIELDS]);
-
-/* Of pairs with pieces in the lanes `open`, those that are not known to have no contact. */
-typedef vm dropping(const struct call *call, const struct pair_indices *indices, int k, vm open, const vf item[FIELDS]);
+/* Takes pairs of a run and another body in the lanes `open`, and returns those that it does not settle. */
+struct pieces_met;
+typedef vm settling(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
+                    struct pieces_met *met);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
-    detour *take;             /* if call->boxes: what comes before all else */
-    triage *settle;           /* what is answered as it is set up; all others go to stage `first` */
-    settling *beside, *above; /* if call->concave: what of them is answered at once, circles, and boxes and capsules, */
-    dropping *drop;           /* and what goes no further; or NULL */
-    int fields;               /* what travels from there on */
+    detour *take;   /* if call->boxes: what comes before all else */
+    triage *settle; /* what is answered as it is set up; all others go to stage `first` */
+    settling *runs; /* if call->runs: what takes pairs with a run; or NULL */
+    int fields;     /* what travels from there on */
     stage *const *stages;
     int first;
     int edged; /* where pairs with edges may begin instead, or 0 */
@@ -163,6 +160,7 @@ struct pieces_met {
     bool of_a, of_b; /* has a pair of the last block one? Of the first block: the first pair */
     bool fetches;    /* so they are asked for ahead: of B, or of A */
     bool fetches_b;
+    bool forms, formed; /* are pairs of forms looked for in this block; have there been any? */
     int tried, dropped; /* so many may have been dropped, and were */
     int asked, settled; /* the same of boxes and capsules on edges */
 };
@@ -174,7 +172,7 @@ INLINE bool begins_with_piece(const struct call *call, narc_index_column body, n
 }
 
 INLINE struct pieces_met meet_pieces(const struct call *call, const struct sources *given) {
-    struct pieces_met met = {.many = FETCHES && call->batch->shapes->record_count >= MANY_RECORDS};
+    struct pieces_met met = {.forms = true, .many = FETCHES && call->batch->shapes->record_count >= MANY_RECORDS};
     if (met.many && call->count > BLOCK) {
         met.of_a = begins_with_piece(call, given->pairs.a, given->a.shape);
         met.of_b = begins_with_piece(call, given->pairs.b, given->b.shape);
@@ -182,38 +180,61 @@ INLINE struct pieces_met meet_pieces(const struct call *call, const struct sourc
     return met;
 }
 
-/* Before a block of a call with pieces. */
-INLINE void begin_block_of_pieces(struct pieces_met *met) {
+/* Before a block of a call with pieces. Pairs of forms are looked for in the block behind one that had some, and in each
+ * fourth. */
+INLINE void begin_block_of_pieces(struct pieces_met *met, size_t block) {
+    met->forms = met->formed || block % (4 * BLOCK) == 0;
+    met->formed = false;
     met->fetches = met->many && (met->of_a || met->of_b);
     met->fetches_b = met->of_b;
     met->of_a = met->of_b = false;
 }
 
-/* To look which pairs can be dropped is worth it if one in eight can. */
-INLINE vm drop_some(const struct call *call, dropping *drop, const struct pair_indices *indices, int k, vm open,
-                    const vf item[FIELDS], struct pieces_met *met) {
+INLINE void note_pieces(struct pieces_met *met, const vf item[FIELDS]) {
     met->of_a = met->of_a || vm_any(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS));
     met->of_b = met->of_b || vm_any(has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS));
-    if (!drop || !call->concave || !(met->of_a || met->of_b) ||
-        (met->tried >= 2 * BLOCK && 8 * met->dropped < met->tried))
-        return open;
-    const vm kept = drop(call, indices, k, open, item);
-    met->tried += COUNT_BITS(vm_bits(open));
-    met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
-    return kept;
 }
 
-/* To settle pairs by their forms is worth a try if one in four is. */
-INLINE vm settle_some(const struct call *call, const struct course *course, struct queue *queues,
-                      const struct pair_indices *indices, int k, vm open, vf margin, const vf item[FIELDS],
-                      struct pieces_met *met) {
-    if (!course->above || !call->concave || call->batch->shapes->box_count == 0 || !vm_any(open) ||
-        (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
+/* Takes what waits in the first stage's queue, if that is full, through all stages. */
+INLINE void run_full_stages(const struct call *call, const struct course *course, struct queue *queues) {
+    if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH || queues[POLYGONS].count >= FLUSH)
+        run_stages(call, course, queues, false);
+}
+
+/* Pairs with a run wait until there is a vector of them, as most bodies are near concave pieces, too. Takes the last ones. */
+NOINLINE void take_waiting_runs(const struct call *call, const struct course *course, struct queue *queues,
+                                struct pieces_met *met) {
+    struct queue *const runs = call->runs;
+    vf item[FIELDS];
+    const int k = runs->count > V_WIDTH ? runs->count - V_WIDTH : 0;
+    const vm live = vm_front(runs->count - k);
+    if (runs->count < V_WIDTH)
+        pad(runs);
+    get_item(runs, k, item, QUEUE_FIELDS);
+    const vm left = course->runs(call, queues, live, get_margins(call, runs, k), item, met);
+    runs->count = k;
+    if (vm_any(left)) {
+        enter(course, queues, left, item, false);
+        run_full_stages(call, course, queues);
+    }
+}
+
+/* Takes the pairs with a run of those in the lanes `open`, pairs k ... of a block; returns those that go on. */
+INLINE vm take_runs(const struct call *call, settling *settle, const struct course *waiting, struct queue *queues,
+                    const struct pair_indices *indices, int k, vm open, vf margin, vf item[FIELDS],
+                    struct pieces_met *met) {
+    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B);
+    const vm is_a = has_mark(info_a, NARC_PIECE_RUN), one = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
+    const vm with_run = vm_and(open, one), others = vm_and_not(open, one);
+    if (!vm_any(with_run))
         return open;
-    const vm left = course->above(call, queues, indices, k, open, margin, item);
-    met->asked += COUNT_BITS(vm_bits(open));
-    met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
-    return left;
+    item[BODY_SHAPE] = v_of_bits(vi_select(is_a, vi_load(indices->shape_b + k), vi_load(indices->shape_a + k)));
+    if (COUNT_BITS(vm_bits(with_run)) == V_WIDTH)
+        return settle(call, queues, with_run, margin, item, met);
+    push(call->runs, with_run, item, QUEUE_FIELDS);
+    if (call->runs->count >= V_WIDTH)
+        take_waiting_runs(call, waiting, queues, met);
+    return others;
 }
 
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
@@ -226,9 +247,10 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
     const enum pose_layout layout = call->batch->of_casts      ? POSE_LANES
                                     : call->count <= FEW_PAIRS ? POSE_COLUMNS
                                                                : find_layout(&given);
+    const struct course waiting = *course; /* compilers know what is in the one whose address goes nowhere */
     struct pair_indices indices;
     struct found_arcs arcs;
-    struct pieces_met met = {.many = false};
+    struct pieces_met met = {.forms = true};
     if (NARC_PIECES && !LIKELY(!call->pieces) && call->count > 0)
         met = meet_pieces(call, &given);
     for (int s = 0; s < course->end; s++)
@@ -237,7 +259,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_pairs(&given, call->first + block, n, layout != POSE_DOUBLE_ROWS, &indices);
         if (NARC_PIECES && !LIKELY(!call->pieces))
-            begin_block_of_pieces(&met);
+            begin_block_of_pieces(&met, block);
         if (course->edged > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (queues && block % (4 * BLOCK) == 0)
@@ -248,8 +270,11 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                 fetch_ahead(call, &given, met.fetches_b, block + (size_t)k);
             const struct placement placement = place_pairs(call, &given, &indices, k, layout, true);
             vm asked = vm_front(n - k);
-            if (course->take && !LIKELY(!call->boxes)) {
+            if (course->take && !LIKELY(!call->boxes) && met.forms) {
+                const vm all = asked;
                 asked = course->take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
+                if (NARC_PIECES && !LIKELY(!call->pieces))
+                    met.formed = met.formed || vm_any(vm_and_not(all, asked));
                 if (!vm_any(asked))
                     continue;
             }
@@ -258,19 +283,19 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             vm open = course->settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces)) {
-                if (course->beside && call->concave && vm_any(open))
-                    open = course->beside(call, queues, &indices, k, open, circles.margin, item);
-                open = settle_some(call, course, queues, &indices, k, open, circles.margin, item, &met);
-                open = drop_some(call, course->drop, &indices, k, open, item, &met);
+                note_pieces(&met, item);
+                if (course->runs && call->runs && vm_any(open))
+                    open =
+                        take_runs(call, course->runs, &waiting, queues, &indices, k, open, circles.margin, item, &met);
             }
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
-                if (queues[course->first].count >= FLUSH || queues[course->edged].count >= FLUSH ||
-                    queues[POLYGONS].count >= FLUSH)
-                    run_stages(call, course, queues, false);
+                run_full_stages(call, course, queues);
             }
         }
     }
+    if (NARC_PIECES && course->runs && call->runs && call->runs->count > 0)
+        take_waiting_runs(call, &waiting, queues, &met);
     if (queues)
         run_stages(call, course, queues, true);
 }

@@ -72,7 +72,9 @@ enum {
     NORMAL = AXIS,
     SEPARATION = CORE,
     RECORD_A = SLACK,
-    RECORD_B = DIRECTION
+    RECORD_B = DIRECTION,
+    /* Of pairs with a run of a chain that wait: the shape of the other body. */
+    BODY_SHAPE = SIZE
 };
 
 /* Those that queues have room for. */

@@ -72,13 +72,15 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
         place[0] = rows->out.base;
         return;
     }
-    char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
-    const ptrdiff_t stride = rows->out.stride;
+    char *const first = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
+    const uintptr_t base = (uintptr_t)first, stride = (uintptr_t)rows->out.stride,
+                    beyond = (uintptr_t)rows->spare - (base + NARC_ROW_GROUP * stride);
     int32_t row[V_WIDTH];
     vi_store(row, vi_select(keep, pairs, vi_set(NARC_ROW_GROUP)));
-    for (int lane = 0; lane < V_WIDTH; lane++) {
-        place[lane] = choose(row[lane] < NARC_ROW_GROUP, base + row[lane] * stride, rows->spare);
-        rows->known[row[lane]] = 1;
+    for (int lane = 0; lane < V_WIDTH; lane++) { /* without a branch: which lanes have an answer can't be foreseen */
+        const uintptr_t at = (uint32_t)row[lane];
+        place[lane] = (char *)(base + at * stride + at / NARC_ROW_GROUP * beyond);
+        rows->known[at] = 1;
     }
     if (rows->dense && call->batch->query->selection.base)
         for (int lane = 0; lane < V_WIDTH; lane++)

@@ -47,8 +47,7 @@ INLINE vm is_beyond(const struct plain_body *body, vec2 end, vec2 n, vec2 m, vec
 }
 
 /* Of pairs in the lanes `open`, those that are not known to lie beside the front of a run. */
-NOINLINE vm drop_beside(const struct call *call, const struct pair_indices *indices, int k, vm open,
-                        const vf item[FIELDS]) {
+NOINLINE vm drop_beside(const struct call *call, vm open, const vf item[FIELDS]) {
     const narc_shapes *const shapes = call->batch->shapes;
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B);
     const vm is_a = has_mark(info_a, NARC_PIECE_RUN), run = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
@@ -64,7 +63,7 @@ NOINLINE vm drop_beside(const struct call *call, const struct pair_indices *indi
 
     vf form[4], circle[4], field[2][8];
     int32_t index[V_WIDTH];
-    vi_store(index, vi_select(is_a, vi_load(indices->shape_b + k), vi_load(indices->shape_a + k)));
+    vi_store(index, get_item_bits(item, BODY_SHAPE));
     v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
     vi_store(index, other_base);
     v_rows(shapes->records, sizeof *shapes->records, index, circle);

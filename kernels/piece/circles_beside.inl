@@ -57,20 +57,37 @@ INLINE vec2 look_from_arc(const struct run_beside *run, const vf field[8]) {
     return v2_sub(run->p, v2_scale((vec2){field[0], field[1]}, run->scale));
 }
 
-/* The last arc of the front, up to the corner `last` behind it, whose start p lies behind, or the corner before it. */
-INLINE vi find_arc_before(const narc_record *records, const struct run_beside *run, vi last) {
+/* Is p behind the start of an arc? */
+INLINE vm is_behind_start(const struct run_beside *run, const vf field[8]) {
+    return v_le(v_set(0), v2_cross((vec2){field[4], field[5]}, look_from_arc(run, field)));
+}
+
+/* The last arc of the front, up to the corner `last` behind it, whose start p lies behind, or the corner before it: its
+ * number, and the fields of it and, but for the last one, of the next. By halving, and then step by step. */
+INLINE vi find_arc_before(const narc_record *records, const struct run_beside *run, vi last, vf here[8], vf next[8]) {
     const vi one = vi_set(1);
     vi low = vi_set(0), high = vi_add(last, one);
     for (;;) {
-        const vm open = vi_lt(vi_add(low, one), high);
+        const vm open = vi_lt(vi_add(low, vi_set(3)), high);
         if (!vm_any(open))
-            return low;
-        vf field[8];
+            break;
         const vi middle = vi_shift_right(vi_add(low, high), 1);
-        load_records(records, find_run_record(run, middle), field);
-        const vm behind = v_le(v_set(0), v2_cross((vec2){field[4], field[5]}, look_from_arc(run, field)));
+        load_records(records, find_run_record(run, middle), here);
+        const vm behind = is_behind_start(run, here);
         low = vi_select(vm_and(open, behind), middle, low);
         high = vi_select(vm_and_not(open, behind), middle, high);
+    }
+    load_records(records, find_run_record(run, low), here);
+    for (;;) {
+        load_records(records, find_run_record(run, vi_add(low, one)), next);
+        const vm moves = vm_and(vi_lt(vi_add(low, one), high), is_behind_start(run, next));
+        if (!vm_any(moves))
+            return low;
+        for (int f = 0; f < 8; f++)
+            here[f] = v_select(moves, next[f], here[f]);
+        low = vi_select(moves, vi_add(low, one), low);
+        if (!vm_any(vm_and(moves, vi_lt(low, last))))
+            return low;
     }
 }
 
@@ -102,6 +119,7 @@ struct run_touch {
     vm is_a, at_edge; /* is the run A? */
     vi record, circle_record;
     struct arcs touched, before, circle;
+    const vf *circle_field; /* four, of its record */
     vf separation;
     vec2 n;
 };
@@ -121,7 +139,7 @@ INLINE vm answer_circles_beside(const struct call *call, const struct run_touch 
                                        {item[ROTATION_A], item[ROTATION_A + 1]}};
     const vf scale = pick(of, is_a, pair.scale_a, pair.scale_b),
              scale_circle = pick(of, is_a, pair.scale_b, pair.scale_a);
-    const vm shallow = vm_and_not(is_circle_shallow(call->batch->shapes->records, touch->circle_record, scale_circle,
+    const vm shallow = vm_and_not(is_circle_shallow(call->batch->shapes->records, touch->circle_field, scale_circle,
                                                     vi_add(run->base, run->count), scale, touch->separation),
                                   vm_front(call->batch->query->front_only ? V_WIDTH : 0));
     const vm simple = vm_and_not(vm_or(shallow, v_le(v_set(0), touch->separation)), is_parallel(touch->touched.end, n));
@@ -175,10 +193,8 @@ INLINE vm settle_circles_of(const struct call *call, struct queue *queues, enum 
                center_b = place_center_b(center, &pose);
     run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose.rotation, v2_sub(center_a, pose.position)));
 
-    const vi number = find_arc_before(records, &run, last), record = find_run_record(&run, number),
+    const vi number = find_arc_before(records, &run, last, here, next), record = find_run_record(&run, number),
              next_record = find_run_record(&run, vi_add(number, one));
-    load_records(records, record, here);
-    load_records(records, next_record, next);
     const vf slack = item[SLACK], two = v_add(slack, slack);
     const vec2 u = look_from_arc(&run, here), start = {here[4], here[5]}, end = {here[6], here[7]};
     const vf radius = v_mul(here[2], run.scale),
@@ -205,6 +221,7 @@ INLINE vm settle_circles_of(const struct call *call, struct queue *queues, enum 
                               .at_edge = at_edge,
                               .record = vi_select(at_edge, next_record, record),
                               .circle_record = circle_record,
+                              .circle_field = circle,
                               .touched = place_run_arc(touched, &pose, of, is_a),
                               .before = place_run_arc(here, &pose, of, is_a),
                               .circle = {.center = pick_vec2(of, is_a, center_b, center_a), .radius = radius_circle}};

@@ -217,7 +217,8 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const vi first_record =
         vi_select(piece_is_a, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, FIRST_RECORD_A, k));
     const vi all = get_arc_count(info), one = vi_set(1);
-    const vi count = vi_select(has_flag(info, NARC_SHAPE_CIRCLE), one, all); /* of its halves one counts */
+    const vm round = has_flag(info, NARC_SHAPE_CIRCLE);
+    const vi count = vi_select(round, one, all); /* of its halves one counts */
     const vf margin = get_margins(call, queue, k);
     const vm open = vm_and_not(live, has_mark(info, NARC_PIECE_CONCAVE)); /* concave against concave: none */
     const vm beside = v_lt(v_set(0), get(queue, SLACK, k));
@@ -226,12 +227,12 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     vi found = zero, first = zero, lowest = zero; /* lowest: the number of the deepest one's arc */
     const struct arcs piece = load_piece(records, &pairs);
     struct arc_window window = {vm_front(0), {v_set(0), v_set(0)}};
-    if (!lists)
+    if (!lists && vm_any(vm_and_not(open, round)))
         window = find_window(records, queue, k, &pairs, &piece, first_record, &first);
     const bool runs = vm_any(has_mark(info, NARC_PIECE_RUN));
     vm ended = open, touch, left = open;
     vec2 end;
-    if (vm_any(vm_and_not(open, window.narrow)))
+    if (vm_any(vm_and_not(vm_and_not(open, round), window.narrow)))
         (void)find_concave_gap(records, &pairs, piece, vi_sub(all, one), &ended, &touch, &end);
     ended = vm_and_not(ended, window.narrow); /* its first arc starts before all directions */
     for (int i = 0; vm_any(left = vm_and(left, vi_lt(vi_set(i), count))); i++) {

@@ -135,8 +135,8 @@ INLINE void settle_on_edges(const struct call *call, struct queue *queues, vm is
 }
 
 /* Settles pairs of a run and a body with a form of those in the lanes `open`; returns the others. */
-NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
-                               vm open, vf margin, const vf item[FIELDS]) {
+NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm open, vf margin,
+                               const vf item[FIELDS]) {
     const narc_shapes *const shapes = call->batch->shapes;
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
     const vm is_a = has_mark(info_a, NARC_PIECE_RUN), is_run = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
@@ -155,7 +155,7 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, co
         .first = vi_select(which, get_first_arc(info), vi_set(0))};
     int32_t index[V_WIDTH];
     vf form[4], field[8], behind[8];
-    vi_store(index, vi_select(is_a, vi_load(indices->shape_b + k), vi_load(indices->shape_a + k)));
+    vi_store(index, get_item_bits(item, BODY_SHAPE));
     v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
     const vi kind = vi_bits(form[3]), zero = vi_set(0);
     const vm capsule = vi_lt(zero, vi_and(kind, vi_set((int32_t)NARC_IS_CAPSULE)));

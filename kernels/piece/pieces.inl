@@ -42,15 +42,13 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
     return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
 }
 
-/* Is a circle so shallow that it reaches the piece (narc_is_shallow()), for certain? By the record of its arc, with its scale,
- * and that of the solid, with the piece's. */
-INLINE vm is_circle_shallow(const narc_record *records, vi circle_record, vf circle_scale, vi solid_record,
+/* Is a circle so shallow that it reaches the piece (narc_is_shallow()), for certain? By the fields of its arc, with its scale,
+ * and the record of the solid, with the piece's. */
+INLINE vm is_circle_shallow(const narc_record *records, const vf circle[4], vf circle_scale, vi solid_record,
                             vf piece_scale, vf separation) {
     const vf room = v_set(0x1p-17f), depth = v_mul(v_set(-1 - 0x1p-17f), separation);
     int32_t index[V_WIDTH];
-    vf circle[4], solid[4];
-    vi_store(index, circle_record);
-    v_rows(records, sizeof *records, index, circle);
+    vf solid[4];
     vi_store(index, solid_record);
     v_rows(records, sizeof *records, index, solid);
     /* The inner circle of its header lacks some roundings of the extent. */
@@ -71,9 +69,12 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         has_flag(vi_select(of_a, get_bits(queue, INFO_B, k), get_bits(queue, INFO_A, k)), NARC_SHAPE_CIRCLE);
     if (!front_only && vm_any(vm_and(which, round))) {
         const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
-        const vm shallow =
-            is_circle_shallow(batch->shapes->records, vi_select(of_a, ring_b.base, ring_a.base),
-                              v_select(of_a, scale_b, scale_a), last, v_select(of_a, scale_a, scale_b), separation);
+        int32_t index[V_WIDTH];
+        vf circle[4];
+        vi_store(index, vi_select(of_a, ring_b.base, ring_a.base));
+        v_rows(batch->shapes->records, sizeof *batch->shapes->records, index, circle);
+        const vm shallow = is_circle_shallow(batch->shapes->records, circle, v_select(of_a, scale_b, scale_a), last,
+                                             v_select(of_a, scale_a, scale_b), separation);
         which = vm_and_not(which, vm_and(round, shallow));
     }
     if (!vm_any(which))

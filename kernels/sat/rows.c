@@ -54,15 +54,6 @@ static void answer_rows(const struct call *call, struct queue *queues, int begin
     answer_settled(call, queues, begin, false);
 }
 
-NOINLINE vm settle_circles(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
-                           vm open, vf margin, const vf item[FIELDS]) {
-    (void)indices, (void)k;
-    const vm left = settle_circles_beside(call, queues, open, margin, item);
-    if (queues[ANSWER].count >= FLUSH)
-        run_stage(call, answer_rows, queues, ANSWER);
-    return left;
-}
-
 static void answer_settled_rows(const struct call *call, struct queue *queues) {
     const bool edges = call->question->kind == MANIFOLD_ROWS;
     if (queues[ANSWER].count >= FLUSH)
@@ -71,15 +62,40 @@ static void answer_settled_rows(const struct call *call, struct queue *queues) {
         run_stage(call, call->question->edges, queues, ANSWER_EDGES);
 }
 
-NOINLINE vm settle_above(const struct call *call, struct queue *queues, const struct pair_indices *indices, int k,
-                         vm open, vf margin, const vf item[FIELDS]) {
-    const vm left = settle_above_edges(call, queues, indices, k, open, margin, item);
+/* To settle pairs by their forms is worth a try if one in four is. */
+NOINLINE vm settle_some(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
+                        struct pieces_met *met) {
+    if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
+        return open;
+    const vm left = settle_above_edges(call, queues, open, margin, item);
+    met->asked += COUNT_BITS(vm_bits(open));
+    met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
     answer_settled_rows(call, queues);
     if (queues[DECIDE].count >= FLUSH) {
         run_stage(call, NARC_NAMED(search).stages[DECIDE], queues, DECIDE);
         answer_settled_rows(call, queues);
     }
     return left;
+}
+
+/* To look which pairs can be dropped is worth it if one in eight can; in few lanes a look costs what it saves. */
+INLINE vm drop_some(const struct call *call, vm open, const vf item[FIELDS], struct pieces_met *met) {
+    if (V_WIDTH <= 4 || (met->tried >= 2 * BLOCK && 8 * met->dropped < met->tried))
+        return open;
+    const vm kept = drop_beside(call, open, item);
+    met->tried += COUNT_BITS(vm_bits(open));
+    met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
+    return kept;
+}
+
+static vm settle_runs(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
+                      struct pieces_met *met) {
+    open = settle_circles_beside(call, queues, open, margin, item);
+    if (queues[ANSWER].count >= FLUSH)
+        run_stage(call, answer_rows, queues, ANSWER);
+    if (vm_any(open))
+        open = settle_some(call, queues, open, margin, item, met);
+    return vm_any(open) ? drop_some(call, open, item, met) : open;
 }
 
 static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
@@ -98,9 +114,9 @@ static void answer_circle_rows(const struct call *call, const struct box_queue *
     answer_circles(call, queue, k, live);
 }
 
-/* Takes the pairs through `end` stages, each with a queue. `concave`: one for pairs with concave arcs, or NULL if there are
- * no pieces. */
-NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, struct queue *concave) {
+/* Takes the pairs through `end` stages, each with a queue. `pieces`: two for pairs with concave arcs and with runs, or NULL
+ * if there are no pieces. */
+NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, struct queue *pieces) {
     const struct row_search *const search = &NARC_NAMED(search);
     const struct question *const question = given->question;
     const bool second = question->edges != NULL;
@@ -109,12 +125,9 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    search->stages[CLIMB],  polygons,
                                    search->stages[DECIDE], answer_rows,
                                    question->edges};
-    const bool drops = NARC_PIECES && NARC_SHORTCUTS && V_WIDTH > 4; /* in few lanes a look costs what it saves */
     const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
                                   .settle = triage_rows,
-                                  .beside = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_circles : NULL,
-                                  .above = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_above : NULL,
-                                  .drop = drops ? drop_beside : NULL,
+                                  .runs = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_runs : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
                                   .stages = stages,
                                   .first = NARC_SHORTCUTS ? PROBE : DECIDE,
@@ -122,7 +135,8 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                   .end = end};
     struct box_queue boxes[BOX_QUEUES];
     struct call call = *given;
-    call.concave = concave;
+    call.concave = pieces;
+    call.runs = pieces ? pieces + 1 : NULL;
     box_stage *const answers[BOX_QUEUES] = {second ? question->boxes : answer_rows_of_boxes,
                                             second ? question->capsules : answer_rows_of_capsules,
                                             NARC_CIRCLE_FORMS ? answer_circle_rows : NULL};
@@ -131,33 +145,33 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     run_pairs(&call, &course, queues);
     if (NARC_SHORTCUTS && call.boxes)
         end_boxes(&call);
-    while (NARC_PIECES && concave && concave->count > 0)
+    while (NARC_PIECES && pieces && pieces->count > 0)
         search->concave(&call);
 }
 
 /* What nobody asks for is not on the stack: second points, */
-NOINLINE void find_points(const struct call *call, struct queue *concave) {
+NOINLINE void find_points(const struct call *call, struct queue *pieces) {
     struct queue queues[ANSWER_EDGES];
-    run_rows(call, queues, ANSWER_EDGES, concave);
+    run_rows(call, queues, ANSWER_EDGES, pieces);
 }
 
-NOINLINE void find_second_points(const struct call *call, struct queue *concave) {
+NOINLINE void find_second_points(const struct call *call, struct queue *pieces) {
     struct queue queues[STAGES];
-    run_rows(call, queues, STAGES, concave);
+    run_rows(call, queues, STAGES, pieces);
 }
 
-INLINE void find_all(const struct call *call, struct queue *concave) {
+INLINE void find_all(const struct call *call, struct queue *pieces) {
     if (call->question->edges)
-        find_second_points(call, concave);
+        find_second_points(call, pieces);
     else
-        find_points(call, concave);
+        find_points(call, pieces);
 }
 
-/* and pairs with concave arcs. */
+/* and pairs with pieces. */
 NOINLINE void find_all_of_pieces(const struct call *call) {
-    struct queue concave;
-    concave.count = 0;
-    find_all(call, &concave);
+    struct queue pieces[2];
+    pieces[0].count = pieces[1].count = 0;
+    find_all(call, pieces);
 }
 
 void NARC_NAMED(find_rows)(const struct call *call) {
