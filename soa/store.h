@@ -167,8 +167,8 @@ enum { NARC_FORM_CORNERS = 8 };
 static inline bool narc_has_form(const narc_box_form *box) { return (box->info & ~NARC_IS_POLYGON) != 0; }
 
 /* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with
- * fewer, and a concave arc has two; and 16 arcs of shapes with one. */
-enum { NARC_READ_AHEAD = 15 };
+ * fewer, and a concave arc has two. */
+enum { NARC_READ_AHEAD = 2 };
 
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
