@@ -64,10 +64,15 @@ struct arc_bits {
     uint64_t faces_at_start, starts_left, ends_left, entered, near;
 };
 
-INLINE struct arc_bits look_at_arcs(const narc_record *arcs, vec2 o, vec2 v, vf near) {
+INLINE struct arc_bits look_at_arcs(const narc_record *arcs, int count, vec2 o, vec2 v, vf near) {
     const struct own_arcs arc = load_own_arcs(arcs);
-    const vf zero = v_set(0);
-    const vf h = v2_cross(v, v2_sub(arc.center, o)), turn = v2_cross(v, arc.start);
+    const vf zero = v_set(0), h = v2_cross(v, v2_sub(arc.center, o));
+    if (NARC_SHORTCUTS && !vm_any(vm_and(vm_front(count), v_lt(zero, arc.radius)))) { /* corners */
+        const uint32_t left = (uint32_t)vm_bits(v_le(zero, h));
+        return (struct arc_bits){(uint32_t)vm_bits(v_lt(v2_dot(v, arc.start), zero)), left, left, 0,
+                                 (uint32_t)vm_bits(v_le(v_abs(h), near))};
+    }
+    const vf turn = v2_cross(v, arc.start);
     const vf start = v_add(h, v_mul(arc.radius, turn)), end = v_add(h, v_mul(arc.radius, v2_cross(v, arc.end)));
     const vm start_faces = v_lt(v2_dot(v, arc.start), zero), end_faces = v_lt(v2_dot(v, arc.end), zero);
     /* Both ends of half a turn may face the ray, or neither. Then a quarter turn behind its start decides. */
@@ -88,7 +93,7 @@ NOINLINE struct arc_bits look_at_more_arcs(const narc_record *arcs, int count, p
     const vec2 o = {v_set((float)foot.x), v_set((float)foot.y)};
     const vec2 v = {v_set((float)direction.x), v_set((float)direction.y)};
     for (int k = V_WIDTH; k < count; k += V_WIDTH) {
-        const struct arc_bits more = look_at_arcs(arcs + k, o, v, v_set(near));
+        const struct arc_bits more = look_at_arcs(arcs + k, count - k, o, v, v_set(near));
         bits.faces_at_start |= more.faces_at_start << k;
         bits.starts_left |= more.starts_left << k;
         bits.ends_left |= more.ends_left << k;
@@ -103,7 +108,7 @@ INLINE struct entries find_entries(const struct body_frame *frame, place foot, p
     const vec2 o = {v_set((float)foot.x), v_set((float)foot.y)};
     const vec2 v = {v_set((float)direction.x), v_set((float)direction.y)};
     const float near = (float)(2 * touch);
-    struct arc_bits bits = look_at_arcs(frame->arcs, o, v, v_set(near));
+    struct arc_bits bits = look_at_arcs(frame->arcs, count, o, v, v_set(near));
     if (count > V_WIDTH)
         bits = look_at_more_arcs(frame->arcs, count, foot, direction, near, bits);
     const uint64_t left_before = bits.ends_left << 1 | (bits.ends_left >> (count - 1) & 1);

@@ -102,13 +102,14 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
 
 /* ------------------------------------------------------------------------------------------------ a node */
 
-/* What an axis is, in all lanes. */
+/* What an axis is, in all lanes; a far has room. */
 struct axis_lanes {
-    vf first_start, last_start, inverse;
+    vf first_start, last_start, inverse, far_inverse;
 };
 
 INLINE struct axis_lanes get_axis_lanes(const struct axis *axis) {
-    return (struct axis_lanes){v_set(axis->first_start), v_set(axis->last_start), v_set(axis->inverse)};
+    return (struct axis_lanes){v_set(axis->first_start), v_set(axis->last_start), v_set(axis->inverse),
+                               v_set(axis->inverse * (1 + ROOM))};
 }
 
 /* A bit for each slot that the ray meets, and where. */
@@ -120,12 +121,11 @@ INLINE uint32_t find_slots(const struct walk *w, struct axis_lanes x, struct axi
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
         const vf near_x = v_mul(v_sub(v_load(planes + w->x.first + k), x.first_start), x.inverse);
         const vf near_y = v_mul(v_sub(v_load(planes + w->y.first + k), y.first_start), y.inverse);
-        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), x.last_start), x.inverse);
-        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), y.last_start), y.inverse);
+        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), x.last_start), x.far_inverse);
+        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), y.last_start), y.far_inverse);
         const vf near = v_max(v_max(near_x, near_y), v_set(0));
-        const vf far = v_mul(v_min(far_x, far_y), v_set(1 + ROOM));
         v_store(out_near + k, near);
-        slots |= vm_bits(vm_and(v_le(near, far), v_le(near, limit))) << k;
+        slots |= vm_bits(v_le(near, v_min(v_min(far_x, far_y), limit))) << k;
     }
     return slots & ((1u << NARC_NODE_SLOTS) - 1);
 }

@@ -22,7 +22,6 @@ INLINE vd d_select(vl m, vd a, vd b) { return m ? a : b; }
 INLINE vd d_sqrt(vd a) { return sqrt(a); }
 INLINE vd d_abs(vd a) { return fabs(a); }
 INLINE vd d_min(vd a, vd b) { return a < b ? a : b; }
-INLINE vd d_max(vd a, vd b) { return a > b ? a : b; }
 INLINE int d_any(vl m) { return m != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return -(vl)(m << h); }
 INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
@@ -53,7 +52,6 @@ INLINE vd d_select(vl m, vd a, vd b) { return _mm512_mask_blend_pd((__mmask8)m, 
 INLINE vd d_sqrt(vd a) { return _mm512_sqrt_pd(a); }
 INLINE vd d_abs(vd a) { return _mm512_abs_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
-INLINE vd d_max(vd a, vd b) { return _mm512_max_pd(a, b); }
 INLINE int d_any(vl m) { return (__mmask8)m != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)m >> h; }
 INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); }
@@ -69,7 +67,6 @@ INLINE vd d_pack(vl m, vd a) { return (vd)v_pack(vm_packing((vm)m), (vf)a); }
 INLINE vd d_select(vl m, vd a, vd b) { return _mm256_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm256_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm256_min_pd(a, b); }
-INLINE vd d_max(vd a, vd b) { return _mm256_max_pd(a, b); }
 INLINE int d_any(vl m) { return _mm256_movemask_pd((vd)m) != 0; }
 INLINE vl d_of_lanes(vm m, int h) {
     const __m256i all = _mm256_castps_si256(m);
@@ -81,7 +78,6 @@ INLINE void d_put_floats(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a));
 INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
-INLINE vd d_max(vd a, vd b) { return _mm_max_pd(a, b); }
 INLINE int d_any(vl m) { return (_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1)) != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 #ifdef NARC_SIMD_ONE_H
@@ -96,7 +92,6 @@ INLINE void d_put_floats(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p
 #else
 INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
 INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
-INLINE vd d_max(vd a, vd b) { return d_select(d_lt(b, a), a, b); }
 INLINE int d_any(vl m) { return (m[0] | m[1]) != 0; }
 #if defined(__aarch64__)
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? vzip2q_u32(m, m) : vzip1q_u32(m, m)); }
