@@ -496,7 +496,8 @@ gate() {
     test_app dem
     NARC_TEST_TRIALS="$few_trials" ctest --preset ci -L 'slow|bench' -E '^package_meson_subproject$' ||
         fail "tests failed in build/ci"
-    # What these libraries do for the kernels is the same on each instruction set: plain C is built. Other processors test it.
+    # What these libraries do for the kernels is the same on each instruction set: plain C is built. Other processors test
+    # it, without these libraries too.
     cmake --preset bare -DNARC_COMPILES_avx512=OFF -DNARC_COMPILES_avx2=OFF -DNARC_COMPILES_sse41=OFF ||
         fail "configuring build/bare failed"
     check_some bare "" "narc narc_static narc_methods narc_methods_static example_world"

@@ -46,12 +46,14 @@ static void check_result(struct bytes *from, const struct outline *outline) {
         check_contained(outline, &result, "fuzz");
 }
 
-/* Within a part of the size: finer ones have thousands of corners of curves, which take seconds to check. */
-static void check_plain(const struct outline *outline, double part) {
+static double find_extent(const struct outline *outline) {
     double size = 0;
     for (size_t k = 0; k < outline->count; k++)
         size = fmax(size, fmax(fabs(outline->points[k].x), fabs(outline->points[k].y)));
-    const double tolerance = fmax(part, 0.01) * size;
+    return size;
+}
+
+static void check_plain(const struct outline *outline, double tolerance) {
     const narc_fit_request request = {.family = NARC_FIT_PLAIN, .tolerance = tolerance};
     narc_fit_result result;
     if (narc_fit_path(outline->path, &request, &result, NULL) != NARC_OK)
@@ -81,8 +83,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     check_result(&from, &outline);
     const double tolerance = pow(10, -(double)take_below(&from, 6));
     check_chains(&outline, tolerance, false);
-    check_chains(&outline, tolerance, true);
-    check_plain(&outline, tolerance);
+    /* Within a part of the size: finer ones have thousands of corners of curves, which take seconds. */
+    const double extent = find_extent(&outline);
+    check_chains(&outline, fmax(tolerance, 1e-3 * extent), true);
+    check_plain(&outline, fmax(tolerance, 0.01) * extent);
     free_outline(&outline);
     return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * shear.c - a sheared cell: across its border things happen as in the plane, what is conserved is, and grains flow as
- * they are sheared.
+ * shear.c - a sheared cell: what is conserved is, and grains flow as they are sheared. borders.c has what happens across
+ * its border.
  */
 #include <math.h>
 
@@ -9,70 +9,9 @@
 
 static const double RATE = 2, SIDE = 16;
 
-static dem_settings sheared_settings(void) {
-    dem_settings settings = plain_settings();
-    settings.periodic_x = settings.periodic_y = settings.sheared = true;
-    settings.high.x = settings.high.y = SIDE;
-    settings.rates.shear = RATE;
-    return settings;
-}
-
-/* Two grains that collide at the upper border at a time when the cell above is somewhere: A comes from below, B is seen
- * by its image, whose velocity is `drift` more. In the plane B is where its image is. `offset` is set at the start. */
-static void put_pair(dem *d, bool sheared, double offset, double x) {
-    const double drift = RATE * SIDE;
-    dem_contact_law law = plain_law();
-    law.friction = 0.3;
-    law.rolling_friction = 0.1;
-    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.7);
-    dem_settings settings = sheared ? sheared_settings() : plain_settings();
-    settings.time_step = 5e-5;
-    settings.skin = 0.1;
-    settings.max_overlap = 0.5;
-    *d = make_world(settings, law);
-    add_grain(d, ARCS, x, 14.6, 0, 0);
-    add_grain(d, ELL, sheared ? fmod(x + 0.2 - offset + 10 * SIDE, SIDE) : x + 0.2, sheared ? 0.95 : 16.95, 0, 0);
-    d->offset = offset;
-    dem_start(d);
-    assert_int_equal(d->contact_count, 0);
-    d->bodies[0].velocity.x = drift / 2; /* so that they meet */
-    d->bodies[0].velocity.y = 2;
-    d->bodies[1].velocity.x = sheared ? -drift / 2 : drift / 2;
-    d->bodies[1].velocity.y = -3;
-}
-
-TEST(test_collision_across_the_sheared_border) {
-    static const double offsets[] = {0, 3, -7.9, 7.99}, places[] = {8, 0.2, 15.9};
-    for (size_t i = 0; i < 12; i++) {
-        dem d, reference;
-        put_pair(&d, true, offsets[i % 4], places[i / 4]);
-        put_pair(&reference, false, offsets[i % 4], places[i / 4]);
-        size_t contacts = 0;
-        for (int s = 0; s < 3000; s++) {
-            step(&d, 1);
-            step(&reference, 1);
-            contacts += d.contact_count;
-            assert_int_equal(d.contact_count, reference.contact_count);
-        }
-        assert_true(contacts > 100);
-        assert_true(d.bodies[0].cell_y - d.bodies[1].cell_y != 0 || d.bodies[0].position.y > 14);
-        for (size_t k = 0; k < 2; k++) {
-            /* A starts in this cell, B one below its image. */
-            const double above = d.bodies[k].cell_y + (k == 1);
-            assert_true(fabs(d.bodies[k].velocity.x + above * RATE * SIDE - reference.bodies[k].velocity.x) < 1e-9);
-            assert_true(fabs(d.bodies[k].velocity.y - reference.bodies[k].velocity.y) < 1e-9);
-            assert_true(fabs(d.bodies[k].spin - reference.bodies[k].spin) < 1e-9);
-        }
-        assert_true(fabs(energies(&d).damping - energies(&reference).damping) < 1e-8);
-        assert_true(fabs(energies(&d).friction - energies(&reference).friction) < 1e-8);
-        dem_destroy(&d);
-        dem_destroy(&reference);
-    }
-}
-
 /* Dense: 84 % of the cell, frictional; discs, ellipses and Ls. */
 static dem make_flow(unsigned threads) {
-    dem_settings settings = sheared_settings();
+    dem_settings settings = sheared_settings(SIDE, RATE);
     dem_contact_law law = plain_law();
     settings.threads = threads;
     settings.max_overlap = 0.3;

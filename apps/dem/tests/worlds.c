@@ -31,6 +31,14 @@ dem_settings plain_settings(void) {
     return s;
 }
 
+dem_settings sheared_settings(double side, double rate) {
+    dem_settings s = plain_settings();
+    s.periodic_x = s.periodic_y = s.sheared = true;
+    s.high.x = s.high.y = side;
+    s.rates.shear = rate;
+    return s;
+}
+
 dem_contact_law plain_law(void) {
     return (dem_contact_law){.kn = 1e5, .kt = 2e5 / 7, .damping_ratio = -1, .gamma_n = 0, .tangential_share = 0.5};
 }

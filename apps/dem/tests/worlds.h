@@ -29,6 +29,9 @@ enum { DISC, ROUND, OCTAGON, ARCS, ELLIPSE, SHARP, SQUARE, LONG, SAND, DIMER, EL
 
 /* No gravity, thickness 1, one thread, a material of density 1 (and E = 1e6, nu = 0.25), no damping or friction. */
 dem_settings plain_settings(void);
+
+/* The same in a cell that is periodic and sheared. */
+dem_settings sheared_settings(double side, double rate);
 dem make_world(dem_settings settings, dem_contact_law law);
 
 /* With kn = 1e5, kt = 2/7 kn. */
