@@ -14,7 +14,7 @@ narc_status narc_create_index(const narc_allocator *allocator, narc_index **out_
     narc_index *index = chosen.allocate(sizeof *index, chosen.context);
     if (!index)
         return NARC_ERROR_MEMORY;
-    *index = (narc_index){.allocator = chosen};
+    *index = (narc_index){.allocator = chosen, .box = {INFINITY, INFINITY, -INFINITY, -INFINITY}};
     *out_index = index;
     return NARC_OK;
 }

@@ -123,6 +123,7 @@ struct narc_index {
     size_t sweep_capacity;
     narc_start *starts; /* and for each pair */
     size_t start_capacity;
+    narc_box box; /* around all; empty without boxes */
 };
 
 /* Makes room for an index of so many boxes, with masks and worlds or without, and for building it. What it holds is lost only if
@@ -160,21 +161,6 @@ static inline size_t narc_count_nodes(const narc_index *index) {
 
 static inline narc_box narc_get_node_box(const narc_index_node *node, size_t slot) {
     return (narc_box){node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
-}
-
-/* The box around all. Empty boxes change nothing. */
-static inline narc_box narc_find_index_box(const narc_index *index) {
-    narc_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    if (index->level_count == 0)
-        return box;
-    const narc_index_node *const root = index->nodes + narc_count_nodes(index) - 1;
-    for (int k = 0; k < NARC_NODE_SLOTS; k++) {
-        box.min_x = root->min_x[k] < box.min_x ? root->min_x[k] : box.min_x;
-        box.min_y = root->min_y[k] < box.min_y ? root->min_y[k] : box.min_y;
-        box.max_x = root->max_x[k] > box.max_x ? root->max_x[k] : box.max_x;
-        box.max_y = root->max_y[k] > box.max_y ? root->max_y[k] : box.max_y;
-    }
-    return box;
 }
 
 /* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; `left`: 7 if the ray goes left, else

@@ -129,14 +129,17 @@ static bool grow_headers(narc_shapes *shapes, size_t capacity) {
     return true;
 }
 
+/* Records behind the last one, NARC_READ_AHEAD or more: of a shape with one arc 16 may be read (load_own_arcs()). */
+enum { ARCS_AHEAD = 15 };
+
 /* Moves all blocks that are in use to a new array, one behind the other. */
 static bool move_records(narc_shapes *shapes, size_t capacity) {
     static const narc_arc circle = {0, 0, 1, 0, 2 * NARC_PI};
     narc_encoded_shape spare;
     void *array = NULL, *memory;
-    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record) - NARC_READ_AHEAD)
+    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record) - ARCS_AHEAD)
         return false;
-    memory = allocate(shapes, (capacity + NARC_READ_AHEAD) * sizeof(narc_record), &array);
+    memory = allocate(shapes, (capacity + ARCS_AHEAD) * sizeof(narc_record), &array);
     if (!memory)
         return false;
     narc_record *records = array;

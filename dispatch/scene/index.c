@@ -82,6 +82,13 @@ void narc_fit_nodes(const narc_making *making, unsigned level, size_t first, siz
     fit(making, level, first, end);
 }
 
+void narc_fit_root(const narc_making *making) {
+    narc_index *const index = making->index;
+    narc_index_node above;
+    making->kernels->nodes(index, index->level_count, 0, 1, &above);
+    index->box = narc_get_node_box(&above, 0);
+}
+
 /* A body may move a little beyond the box of its leaf: of half the perimeter, */
 #define HOME 0x1p-5f
 
@@ -139,7 +146,7 @@ static double find_perimeter(const narc_index_node *node, size_t slot) {
 
 /* Half of the perimeters of all nodes together. */
 static double sum_perimeters(const narc_index *index) {
-    const narc_box all = narc_find_index_box(index);
+    const narc_box all = index->box;
     double perimeter = 0;
     for (size_t k = index->node_count[0], end = narc_count_nodes(index); k < end; k++)
         for (size_t slot = 0; slot < NARC_NODE_SLOTS; slot++)
@@ -164,8 +171,7 @@ void narc_make_index(const narc_making *m, bool packed) {
         index->body[index->slots + k] = UINT32_MAX;
     index->home[0] = (narc_box){-INFINITY, -INFINITY, INFINITY, INFINITY}; /* of an only leaf */
     narc_spread_bodies(m, index->level_count - 1, 0, count);
-    narc_index_node above;
-    m->kernels->nodes(index, index->level_count, 0, 1, &above);
+    narc_fit_root(m);
     index->perimeter = sum_perimeters(index);
 }
 
@@ -198,6 +204,7 @@ narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t co
     index->origin = o->origin ? *o->origin : (narc_point){0, 0};
     index->perimeter = 0;
     index->level_count = 0;
+    index->box = (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (count > 0)
         narc_make_index(&(narc_making){index, kernels, boxes, o}, o->fast);
     return NARC_OK;
@@ -235,7 +242,7 @@ narc_status narc_copy_nodes(const narc_index *index, size_t level, narc_box *out
         const narc_box box = level + 1 < index->level_count
                                  ? narc_get_node_box(&index->nodes[index->first_node[level + 1] + k / NARC_NODE_SLOTS],
                                                      k % NARC_NODE_SLOTS)
-                                 : narc_find_index_box(index);
+                                 : index->box;
         memcpy(out, &box, sizeof box);
     }
     return NARC_OK;

@@ -41,6 +41,9 @@ void narc_spread_bodies(const narc_making *making, unsigned level, size_t node, 
 /* Fits nodes first .. end - 1 of a level above the leaves to their children. */
 void narc_fit_nodes(const narc_making *making, unsigned level, size_t first, size_t end);
 
+/* The box around all, and the order of the root, when all nodes fit their children. */
+void narc_fit_root(const narc_making *making);
+
 /* Are the arguments of a build in order? */
 narc_status narc_check_making(const narc_index *index, const narc_box *boxes, size_t count,
                               const narc_index_options *options, narc_error *error);

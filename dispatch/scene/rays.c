@@ -73,7 +73,7 @@ static uint32_t find_largest_world(narc_index_column world, size_t count) {
 
 static void order_rays(const narc_index *index, const narc_rays *rays, const narc_index_query *search, void *room,
                        uint32_t *out) {
-    const narc_box scene = narc_find_index_box(index);
+    const narc_box scene = index->box;
     const narc_point origin = index->origin;
     struct ordering o = {.rays = rays,
                          .world = search->world,

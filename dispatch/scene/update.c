@@ -366,12 +366,11 @@ narc_status narc_update_index(narc_index *index, const narc_box *boxes, size_t c
         narc_make_index(&u.making, false);
         return NARC_OK;
     }
-    narc_index_node above;
     const unsigned top = index->level_count - 1;
     if (top > 0 && all)
         fit_all(&u);
     else if (top > 0 && index->touched[index->first_node[top]] != 0)
         fit_touched(&u, top, 0);
-    kernels->nodes(index, index->level_count, 0, 1, &above);
+    narc_fit_root(&u.making);
     return NARC_OK;
 }

@@ -88,14 +88,12 @@ struct own_arcs {
     vec2 start, end;
 };
 
-/* Arcs first .. first + V_WIDTH - 1; lanes behind the last arc repeat it. */
-INLINE struct own_arcs load_own_arcs(const struct body_frame *frame, int first) {
-    const vi number = vi_add(vi_set(first), vi_lanes()), last = vi_set((int32_t)frame->header->count - 1);
-    int32_t index[V_WIDTH];
+/* Arcs that follow each other; lanes behind the last one of a shape have anything (soa/store.c). */
+INLINE struct own_arcs load_own_arcs(const narc_record *arcs) {
+    static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     vf field[8];
-    vi_store(index, vi_select(vi_lt(number, last), number, last));
-    v_rows(frame->arcs, sizeof *frame->arcs, index, field);
-    v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, index, field + 4);
+    v_rows(arcs, sizeof *arcs, lane, field);
+    v_rows(&arcs->arc.start_x, sizeof *arcs, lane, field + 4);
     return (struct own_arcs){{field[0], field[1]}, field[2], {field[4], field[5]}, {field[6], field[7]}};
 }
 

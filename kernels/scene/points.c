@@ -76,10 +76,11 @@ INLINE float find_separation(const struct body_frame *frame, float x, float y) {
     const vf scale = v_set((float)frame->scale);
     vf most = v_set(-INFINITY);
     for (int k = 0; k < (int)frame->header->count; k += V_WIDTH) {
-        const struct own_arcs arcs = load_own_arcs(frame, k);
+        const struct own_arcs arcs = load_own_arcs(frame->arcs + k);
         const vec2 u = v2_sub(point, v2_scale(v2_sub(arcs.center, middle), scale));
         const struct arc_view view = view_arc(u, arcs.start, arcs.end);
-        most = v_max(most, find_arc_separation(&view, v_mul(arcs.radius, scale)));
+        const vf separation = find_arc_separation(&view, v_mul(arcs.radius, scale));
+        most = v_max(most, v_select(vm_front((int)frame->header->count - k), separation, v_set(-INFINITY)));
     }
     float lane[V_WIDTH];
     v_store(lane, most);

@@ -59,34 +59,61 @@ struct entries {
     bool near;      /* is what is leftmost or rightmost of the outline near to the line? */
 };
 
+/* What is known of a line and arcs, a bit for each. */
+struct arc_bits {
+    uint64_t faces_at_start, starts_left, ends_left, entered, near;
+};
+
+INLINE struct arc_bits look_at_arcs(const narc_record *arcs, int count, vec2 o, vec2 v, vf near) {
+    const struct own_arcs arc = load_own_arcs(arcs);
+    const vf zero = v_set(0), h = v2_cross(v, v2_sub(arc.center, o));
+    if (NARC_SHORTCUTS && !vm_any(vm_and(vm_front(count), v_lt(zero, arc.radius)))) { /* corners */
+        const uint32_t left = (uint32_t)vm_bits(v_le(zero, h));
+        return (struct arc_bits){(uint32_t)vm_bits(v_lt(v2_dot(v, arc.start), zero)), left, left, 0,
+                                 (uint32_t)vm_bits(v_le(v_abs(h), near))};
+    }
+    const vf turn = v2_cross(v, arc.start);
+    const vf start = v_add(h, v_mul(arc.radius, turn)), end = v_add(h, v_mul(arc.radius, v2_cross(v, arc.end)));
+    const vm start_faces = v_lt(v2_dot(v, arc.start), zero), end_faces = v_lt(v2_dot(v, arc.end), zero);
+    /* Both ends of half a turn may face the ray, or neither. Then a quarter turn behind its start decides. */
+    const vm is_wide = v_lt(v2_dot(arc.start, arc.end), zero);
+    const vm middle_faces = vm_or(vm_and(is_wide, v_lt(zero, turn)), vm_and_not(start_faces, is_wide));
+    const vm faces = vm_or(vm_xor(start_faces, end_faces), middle_faces);
+    const vf from = v_select(start_faces, start, v_add(h, arc.radius));
+    const vf to = v_select(end_faces, end, v_sub(h, arc.radius));
+    return (struct arc_bits){(uint32_t)vm_bits(start_faces), (uint32_t)vm_bits(v_le(zero, start)),
+                             (uint32_t)vm_bits(v_le(zero, end)),
+                             (uint32_t)vm_bits(vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)))),
+                             (uint32_t)vm_bits(v_le(v_min(v_abs(from), v_abs(to)), near))};
+}
+
+/* Those that the first lanes have no room for. */
+NOINLINE struct arc_bits look_at_more_arcs(const narc_record *arcs, int count, place foot, place direction, float near,
+                                           struct arc_bits bits) {
+    const vec2 o = {v_set((float)foot.x), v_set((float)foot.y)};
+    const vec2 v = {v_set((float)direction.x), v_set((float)direction.y)};
+    for (int k = V_WIDTH; k < count; k += V_WIDTH) {
+        const struct arc_bits more = look_at_arcs(arcs + k, count - k, o, v, v_set(near));
+        bits.faces_at_start |= more.faces_at_start << k;
+        bits.starts_left |= more.starts_left << k;
+        bits.ends_left |= more.ends_left << k;
+        bits.entered |= more.entered << k;
+        bits.near |= more.near << k;
+    }
+    return bits;
+}
+
 INLINE struct entries find_entries(const struct body_frame *frame, place foot, place direction, double touch) {
     const int count = frame->header->count;
     const vec2 o = {v_set((float)foot.x), v_set((float)foot.y)};
     const vec2 v = {v_set((float)direction.x), v_set((float)direction.y)};
-    const vf zero = v_set(0);
-    uint64_t faces_at_start = 0, starts_left = 0, ends_left = 0, arcs = 0;
-    vf nearest = v_set(INFINITY);
-    for (int k = 0; k < count; k += V_WIDTH) {
-        const struct own_arcs arc = load_own_arcs(frame, k);
-        const vf h = v2_cross(v, v2_sub(arc.center, o)), turn = v2_cross(v, arc.start);
-        const vf start = v_add(h, v_mul(arc.radius, turn)), end = v_add(h, v_mul(arc.radius, v2_cross(v, arc.end)));
-        const vm start_faces = v_lt(v2_dot(v, arc.start), zero), end_faces = v_lt(v2_dot(v, arc.end), zero);
-        /* Both ends of half a turn may face the ray, or neither. Then a quarter turn behind its start decides. */
-        const vm is_wide = v_lt(v2_dot(arc.start, arc.end), zero);
-        const vm middle_faces = vm_or(vm_and(is_wide, v_lt(zero, turn)), vm_and_not(start_faces, is_wide));
-        const vm faces = vm_or(vm_xor(start_faces, end_faces), middle_faces);
-        const vf from = v_select(start_faces, start, v_add(h, arc.radius));
-        const vf to = v_select(end_faces, end, v_sub(h, arc.radius));
-        nearest = v_min(nearest, v_min(v_abs(from), v_abs(to)));
-        faces_at_start |= (uint64_t)vm_bits(start_faces) << k;
-        starts_left |= (uint64_t)vm_bits(v_le(zero, start)) << k;
-        ends_left |= (uint64_t)vm_bits(v_le(zero, end)) << k;
-        arcs |= (uint64_t)vm_bits(vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)))) << k;
-    }
-    const uint64_t left_before = ends_left << 1 | (ends_left >> (count - 1) & 1);
-    const uint64_t edges = faces_at_start & left_before & ~starts_left;
-    return (struct entries){edges, (arcs | edges) & UINT64_MAX >> (64 - count),
-                            vm_any(v_le(nearest, v_set((float)(2 * touch))))};
+    const float near = (float)(2 * touch);
+    struct arc_bits bits = look_at_arcs(frame->arcs, count, o, v, v_set(near));
+    if (count > V_WIDTH)
+        bits = look_at_more_arcs(frame->arcs, count, foot, direction, near, bits);
+    const uint64_t left_before = bits.ends_left << 1 | (bits.ends_left >> (count - 1) & 1);
+    const uint64_t edges = bits.faces_at_start & left_before & ~bits.starts_left, all = UINT64_MAX >> (64 - count);
+    return (struct entries){edges, (bits.entered | edges) & all, (bits.near & all) != 0};
 }
 
 /* Where the line crosses an arc's circle: the place nearest to the centre, and half a chord before that. What is beyond
@@ -153,21 +180,26 @@ INLINE bool is_thin(const struct body_frame *frame, const struct line *line) {
     return thin;
 }
 
-/* What a line touches, or nothing. A shape beside a line through its middle has an end at least. */
-NOINLINE struct entries find_touched(const struct body_frame *frame, const struct line *line,
-                                     const struct entries *entries, struct entry *out) {
-    const double touch = line->touch, beside = line->beside;
-    const place v = line->direction;
-    const bool in_middle = fabs(beside) <= touch;
-    struct entries found = *entries;
+/* What a line touches, if its own entries are none or it passes the middle: features, or else an end; or neither, which is
+ * -INFINITY along the line. A shape beside a line through its middle has an end at least. */
+struct touched {
+    struct entries entries;
+    struct entry end;
+};
+
+NOINLINE struct touched find_touched(struct body_frame frame, struct line line, struct entries entries) {
+    const double touch = line.touch, beside = line.beside;
+    const place v = line.direction;
     const double nearer = beside < 0 ? find_least(touch, -beside) : -find_least(touch, beside);
-    if (found.all == 0)
-        found = find_entries(frame, (place){line->foot.x + nearer * v.y, line->foot.y - nearer * v.x}, v, touch);
-    if (in_middle && (found.all == 0 || is_thin(frame, line))) {
-        found.all = 0;
-        enter_end(frame, line, out);
+    struct touched touched = {entries, {.along = -INFINITY}};
+    if (entries.all == 0)
+        touched.entries =
+            find_entries(&frame, (place){line.foot.x + nearer * v.y, line.foot.y - nearer * v.x}, v, touch);
+    if (fabs(beside) <= touch && (touched.entries.all == 0 || is_thin(&frame, &line))) {
+        touched.entries.all = 0;
+        enter_end(&frame, &line, &touched.end);
     }
-    return found;
+    return touched;
 }
 
 /* Does the line enter the shape, and where? It leaves where the one the other way round enters. */
@@ -175,10 +207,12 @@ INLINE bool find_entry(const struct body_frame *frame, const struct line *line, 
     const place foot = line->foot, direction = line->direction;
     struct entries entries = find_entries(frame, foot, direction, line->touch);
     if (entries.near && (entries.all == 0 || fabs(line->beside) <= line->touch)) {
-        out->along = -INFINITY;
-        entries = find_touched(frame, line, &entries, out);
-        if (entries.all == 0)
+        const struct touched touched = find_touched(*frame, *line, entries);
+        if (touched.entries.all == 0) {
+            *out = touched.end;
             return out->along > -INFINITY;
+        }
+        entries = touched.entries;
     }
     if (entries.all == 0)
         return false;
@@ -190,6 +224,13 @@ INLINE bool find_entry(const struct body_frame *frame, const struct line *line, 
     else
         enter_arc(arc, foot, direction, out);
     return true;
+}
+
+/* Where the line leaves. */
+NOINLINE bool find_exit(struct body_frame frame, struct line line, struct entry *out) {
+    line.direction = (place){-line.direction.x, -line.direction.y};
+    line.beside = -line.beside;
+    return find_entry(&frame, &line, out);
 }
 
 /* ------------------------------------------------------------------------------------------------ pieces of chains */
@@ -215,7 +256,8 @@ INLINE bool find_first_entry(const struct body_frame *frame, const struct line *
         return enter_concave(frame, line->foot, line->direction, out);
     if (!find_entry(frame, line, out))
         return false;
-    return !NARC_PIECES || narc_touches(header, find_feature_number(header, out->arc, out->on_edge));
+    return !has_mark_of(frame, NARC_PIECE_RUN) ||
+           narc_touches(header, find_feature_number(header, out->arc, out->on_edge));
 }
 
 /* ------------------------------------------------------------------------------------------------ one ray, one body */
@@ -238,13 +280,13 @@ struct meeting {
 };
 
 /* The same as find_meeting() of a half-plane, which a ray leaves only where it goes up. */
-NOINLINE bool find_plane_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
+NOINLINE bool find_plane_meeting(struct body_frame frame, const struct ray *ray, narc_inside inside, bool passes,
                                  struct meeting *out) {
-    const place from = {ray->origin.x - frame->position.x, ray->origin.y - frame->position.y};
-    const place v = turn_to_shape(frame, ray->direction), start = turn_to_shape(frame, from);
+    const place from = {ray->origin.x - frame.position.x, ray->origin.y - frame.position.y};
+    const place v = turn_to_shape(&frame, ray->direction), start = turn_to_shape(&frame, from);
     const bool above = start.y > 0, leaves = v.y > 0;
     const double distance = start.y / -v.y;
-    *out = (struct meeting){.foot = {start.x * frame->inverse_scale, start.y * frame->inverse_scale},
+    *out = (struct meeting){.foot = {start.x * frame.inverse_scale, start.y * frame.inverse_scale},
                             .direction = v,
                             .entry = {.normal = {0, 1}, .arc = PLANE_ARC, .on_edge = true},
                             .distance = distance};
@@ -262,8 +304,12 @@ NOINLINE bool find_plane_meeting(const struct body_frame *frame, const struct ra
 INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, narc_inside inside, bool passes,
                          struct meeting *out) {
     const narc_shape_header *const header = frame->header;
-    if (has_mark_of(frame, NARC_PIECE_PLANE))
-        return find_plane_meeting(frame, ray, inside, passes, out);
+    if (has_mark_of(frame, NARC_PIECE_PLANE)) {
+        struct meeting met;
+        const bool meets = find_plane_meeting(*frame, ray, inside, passes, &met);
+        *out = met;
+        return meets;
+    }
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
     const place v = turn_to_shape(frame, ray->direction), turned = turn_to_shape(frame, way);
     const place middle = {(double)header->bound_x, (double)header->bound_y};
@@ -273,7 +319,7 @@ INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, 
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    struct line line = {foot, v, beside, find_touch(header)};
+    const struct line line = {foot, v, beside, find_touch(header)};
     struct entry entry;
     out->is_within = out->is_start = false;
     if (!find_first_entry(frame, &line, &entry))
@@ -283,9 +329,7 @@ INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, 
         if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
             return false;
         struct entry exit;
-        line.direction = (place){-v.x, -v.y};
-        line.beside = -beside;
-        const bool leaves = find_entry(frame, &line, &exit);
+        const bool leaves = find_exit(*frame, line, &exit);
         distance = leaves ? (ahead - exit.along) * frame->scale : distance;
         if (!(distance >= 0))
             return false;

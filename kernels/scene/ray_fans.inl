@@ -305,8 +305,7 @@ INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct fan *f, const 
 }
 
 /* Casts one ray of a fan at a body, alone. */
-NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct body_frame *frame, uint32_t body,
-                       unsigned k) {
+NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, uint32_t body, unsigned k) {
     struct walk *const w = &f->walks[k];
     if (goes_in_lanes(f)) {
         put_hits(batch, f, 1u << k);
@@ -315,7 +314,7 @@ NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct 
         w->limit = f->limits[k];
         w->limit_fraction = f->nearest.fraction[k];
     }
-    cast_at_body(batch, w, frame, body);
+    cast_at_body(batch, w, body);
     f->limits[k] = w->limit;
     if (goes_in_lanes(f) && w->found > 0) {
         f->nearest.fraction[k] = w->rows->fraction;
@@ -333,14 +332,16 @@ INLINE bool visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size
         const size_t number = NARC_NODE_SLOTS * leaf + slot;
         uint32_t rays = find_rays(f, &index->nodes[leaf], slot);
         struct body_frame frame;
-        if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
+        const uint32_t body = index->body[number];
+        if (!rays)
             continue;
-        if (goes_in_lanes(f) && !narc_is_piece(frame.header))
-            rays = cast_in_lanes(batch, f, &frame, index->body[number], rays);
+        if (goes_in_lanes(f) && load_body_frame(batch->shapes, batch->bodies, body, &frame) &&
+            !narc_is_piece(frame.header))
+            rays = cast_in_lanes(batch, f, &frame, body, rays);
         for (; rays; rays &= rays - 1) {
             const unsigned k = (unsigned)FIND_LOWEST(rays);
             if (goes_in_lanes(f) || (index->masks ? index->masks[number] : UINT64_MAX) & f->walks[k].chosen.mask)
-                cast_one(batch, f, &frame, index->body[number], k);
+                cast_one(batch, f, body, k);
         }
     }
     const float limit = f->limit;
@@ -352,22 +353,23 @@ static void walk_together(const narc_ray_batch *batch, struct fan *f) {
     const narc_index *const index = batch->index;
     const struct walk *const first = &f->walks[0];
     struct descent d;
-    unsigned slot, level = index->level_count - 1;
+    unsigned level = index->level_count - 1;
     uint32_t below = 0;
+    bool goes_on = true;
     d.left = d.above = 0;
-    d.levels = index->level_count;
     begin_fan(batch, f);
-    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
+    for (; goes_on; level--) {
         const size_t node = (size_t)index->first_node[level] + below;
         const uint32_t slots =
             mask_slots(index, node, find_wedge_slots(f, &index->nodes[node], d.near[level]), &f->chosen);
-        d.node[level] = below;
-        if (level > 0)
-            leave_slots(&d, level, slots, narc_find_flips(index->order[node], first->left, first->aslant));
-        else if (visit_leaf_together(batch, f, node, slots, d.near[0]))
-            drop_slots(&d, 1, f->limit);
-        if (!take_slot(&d, &level, &slot))
-            break;
+        if (level > 0) {
+            goes_on =
+                go_below(&d, &level, &below, slots, narc_find_flips(index->order[node], first->left, first->aslant));
+        } else {
+            if (visit_leaf_together(batch, f, node, slots, d.near[0]))
+                drop_slots(&d, f->limit);
+            goes_on = take_slot(&d, &level, &below);
+        }
     }
     if (goes_in_lanes(f))
         put_hits(batch, f, UINT32_MAX);

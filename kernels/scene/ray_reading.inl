@@ -127,13 +127,16 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
         const vd fraction = single ? d_set((double)*out->fraction) : d_of_floats(out->fraction + k);
         const vl has_answer = is_finite & d_lt(zero, length) & d_le(zero, fraction);
         const vd direction_x = motion_x * inverse_length, direction_y = motion_y * inverse_length;
-        const vd inverse_x = one / direction_x, inverse_y = one / direction_y;
+        const vd inverse_x = length / motion_x, inverse_y = length / motion_y;
         const vd touch = d_set(least_touch) + (d_abs(x) + d_abs(y)) * d_set(0x1p-48);
-        vd from = zero, to = d_set((double)INFINITY);
-        cut_stretch(min_x - touch, max_x + touch, x, inverse_x, &from, &to);
-        cut_stretch(min_y - touch, max_y + touch, y, inverse_y, &from, &to);
-        const vd base = d_min(from, largest);
-        const vd start_x = x + base * direction_x, start_y = y + base * direction_y;
+        vd base = zero, start_x = x, start_y = y, to = d_set((double)INFINITY);
+        if (d_any(~(d_le(min_x, x) & d_le(x, max_x) & d_le(min_y, y) & d_le(y, max_y)))) {
+            cut_stretch(min_x - touch, max_x + touch, x, inverse_x, &base, &to);
+            cut_stretch(min_y - touch, max_y + touch, y, inverse_y, &base, &to);
+            base = d_min(base, largest);
+            start_x = x + base * direction_x;
+            start_y = y + base * direction_y;
+        }
         const vd room = (d_abs(start_x) + d_abs(start_y)) * d_set((double)ROOM) + touch;
         d_store(out->direction_x + k, direction_x);
         d_store(out->direction_y + k, direction_y);

@@ -38,7 +38,6 @@ struct axis {
  * a bit, eight for each level, of slot ^ flips: the lowest is the next. */
 struct descent {
     uint64_t left, above;
-    unsigned levels;
     uint32_t node[NARC_INDEX_LEVELS];
     unsigned flips[NARC_INDEX_LEVELS];
     float near[NARC_INDEX_LEVELS][NARC_NODE_SLOTS > V_WIDTH ? NARC_NODE_SLOTS : V_WIDTH];
@@ -56,6 +55,7 @@ struct walk {
     struct chosen chosen;
     size_t found;
     narc_ray_hit *rows;
+    bool is_masked; /* by worlds or categories */
 };
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
@@ -93,6 +93,7 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
     w->base = rays->base[k];
     w->room = rays->room[k];
     w->chosen = read_chosen(&batch->options->search, rays->number[k]);
+    w->is_masked = batch->index->worlds || batch->index->masks || w->chosen.mask == 0;
     w->found = 0;
     w->rows = get_rows(batch, rays, k);
     w->limit = rays->limit[k];
@@ -101,20 +102,30 @@ INLINE void begin_walk(const narc_ray_batch *batch, const struct read_rays *rays
 
 /* ------------------------------------------------------------------------------------------------ a node */
 
+/* What an axis is, in all lanes; a far has room. */
+struct axis_lanes {
+    vf first_start, last_start, inverse, far_inverse;
+};
+
+INLINE struct axis_lanes get_axis_lanes(const struct axis *axis) {
+    return (struct axis_lanes){v_set(axis->first_start), v_set(axis->last_start), v_set(axis->inverse),
+                               v_set(axis->inverse * (1 + ROOM))};
+}
+
 /* A bit for each slot that the ray meets, and where. */
-INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, float *out_near) {
+INLINE uint32_t find_slots(const struct walk *w, struct axis_lanes x, struct axis_lanes y, const narc_index_node *node,
+                           float *out_near) {
     const float *const planes = (const float *)node;
-    const vf inverse_x = v_set(w->x.inverse), inverse_y = v_set(w->y.inverse), limit = v_set(w->limit);
+    const vf limit = v_set(w->limit);
     uint32_t slots = 0;
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
-        const vf near_x = v_mul(v_sub(v_load(planes + w->x.first + k), v_set(w->x.first_start)), inverse_x);
-        const vf near_y = v_mul(v_sub(v_load(planes + w->y.first + k), v_set(w->y.first_start)), inverse_y);
-        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), v_set(w->x.last_start)), inverse_x);
-        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), v_set(w->y.last_start)), inverse_y);
+        const vf near_x = v_mul(v_sub(v_load(planes + w->x.first + k), x.first_start), x.inverse);
+        const vf near_y = v_mul(v_sub(v_load(planes + w->y.first + k), y.first_start), y.inverse);
+        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), x.last_start), x.far_inverse);
+        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), y.last_start), y.far_inverse);
         const vf near = v_max(v_max(near_x, near_y), v_set(0));
-        const vf far = v_mul(v_min(far_x, far_y), v_set(1 + ROOM));
         v_store(out_near + k, near);
-        slots |= vm_bits(vm_and(v_le(near, far), v_le(near, limit))) << k;
+        slots |= vm_bits(v_le(near, v_min(v_min(far_x, far_y), limit))) << k;
     }
     return slots & ((1u << NARC_NODE_SLOTS) - 1);
 }
@@ -222,56 +233,32 @@ INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const str
 
 /* ------------------------------------------------------------------------------------------------ a body */
 
-NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, struct body_frame frame, uint32_t body) {
     narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
-    if (!find_part_row(batch, w, frame, &hit))
+    if (!find_part_row(batch, w, &frame, &hit))
         return false;
     keep_hit(w, batch->most, &hit);
     return batch->options->any;
 }
 
 /* Casts a ray at a body. Is it done? */
-NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, uint32_t body) {
     narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
+    struct body_frame frame;
     struct meeting met;
+    if (!load_body_frame(batch->shapes, batch->bodies, body, &frame))
+        return false;
     if (w->chosen.owners)
         return cast_at_part(batch, w, frame, body);
-    if (body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
-        !put_meeting(frame, &w->ray, &met, w->limit_fraction, &hit))
+    if (body == w->chosen.ignored || !find_meeting(&frame, &w->ray, batch->options->inside, false, &met) ||
+        !put_meeting(&frame, &w->ray, &met, w->limit_fraction, &hit))
         return false;
     keep_hit(w, batch->most, &hit);
     return batch->options->any;
 }
 
-INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned slot, struct body_frame *out) {
-    return load_body_frame(batch->shapes, batch->bodies, batch->index->body[NARC_NODE_SLOTS * leaf + slot], out);
-}
-
-INLINE void leave_slots(struct descent *d, unsigned level, uint32_t slots, unsigned flips) {
-    const uint64_t left = (uint64_t)flipped[flips][slots] << 8 * (level & 7);
-    d->flips[level] = flips;
-    if (level < 8)
-        d->left |= left;
-    else
-        d->above |= left;
-}
-
-/* Leaves out what is further than a limit that has become less, from a level up. */
-NOINLINE void drop_slots(struct descent *d, unsigned level, float limit) {
-    for (; level < d->levels; level++) {
-        uint32_t far = 0;
-        for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
-            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[level] + k))) << k;
-        const uint64_t dropped = (uint64_t)flipped[d->flips[level]][far & 0xff] << 8 * (level & 7);
-        if (level < 8)
-            d->left &= ~dropped;
-        else
-            d->above &= ~dropped;
-    }
-}
-
-/* The next slot that is left, and its level. False if there is none. */
-INLINE bool take_slot(struct descent *d, unsigned *level, unsigned *slot) {
+/* The next slot that is left, its level, and what is below it: a node, or of a leaf a body. False if there is none. */
+INLINE bool take_slot(struct descent *d, unsigned *level, uint32_t *below) {
     unsigned bit;
     if (d->left) {
         bit = (unsigned)FIND_LOWEST_64(d->left);
@@ -283,45 +270,75 @@ INLINE bool take_slot(struct descent *d, unsigned *level, unsigned *slot) {
         d->above &= d->above - 1;
     }
     *level = bit >> 3;
-    *slot = (bit & 7) ^ d->flips[*level];
+    *below = NARC_NODE_SLOTS * d->node[*level] + ((bit & 7) ^ d->flips[*level]);
     return true;
 }
 
+/* Takes the first of a node's slots that are to be visited, and leaves the others; or as take_slot(). */
+INLINE bool go_below(struct descent *d, unsigned *level, uint32_t *below, uint32_t slots, unsigned flips) {
+    const uint32_t ordered = flipped[flips][slots], node = *below;
+    if (ordered == 0)
+        return take_slot(d, level, below);
+    const uint64_t left = (uint64_t)(ordered & (ordered - 1)) << 8 * (*level & 7);
+    d->node[*level] = node;
+    d->flips[*level] = flips;
+    if (*level < 8)
+        d->left |= left;
+    else
+        d->above |= left;
+    *below = NARC_NODE_SLOTS * node + ((unsigned)FIND_LOWEST(ordered) ^ flips);
+    return true;
+}
+
+/* Of slots that are left, from a level up: those that are no further than a limit. */
+INLINE uint64_t keep_slots(const struct descent *d, uint64_t left, unsigned level, float limit) {
+    uint64_t kept = left;
+    for (unsigned at; left; left &= ~((uint64_t)0xff << at)) {
+        at = (unsigned)FIND_LOWEST_64(left) & ~7u;
+        const unsigned number = level + at / 8;
+        uint32_t far = 0;
+        for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
+            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[number] + k))) << k;
+        kept &= ~((uint64_t)flipped[d->flips[number]][far & 0xff] << at);
+    }
+    return kept;
+}
+
+/* Leaves out what is further than a limit that has become less. */
+INLINE void drop_slots(struct descent *d, float limit) {
+    d->left = keep_slots(d, d->left, 0, limit);
+    d->above = keep_slots(d, d->above, 8, limit);
+}
+
 /* Casts a ray at the body in a leaf's slot. Is it done? */
-INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, struct descent *d, unsigned slot) {
-    const size_t leaf = d->node[0];
+INLINE bool visit_slot(const narc_ray_batch *batch, struct walk *w, struct descent *d, uint32_t number) {
     const float limit = w->limit;
-    struct body_frame frame;
-    if (load_slot_frame(batch, leaf, slot, &frame) &&
-        cast_at_body(batch, w, &frame, batch->index->body[NARC_NODE_SLOTS * leaf + slot]))
+    if (cast_at_body(batch, w, batch->index->body[number]))
         return true;
     if (w->limit < limit)
-        drop_slots(d, 0, w->limit);
+        drop_slots(d, w->limit);
     return false;
 }
 
-/* Leaves the slots of a node that the ray meets to be visited. */
-INLINE void visit_node(const narc_index *index, const struct walk *w, unsigned level, uint32_t at, struct descent *d) {
-    const size_t node = (size_t)index->first_node[level] + at;
-    const uint32_t slots = find_slots(w, &index->nodes[node], d->near[level]);
-    d->node[level] = at;
-    leave_slots(d, level, mask_slots(index, node, slots, &w->chosen),
-                narc_find_flips(index->order[node], w->left, w->aslant));
+/* Visits a node of a level, and goes on below it, as go_below(). */
+INLINE bool visit_node(const narc_index *index, const struct walk *w, struct axis_lanes x, struct axis_lanes y,
+                       unsigned *level, uint32_t *below, struct descent *d) {
+    const size_t node = (size_t)index->first_node[*level] + *below;
+    const uint32_t slots = find_slots(w, x, y, &index->nodes[node], d->near[*level]);
+    return go_below(d, level, below, w->is_masked ? mask_slots(index, node, slots, &w->chosen) : slots,
+                    narc_find_flips(index->order[node], w->left, w->aslant));
 }
 
 NOINLINE void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     struct descent d;
-    unsigned slot, level = batch->index->level_count - 1;
+    const struct axis_lanes x = get_axis_lanes(&w->x), y = get_axis_lanes(&w->y);
+    unsigned level = batch->index->level_count - 1;
     uint32_t below = 0;
     d.left = d.above = 0;
-    d.levels = level + 1;
-    for (;; below = NARC_NODE_SLOTS * d.node[level] + slot, level--) {
-        visit_node(batch->index, w, level, below, &d);
-        do {
-            if (!take_slot(&d, &level, &slot) || (level == 0 && visit_slot(batch, w, &d, slot)))
+    for (; visit_node(batch->index, w, x, y, &level, &below, &d); level--)
+        while (level == 0)
+            if (visit_slot(batch, w, &d, below) || !take_slot(&d, &level, &below))
                 return;
-        } while (level == 0);
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------ rays side by side */
@@ -332,17 +349,9 @@ enum { UNDER_WAY = 16 };
 struct stepper {
     struct walk walk;
     struct descent d;
-    unsigned level, slot;
+    unsigned level; /* of the node to visit, and one more; 0: of the body */
     uint32_t below;
 };
-
-/* Goes to what comes next in a walk: a node, or a body at level 0. False at its end. */
-INLINE bool find_step(struct stepper *s) {
-    if (!take_slot(&s->d, &s->level, &s->slot))
-        return false;
-    s->below = NARC_NODE_SLOTS * s->d.node[s->level] + s->slot;
-    return true;
-}
 
 /* Rays that have no company. */
 struct loners {
@@ -358,7 +367,7 @@ INLINE bool begin_steps(const narc_ray_batch *batch, struct loners *loners, stru
     begin_walk(batch, loners->rays, loners->number[loners->next++], &out->walk);
     out->d.left = out->d.above = 0;
     out->below = 0;
-    out->level = out->d.levels = batch->index->level_count;
+    out->level = batch->index->level_count;
     return true;
 }
 
@@ -373,8 +382,10 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
         node_count = 0;
         for (size_t k = 0; k < nodes; k++) {
             struct stepper *const s = at_node[k];
-            visit_node(batch->index, &s->walk, s->level - 1, s->below, &s->d);
-            if (!find_step(s) && !begin_steps(batch, loners, s))
+            s->level--;
+            if (!visit_node(batch->index, &s->walk, get_axis_lanes(&s->walk.x), get_axis_lanes(&s->walk.y), &s->level,
+                            &s->below, &s->d) &&
+                !begin_steps(batch, loners, s))
                 continue;
             at_node[node_count] = at_body[body_count] = s;
             node_count += s->level > 0;
@@ -384,7 +395,7 @@ NOINLINE void walk_apart(const narc_ray_batch *batch, struct loners *loners) {
             struct stepper *const s = at_body[k];
             bool goes_on;
             do {
-                goes_on = !visit_slot(batch, &s->walk, &s->d, s->slot) && find_step(s);
+                goes_on = !visit_slot(batch, &s->walk, &s->d, s->below) && take_slot(&s->d, &s->level, &s->below);
             } while (goes_on && s->level == 0);
             if (goes_on || begin_steps(batch, loners, s))
                 at_node[node_count++] = s;

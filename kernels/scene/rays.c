@@ -63,7 +63,7 @@ static bool cast_one_ray(const narc_ray_batch *batch, const narc_box *scene, siz
 }
 
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
-    const narc_box scene = narc_find_index_box(batch->index);
+    const narc_box scene = batch->index->box;
     size_t skipped = 0;
     struct read_rays rays;
     if (count == 1)
