@@ -358,6 +358,7 @@ static void write_tres_3(FILE *file, const exported *what) { put_godot_shape(fil
 
 /* ---------------------------------------------------------------------------- engines */
 
+/* Circles, too: Matter makes polygons within of them, which are no closer than it likes. */
 static void write_phaser(FILE *file, const exported *what) {
     cJSON *root = open_json();
     for (size_t i = 0; i < what->count; i++) {
@@ -370,14 +371,7 @@ static void write_phaser(FILE *file, const exported *what) {
             const piece *p = &body->pieces[k];
             cJSON *fixture = put_object(fixtures, NULL);
             put_text(fixture, "label", p->name);
-            if (p->kind == CIRCLE) {
-                cJSON *circle = put_object(fixture, "circle");
-                put_number(circle, "x", p->center.x);
-                put_number(circle, "y", p->center.y);
-                put_number(circle, "radius", p->radius);
-            } else {
-                put_vectors(put_list(fixture, "vertices"), NULL, p);
-            }
+            put_vectors(put_list(fixture, "vertices"), NULL, p);
         }
     }
     close_json(file, root);
@@ -526,7 +520,7 @@ const export_format export_formats[] = {
     {"godot3", true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, false, false, write_godot_3},
     {"tres",   true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, true,  false, write_tres},
     {"tres3",  true,  CIRCLE | CAPSULE | BOX | OUTLINE | LOOP | LINE, 0, true,  false, write_tres_3},
-    {"phaser", true,  CIRCLE | OUTLINE,                               0, false, false, write_phaser},
+    {"phaser", true,  OUTLINE,                                        0, false, false, write_phaser},
     {"box2d",  false, CIRCLE | OUTLINE | LOOP | LINE,                 8, false, false, write_box2d},
     {"libgdx", false, CIRCLE | OUTLINE,                               8, false, false, write_libgdx},
     {"svg",    true,  CIRCLE | OUTLINE | LOOP | LINE | ARCS,          0, false, false, write_svg},

@@ -165,7 +165,8 @@ static void check_combinations(const option *options) {
     if (options[ARCS].value || options[TOLERANCE].value)
         return;
     if (!options[PARTS].value)
-        fail("--arcs or --tolerance is missing");
+        fail(options[CHAIN].value ? "--tolerance, within which chains follow the outline, is missing"
+                                  : "--arcs, --tolerance or --parts is missing: see narc fit --help");
     static const int of_fits[] = {BOUND, APPROXIMATE, OBJECTIVE,  EDGES, NO_EDGES, POLYGON,
                                   PAPER, FLATNESS,    MIN_RADIUS, QUICK, STARTS};
     for (size_t k = 0; k < sizeof of_fits / sizeof of_fits[0]; k++)
@@ -319,22 +320,27 @@ static bool measure_union(collider *of, narc_error *error) {
     return done;
 }
 
-/* How many parts would do, and with which tolerance these would: each is tried. */
-static void find_remedy(const fitting *how, const narc_path *path, const narc_parts_request *cut, char *reason,
-                        size_t size) {
+/* How many parts would do, and with which tolerance, more than `least`, these would: each is tried. */
+static void find_remedy(const fitting *how, const narc_path *path, const narc_parts_request *cut, double least,
+                        char *reason, size_t size) {
     const double whole = how->request.tolerance;
     narc_parts_request more = *cut, wider = *cut;
     narc_parts parts;
-    size_t used = (size_t)snprintf(reason, size, "the tolerance %g is not reached with %zu parts", whole, cut->most);
+    const char *before = ", ", *behind = " may do";
+    size_t used = (size_t)snprintf(reason, size,
+                                   least > 0 ? "the tolerance %g is too small for %zu parts and their shapes"
+                                             : "the tolerance %g is not reached with %zu parts",
+                                   whole, cut->most);
     more.most = NARC_MAX_PARTS;
-    if (narc_cut_path(path, &more, &parts, NULL) == NARC_OK) {
+    if (!(least > 0) && narc_cut_path(path, &more, &parts, NULL) == NARC_OK) {
         used += (size_t)snprintf(reason + used, size - used, ", --parts %zu may do", parts.count);
         narc_release_parts(&parts);
+        before = ", or ", behind = "";
     }
     wider.tolerance = 0;
     if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
         return;
-    double enough = parts.distance * whole / cut->tolerance;
+    double enough = fmax(least, parts.distance * whole / cut->tolerance);
     narc_release_parts(&parts);
     for (int tries = 0; tries < 8; tries++) { /* what is simplified takes a part */
         char text[32];
@@ -345,27 +351,54 @@ static void find_remedy(const fitting *how, const narc_path *path, const narc_pa
         if (narc_cut_path(path, &wider, &parts, NULL) != NARC_OK)
             continue;
         narc_release_parts(&parts);
-        snprintf(reason + used, size - used, ", or --tolerance %s", text);
+        snprintf(reason + used, size - used, "%s--tolerance %s%s", before, text, behind);
         return;
     }
 }
 
-/* What went wrong with cuts, or with the shape of the part that how->at tells, in the numbers of the whole tolerance. */
-static void explain(const fitting *how, const narc_path *path, const narc_parts_request *cut, bool is_cut,
+static bool is_smooth(const narc_fit_request *request) {
+    return request->family == NARC_FIT_N_ARC && !(request->min_radius > 0);
+}
+
+/* What went wrong with cuts, or with the shape of the part that how->at tells, which has `share` of the tolerance. */
+static void explain(const fitting *how, const narc_path *path, const narc_parts_request *cut, double share,
                     narc_error *error) {
     const double whole = how->request.tolerance, lap = NARC_LAP_REACH * cut->lap;
     char reason[sizeof error->message];
     if (!(whole > 0) || error->status != NARC_ERROR_NO_SOLUTION)
         return;
-    if (!is_cut)
-        snprintf(reason, sizeof reason, "part %zu, whose shape has a share of the tolerance %g: %.120s",
-                 how->at.part + 1, whole, error->message);
-    else if (error->value > cut->tolerance) /* what is needed beside laps, which are in proportion */
-        snprintf(reason, sizeof reason, "the tolerance %g is too small for parts and their shapes, %g may do", whole,
-                 whole * (error->value - lap) / (cut->tolerance - lap));
-    else
-        find_remedy(how, path, cut, reason, sizeof reason);
+    if (share > 0 && error->value > share)
+        snprintf(reason, sizeof reason,
+                 "part %zu has %.3g of the tolerance %g, and its shape comes within %.3g: %s--tolerance %.3g may do",
+                 how->at.part + 1, share, whole, error->value,
+                 is_smooth(&how->request) ? "leave --no-edges out, or " : "", 1.1 * whole * error->value / share);
+    else if (share > 0)
+        snprintf(reason, sizeof reason, "part %zu: %.150s", how->at.part + 1, error->message);
+    else /* laps are in proportion to the tolerance */
+        find_remedy(how, path, cut,
+                    error->value > cut->tolerance ? whole * (error->value - lap) / (cut->tolerance - lap) : 0, reason,
+                    sizeof reason);
     memcpy(error->message, reason, sizeof reason);
+}
+
+/* To the error of a shape that does not come near enough: what would do, which is tried. */
+static void suggest_tolerance(fitting *how, const narc_path *path, narc_fit_request request, narc_error *error) {
+    narc_fit_result fit;
+    narc_error last = *error;
+    request.progress = tell_progress;
+    request.context = &how->at;
+    for (int tries = 0; tries < 4 && last.status == NARC_ERROR_NO_SOLUTION && last.value > request.tolerance; tries++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.3g", 1.01 * last.value);
+        request.tolerance = strtod(text, NULL);
+        if (narc_fit_path(path, &request, &fit, &last) != NARC_OK)
+            continue;
+        const char *reason = is_smooth(&request) ? strrchr(error->message, ':') : NULL; /* radii: then edges do */
+        const size_t used = reason ? (size_t)(reason - error->message) : strlen(error->message);
+        snprintf(error->message + used, sizeof error->message - used, "%s--tolerance %s does",
+                 reason ? ": --edges may do, " : "; ", text);
+        return;
+    }
 }
 
 /* With a tolerance both kinds of distances share it. Parts that are approximated go on beyond their cuts by twice the
@@ -385,7 +418,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
     for (int tries = approximates && request.arc_count ? 2 : 1; tries > 0; tries--) {
         narc_parts parts;
         if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK) {
-            explain(how, of->path, &cut, true, error);
+            explain(how, of->path, &cut, 0, error);
             return false;
         }
         free(out->fits);
@@ -399,7 +432,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
             request.tolerance = approximates ? cut.lap / 2 : whole - parts.distance;
         const bool done = fit_each(how, parts.paths, request, out, error);
         if (!done)
-            explain(how, of->path, &cut, false, error);
+            explain(how, of->path, &cut, request.tolerance, error);
         cut.lap = 2 * out->distance;
         out->distance += parts.distance;
         narc_release_parts(&parts);
@@ -438,6 +471,8 @@ static bool fit_outline(fitting *how, const outline *of, collider *out, narc_err
     const bool done = exact        ? cut_exactly(how, of, out, error)
                       : how->parts ? fit_parts(how, of, request, out, error)
                                    : fit_each(how, &(narc_path *){of->path}, request, out, error);
+    if (!done && !exact && !how->parts && request.arc_count == 0)
+        suggest_tolerance(how, of->path, request, error);
     out->seconds = seconds_now() - begin;
     narc_destroy_shapes(how->store);
     if (!done)

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "canvas.h"
+#include "draw_fit.h"
 #include "fail.h"
 #include "legend.h"
 #include "progress.h"
@@ -44,6 +45,7 @@ typedef struct view {
     double zoom;               /* pixels per unit of length */
     double width, height;      /* of the page */
     double text;               /* its size in the legend */
+    double reach;              /* what is further from the world's origin is left out */
     bool shown[SAMPLE_COUNT];
 } view;
 
@@ -60,44 +62,92 @@ static double pixel_size(const view *seen, const body_scene *scene, size_t index
     return is_endless(scene, index) ? GOOD_BODY : seen->zoom * box_size(scene->boxes[index]);
 }
 
+static bool is_within(double reach, narc_aabb box) {
+    return box.min_x >= -reach && box.min_y >= -reach && box.max_x <= reach && box.max_y <= reach;
+}
+
+/* Of ground without end its place. */
+static narc_aabb find_box(const body_scene *scene, size_t index) {
+    const body *b = &scene->bodies->items[index];
+    return is_endless(scene, index) ? (narc_aabb){b->x, b->y, b->x, b->y} : scene->boxes[index];
+}
+
+static bool has_body(const view *seen, const body_scene *scene, size_t index) {
+    return is_within(seen->reach, find_box(scene, index));
+}
+
+static bool has_contact(const view *seen, const body_scene *scene, size_t k) {
+    const pair of = scene->pairs->items[scene->contacts[k].pair];
+    return isfinite(scene->contacts[k].separation) && has_body(seen, scene, of.a) && has_body(seen, scene, of.b);
+}
+
+static bool has_ray(const view *seen, const drawn_ray *ray) {
+    return is_within(seen->reach, (narc_aabb){ray->x, ray->y, ray->x, ray->y});
+}
+
+static bool has_hit(const view *seen, const body_scene *scene, const drawn_ray *ray) {
+    return ray->hit.count && has_body(seen, scene, ray->hit.body);
+}
+
 /* What the picture will have. */
-static void find_samples(const body_scene *scene, bool *shown) {
+static void find_samples(const body_scene *scene, view *seen) {
+    bool *shown = seen->shown;
     for (size_t i = 0; i < scene->bodies->count; i++)
-        shown[scene->marked[i] ? HIT : FREE] = true;
+        shown[scene->marked[i] ? HIT : FREE] |= has_body(seen, scene, i);
     for (size_t k = 0; k < scene->contact_count; k++)
-        if (isfinite(scene->contacts[k].separation))
-            shown[scene->contacts[k].separation < 0 ? TOUCHING : APART] = true;
-    for (size_t k = 0; k < scene->ray_count; k++)
-        shown[TOUCHING] = shown[TOUCHING] || scene->rays[k].hit.count;
-    shown[APART] = shown[APART] || scene->ray_count;
+        shown[scene->contacts[k].separation < 0 ? TOUCHING : APART] |= has_contact(seen, scene, k);
+    for (size_t k = 0; k < scene->ray_count; k++) {
+        shown[TOUCHING] |= has_ray(seen, &scene->rays[k]) && has_hit(seen, scene, &scene->rays[k]);
+        shown[APART] |= has_ray(seen, &scene->rays[k]);
+    }
 }
 
 /* Bodies alone need none. */
 static bool has_legend(const bool *shown) { return shown[HIT] || shown[TOUCHING] || shown[APART]; }
 
-/* Chooses the page's size and how the world lies on it. */
-static view choose_view(const char *path, const body_scene *scene) {
-    view seen = {0};
-    const size_t count = scene->bodies->count;
-    narc_aabb world = count ? (narc_aabb){INFINITY, INFINITY, -INFINITY, -INFINITY} : (narc_aabb){-1, -1, 1, 1};
+/* Where all lies that is within reach, and the mean size of the bodies; out_count: how many these are. */
+static narc_aabb bound_world(const view *seen, const body_scene *scene, double *out_mean, size_t *out_count) {
+    narc_aabb world = EMPTY_BOX;
     double sizes = 0;
-    for (size_t i = 0; i < count; i++) {
-        const body *b = &scene->bodies->items[i]; /* of ground without end its place */
-        const narc_aabb box = is_endless(scene, i) ? (narc_aabb){b->x, b->y, b->x, b->y} : scene->boxes[i];
-        world = (narc_aabb){fmin(world.min_x, box.min_x), fmin(world.min_y, box.min_y), fmax(world.max_x, box.max_x),
-                            fmax(world.max_y, box.max_y)};
-        sizes += box_size(box);
+    *out_count = 0;
+    for (size_t i = 0; i < scene->bodies->count; i++) {
+        if (has_body(seen, scene, i)) {
+            world = join_boxes(world, find_box(scene, i));
+            sizes += box_size(find_box(scene, i));
+            ++*out_count;
+        }
     }
+    if (*out_count == 0)
+        world = (narc_aabb){-1, -1, 1, 1};
     for (size_t k = 0; k < scene->ray_count; k++) {
         const drawn_ray *ray = &scene->rays[k];
-        world = (narc_aabb){fmin(world.min_x, ray->x), fmin(world.min_y, ray->y), fmax(world.max_x, ray->x),
-                            fmax(world.max_y, ray->y)};
+        if (has_ray(seen, ray))
+            world = join_boxes(world, (narc_aabb){ray->x, ray->y, ray->x, ray->y});
     }
-    const double size = box_size(world), mean = count ? sizes / (double)count : size;
-    if (!(size > 0 && size <= NARC_MAX_DISTANCE))
+    *out_mean = *out_count ? sizes / (double)*out_count : box_size(world);
+    return world;
+}
+
+/* Chooses the page's size and how the world lies on it. */
+static view choose_view(const char *path, const body_scene *scene) {
+    view seen = {.reach = INFINITY};
+    const size_t all = scene->bodies->count;
+    size_t count;
+    double mean;
+    narc_aabb world = bound_world(&seen, scene, &mean, &count);
+    if (!(box_size(world) <= NARC_MAX_DISTANCE)) {
+        seen.reach = NARC_MAX_DISTANCE / 2;
+        world = bound_world(&seen, scene, &mean, &count);
+        if (count == 0 && all > 0)
+            fail("%s: the bodies are too far apart to draw", path);
+        warn_at(path, "%zu of %zu bodies, and rays, that are more than %g from the origin are left out", all - count,
+                all, seen.reach);
+    }
+    const double size = box_size(world);
+    if (!(size > 0))
         fail("%s: the bodies are too far apart to draw", path);
     const double side = clamp(GOOD_BODY * size / mean, SMALLEST_PAGE, LARGEST_PAGE) - 2 * MARGIN;
-    find_samples(scene, seen.shown);
+    find_samples(scene, &seen);
     const bool legend = has_legend(seen.shown);
     seen.zoom = side / size;
     seen.width = fmax(seen.zoom * (world.max_x - world.min_x) + 2 * MARGIN, legend ? NARROWEST_LEGEND : NARROWEST_PAGE);
@@ -241,7 +291,7 @@ static void draw_ray(canvas *page, const view *seen, const body_scene *scene, si
     const narc_point from = to_page(seen, ray->x, ray->y);
     narc_point to = to_page(seen, ray->end_x, ray->end_y);
     const double length = hypot(to.x - from.x, to.y - from.y), longest = seen->width + seen->height;
-    if (!ray->hit.count && length > longest)
+    if (!has_hit(seen, scene, ray) && length > longest)
         to = (narc_point){from.x + (to.x - from.x) / length * longest, from.y + (to.y - from.y) / length * longest};
     if (k % scene->hits_per_ray == 0) {
         set_color(page, NEAR_CONTACT);
@@ -251,7 +301,7 @@ static void draw_ray(canvas *page, const view *seen, const body_scene *scene, si
         cairo_stroke(page->pen);
         draw_dot(page, from, THICKEST);
     }
-    if (ray->hit.count) {
+    if (has_hit(seen, scene, ray)) {
         const double size = pixel_size(seen, scene, ray->hit.body);
         paint_contact(page, to, (narc_point){(double)ray->hit.normal_x, (double)ray->hit.normal_y}, true, size);
     }
@@ -334,17 +384,18 @@ void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
     stamps made = make_stamps(page.kind, scene->shapes->count);
     const size_t count = scene->bodies->count, steps = 2 * count + scene->contact_count + scene->ray_count;
     for (size_t i = 0; i < 2 * count; i++) {
-        if (scene->marked[i % count] == (i >= count))
+        if (scene->marked[i % count] == (i >= count) && has_body(&seen, scene, i % count))
             draw_body(&page, &seen, scene, &made, i % count);
         show_progress("drawing", i, steps);
     }
     for (size_t k = 0; k < scene->contact_count; k++) {
-        if (isfinite(scene->contacts[k].separation))
+        if (has_contact(&seen, scene, k))
             draw_contact(&page, &seen, scene, &made, k);
         show_progress("drawing", 2 * count + k, steps);
     }
     for (size_t k = 0; k < scene->ray_count; k++) {
-        draw_ray(&page, &seen, scene, k);
+        if (has_ray(&seen, &scene->rays[k]))
+            draw_ray(&page, &seen, scene, k);
         show_progress("drawing", 2 * count + k, steps);
     }
     draw_legend_of(&page, &seen, scene);

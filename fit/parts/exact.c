@@ -546,5 +546,6 @@ narc_status narc_cut_exactly(const narc_path *path, narc_fit_result *out_parts, 
     *out_count = count;
     return count <= capacity ? NARC_OK
                              : narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)count,
-                                         "it takes %zu convex parts, more than %zu", count, capacity);
+                                         "it takes %zu convex parts, more than %zu; within a tolerance fewer may do",
+                                         count, capacity);
 }

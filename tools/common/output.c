@@ -23,8 +23,39 @@ struct output {
 };
 
 static output *volatile first;
-static char **inputs;
-static size_t input_count, input_capacity;
+static output *last, *current; /* the newest, and the one that was opened last */
+
+/* The files of inputs and outputs, hashed: at most half of the places are taken. */
+typedef struct known {
+    char *target; /* NULL: a free place */
+    output *out;  /* NULL: an input */
+} known;
+static known *files;
+static size_t places, taken;
+
+static known *find_known(const char *target) {
+    size_t at = 5381;
+    for (const char *c = target; *c; c++)
+        at = 33 * at + (unsigned char)*c;
+    for (at &= places - 1; files[at].target && strcmp(files[at].target, target) != 0;)
+        at = (at + 1) & (places - 1);
+    return &files[at];
+}
+
+static known *make_known(const char *target) {
+    if (2 * taken >= places) {
+        known *old = files;
+        const size_t count = places;
+        places = count ? 2 * count : 64;
+        files = allocate(places, sizeof *files);
+        memset(files, 0, places * sizeof *files);
+        for (size_t i = 0; i < count; i++)
+            if (old[i].target)
+                *find_known(old[i].target) = old[i];
+        free(old);
+    }
+    return find_known(target);
+}
 
 /* The file that a path means, symbolic links followed, always by the same name; the caller's to free. NULL, and errno, if
  * neither it nor its folder exists. */
@@ -58,47 +89,35 @@ void protect_input(const char *path) {
     char *target = find_target(path);
     if (!target && errno == ENOMEM)
         fail("%s: %s", path, strerror(errno));
-    if (target) {
-        inputs = grow(inputs, &input_capacity, input_count + 1, sizeof *inputs);
-        inputs[input_count++] = target;
+    known *of = target ? make_known(target) : NULL;
+    if (of && !of->target) {
+        *of = (known){target, NULL};
+        taken++;
+    } else {
+        free(target);
     }
 }
 
-static void check_target(const output *out) {
-    for (size_t i = 0; i < input_count; i++)
-        if (strcmp(out->target, inputs[i]) == 0)
-            fail("%s: this output is one of the inputs", out->path);
-    for (const output *other = first; other; other = other->next)
-        if (other->target && strcmp(out->target, other->target) == 0)
-            fail("%s: two outputs are the same file", out->path);
-}
-
-static output *find_output(const char *path) {
-    output *out = first;
-    while (out && strcmp(out->path, path) != 0)
-        out = out->next;
-    return out;
-}
-
 static output *add_output(const char *path) {
-    output *out = allocate(1, sizeof *out), *volatile *end = &first;
+    output *out = allocate(1, sizeof *out);
     *out = (output){.path = join_text(path, strlen(path), "")};
     if (strcmp(path, "-") != 0 && !is_special(path)) {
         if (!(out->target = find_target(path)))
             fail("%s: %s", path, strerror(errno));
-        check_target(out);
+        known *of = make_known(out->target);
+        if (of->target)
+            fail(of->out ? "%s: two outputs are the same file" : "%s: this output is one of the inputs", path);
+        *of = (known){out->target, out};
+        taken++;
     }
     if (!first)
         watch_signals(discard_outputs);
-    while (*end)
-        end = &(*end)->next;
-    *end = out;
+    *(first ? &last->next : &first) = out;
+    last = out;
     return out;
 }
 
 void reserve_output(const char *path) {
-    if (find_output(path))
-        fail("%s: two outputs are the same file", path);
     output *out = add_output(path);
     if (out->target) {
         FILE *file = open_temporary(out->target, &out->temporary);
@@ -113,9 +132,12 @@ void reserve_output(const char *path) {
 }
 
 FILE *open_output(const char *path) {
-    output *out = find_output(path);
+    char *target = taken ? find_target(path) : NULL;
+    output *out = target ? find_known(target)->out : NULL;
+    free(target);
     if (!out || out->file || out->temporary)
         out = add_output(path);
+    current = out;
     out->file = strcmp(path, "-") == 0 ? stdout
                 : out->target          ? open_temporary(out->target, &out->temporary)
                                        : open_file(path, "wb");
@@ -124,10 +146,15 @@ FILE *open_output(const char *path) {
     return out->file;
 }
 
-void flush_output(FILE *file) {
-    const output *out = first;
+static output *find_open(FILE *file) {
+    output *out = current && current->file == file ? current : first;
     while (out && out->file != file)
         out = out->next;
+    return out;
+}
+
+void flush_output(FILE *file) {
+    const output *out = find_open(file);
     const bool failed = ferror(file);
     if ((fflush(file) != 0 || failed) && out)
         fail("%s: %s", file == stdout ? "standard output" : out->path, strerror(errno));
@@ -142,9 +169,9 @@ static void close_file(output *out) {
 }
 
 void close_output(FILE *file) {
-    for (output *out = first; out; out = out->next)
-        if (out->file == file && file != stdout)
-            close_file(out);
+    output *out = find_open(file);
+    if (out && file != stdout)
+        close_file(out);
 }
 
 FILE *finish_outputs(void) {

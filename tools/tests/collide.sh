@@ -112,6 +112,12 @@ for kind in png svg; do
     fails "too far apart to draw, $kind" "narc: new.$kind: .*too far apart" collide --shapes shapes.json \
         --bodies wide.csv --picture new.$kind --out new.csv
 done
+printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,1.5,0,0\n' >near.csv
+{ cat near.csv; echo disc,1e24,0,0; echo disc,-1e300,0,0; } >stray.csv
+works "picture of two bodies" collide --shapes shapes.json --bodies near.csv --picture near.svg
+works "and of two that are far away" collide --shapes shapes.json --bodies stray.csv --picture stray.svg
+check "these are told" grep -q "stray.svg: 2 of 4 bodies.* left out" err.txt
+check "and left out" cmp near.svg stray.svg
 awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 1100; i++) print "disc,0,0,0" }' >pile.csv
 fails "too many contacts for an SVG" "narc: new.svg: 1100 bodies and 604450 contacts, .*500000 .*png" collide \
     --shapes shapes.json --bodies pile.csv --picture new.svg

@@ -187,8 +187,8 @@ def read_godot(text):
 
 
 def read_phaser(text):
-    return {name: [(f["circle"]["x"], f["circle"]["y"], f["circle"]["radius"]) if "circle" in f else xy(f["vertices"][0])
-                   for f in body["fixtures"]] for name, body in json.loads(text).items()}
+    """Circles would be polygons to Matter, which lie inside by more than the tolerance."""
+    return {name: [xy(f["vertices"][0]) for f in body["fixtures"]] for name, body in json.loads(text).items()}
 
 
 def read_box2d(text):

@@ -16,7 +16,7 @@ nofit() {
     fails "fit: $name" "$pattern" fit fits/square.csv "$@" --out new.json --picture new.png
 }
 fails "fit: no input" "narc: INPUT is missing" fit --arcs 8 --out new.json
-nofit "neither arcs nor tolerance" "narc: --arcs or --tolerance is missing"
+nofit "neither arcs nor tolerance" "narc: --arcs, --tolerance or --parts is missing"
 nofit "exact parts and a goal" "narc: --bound is for fits: --parts alone" --parts 4 --bound
 nofit "arcs and tolerance" "narc: --arcs and --tolerance exclude" --arcs 4 --tolerance 0.1
 for arcs in 0 33 8.5 x -1 ""; do
@@ -64,7 +64,7 @@ nofit "quick and starts" "narc: --quick and --starts exclude" --arcs 4 --quick -
 nofit "no edges and edges" "narc: --no-edges and --edges exclude" --arcs 4 --edges --no-edges --parts 3
 nofit "no edges without parts" "narc: --no-edges is for --parts and --tolerance" --arcs 4 --no-edges
 nofit "a word that is no UTF-8" "narc: --objective must be .* not '?x'" --arcs 4 --objective "$(printf '\377x')"
-nofit "a chain without a tolerance" "narc: --arcs or --tolerance is missing" --chain
+nofit "a chain without a tolerance" "narc: --tolerance, within which chains" --chain
 nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a
 nofit "threshold without an image" "narc: --threshold is for PNG and SVG" --arcs 4 --threshold 0.4
 nofit "silhouette without an image" "narc: --silhouette is for PNG and SVG" --arcs 4 --silhouette dark

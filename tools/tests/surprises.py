@@ -88,6 +88,12 @@ done = fit("--parts", "2", "--tolerance", "0.5")
 said = re.fullmatch("narc: comb.csv: the tolerance 0.5 is not reached with 2 parts, --parts (.*) may do, or --tolerance (.*)\n", done.stderr)
 assert done.returncode == 2 and said and fit("--parts", said[1], "--tolerance", "0.5").returncode == 0, done
 assert fit("--parts", "2", "--tolerance", said[2]).returncode == 0, said[2]
+# Without parts: arcs are too flat, and what is said to do does.
+hull = lambda *options: subprocess.run([NARC, "fit", "comb.csv", "--starts", "1", *options, "--out", "new.json"], capture_output=True, encoding="utf-8")
+done = hull("--tolerance", "0.01", "--no-edges")
+said = re.fullmatch("narc: comb.csv: up to 32 arcs come .* not within the tolerance 0.01: --edges may do, --tolerance (.*) does\n", done.stderr)
+assert done.returncode == 2 and said and hull("--tolerance", said[1], "--no-edges").returncode == 0, done
+assert hull("--tolerance", "0.01", "--edges").returncode == 0
 
 os.chdir("/")
 shutil.rmtree(folder)
