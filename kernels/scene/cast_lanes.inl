@@ -41,7 +41,7 @@ INLINE dvec2 get_dvec2(const float *x, const float *y) { return (dvec2){d_of_flo
 INLINE vd round_down(vd time) {
     float lane[V_WIDTH];
     d_put_floats(lane, time);
-    const vd rounded = d_of_floats(lane), below = rounded - (rounded * d_set(0x1p-24) + d_set(0x1.8p-150));
+    const vd rounded = d_of_floats(lane), below = rounded * d_set(1 - 0x1p-24) - d_set(0x1.8p-150);
     d_put_floats(lane, d_select(d_lt(time, rounded), below, rounded));
     return d_of_floats(lane);
 }

@@ -86,12 +86,11 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
         move_bodies(casts, 0);
         b->x = (double)casts->x_now[0];
         b->y = (double)casts->y_now[0];
-        const bool turned = turns && turn_both(casts, &both);
+        if (turns)
+            turn_both(casts, &both);
         UNROLL
         for (int side = 0; turns && side < 2; side++) {
             narc_body *const body = asked->bodies[side];
-            if (!turned)
-                turn_bodies(casts, side, 0);
             body->cosine = casts->cosine_now[side][0];
             body->sine = casts->sine_now[side][0];
         }
@@ -105,7 +104,7 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
         casts->time[0] = step.time[0];
         casts->back[0] = step.back[0];
         casts->rounds[0] = step.rounds[0];
-        outcome = vm_any(touch.known) ? (int)step.outcome[0] : CAST_BROKEN;
+        outcome = (int)step.outcome[0];
     }
     return outcome;
 }

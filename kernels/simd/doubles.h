@@ -81,8 +81,6 @@ INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
 INLINE int d_any(vl m) { return (_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1)) != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 #ifdef NARC_SIMD_ONE_H
-INLINE vd d_both(vd a, vd b) { return _mm_unpacklo_pd(a, b); } /* in both halves of the register */
-INLINE vd d_other(vd a) { return _mm_unpackhi_pd(a, a); }
 INLINE vd d_of_floats(const float *p) { return _mm_cvtss_sd(_mm_setzero_pd(), _mm_load_ss(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm_store_ss(p, _mm_cvtsd_ss(_mm_setzero_ps(), a)); }
 #else
@@ -109,6 +107,24 @@ INLINE vd d_of_floats(const float *p) { return (vd)wasm_f64x2_promote_low_f32x4(
 INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_demote_f64x2_zero((v128_t)a), 0); }
 #endif
 #endif
+#endif
+#endif
+
+/* Of a register of which one lane is in use, all D_HELD may be: d_both() fills them, from two lanes or from the first. */
+#ifdef NARC_SIMD_ONE_H
+enum { D_HELD = 2 };
+INLINE vd d_both(vd a, vd b) { return _mm_unpacklo_pd(a, b); }
+INLINE vd d_other(vd a) { return _mm_unpackhi_pd(a, a); }
+INLINE int d_any_held(vl m) { return _mm_movemask_pd((vd)m) != 0; }
+#else
+enum { D_HELD = D_WIDTH };
+INLINE int d_any_held(vl m) { return d_any(m); }
+#if V_WIDTH == 1
+INLINE vd d_both(vd a, vd b) {
+    (void)b;
+    return a;
+}
+INLINE vd d_other(vd a) { return a; }
 #endif
 #endif
 
