@@ -209,7 +209,7 @@ enum { NARC_ORDER_BODIES = 128 };
 typedef struct narc_cast_batch {
     const struct narc_kernel_table *kernels; /* in use; few casts go to others, which ask its pair kernel */
     const narc_batch *batch;
-    narc_motions motions[2];
+    const narc_motions *motions[2];
     float target, tolerance, parting;
     narc_float_column targets; /* in place of `target`: one for each pair, or of `nearest` for each A, */
     narc_float_column depths;  /* unless these are there: of each pair, how deep at most it counts as at the start */
@@ -221,7 +221,7 @@ typedef struct narc_cast_batch {
  * shift. Motions are x, y, and the angle. The row is that of `pair`, or of its mover (`nearest`), who may hit `body`. */
 typedef struct narc_one_cast {
     const narc_shapes *shapes;
-    const narc_body *bodies[2];
+    narc_body *bodies[2]; /* as a caller's, A at the origin; they move */
     float motions[2][3];
     float target, tolerance;
     uint32_t pair, body;

@@ -65,7 +65,7 @@ static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
     const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     struct job *const job = argument;
     narc_box *const boxes = job->index->sweeps;
-    const narc_motions *const motions = &job->casts.batch.motions[0];
+    const narc_motions *const motions = job->casts.batch.motions[0];
     size_t skipped = job->casts.batch.kernels->box(&job->boxes, NULL, first, end - first, boxes);
     (void)part;
     for (size_t k = first; k < end; k++) {

@@ -14,6 +14,9 @@
 /* Pairs in a part. */
 enum { PART = 1024 };
 
+static const narc_motions still;
+static const narc_cast_options defaults;
+
 static narc_status check_number(float number, const char *name, narc_error *error) {
     return isfinite(number)
                ? NARC_OK
@@ -31,7 +34,7 @@ static narc_status check_options(const narc_cast_options *options, narc_error *e
 
 /* Pair `number` of a batch by itself, or of a call whose pairs bring their `own` bodies: 1 if it has no answer, below 0 if it is
  * the other kernels', or names what does not exist. */
-static int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
+INLINE int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
     const narc_batch *const batch = casts->batch;
     const narc_shapes *const shapes = batch->shapes;
     narc_one_cast one;
@@ -42,9 +45,10 @@ static int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
         (narc_is_piece(&shapes->headers[pair.a.shape]) || narc_is_piece(&shapes->headers[pair.b.shape])))
         return -1;
     size_t body[2]; /* the caller's numbers */
+    UNROLL
     for (int side = 0; side < 2; side++) {
-        const narc_motions *const given = &casts->motions[side];
-        body[side] = narc_body_at(batch->pairs, side, number);
+        const narc_motions *const given = casts->motions[side];
+        body[side] = own ? 2 * number + (size_t)side : narc_body_at(batch->pairs, side, number);
         one.motions[side][0] = narc_float_or(given->x, body[side], 0);
         one.motions[side][1] = narc_float_or(given->y, body[side], 0);
         one.motions[side][2] = narc_float_or(given->angle, body[side], 0);
@@ -67,31 +71,32 @@ static int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
 static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
                      const narc_pairs *pairs, const narc_motions *other_motions, const narc_cast_options *options,
                      narc_impact *out_rows, size_t capacity) {
-    static const narc_motions none;
     narc_batch batch; /* initialisers would clear all of it */
     narc_cast_batch casts;
-    narc_impact rows[NARC_FEW]; /* where the last pair is an error the caller's stay as they are */
+    narc_impact rows[NARC_FEW]; /* where the last of them is an error the caller's stay as they are */
     narc_status status = NARC_OK;
     if (!narc_are_few(shapes, bodies, pairs) || !out_rows || capacity < pairs->count || options->targets.base ||
-        (other_motions && !pairs->other_bodies) || check_options(options, NULL) != NARC_OK)
+        (other_motions && !pairs->other_bodies) || (options != &defaults && check_options(options, NULL) != NARC_OK))
         return false;
-    const narc_motions *const both[2] = {motions ? motions : &none, other_motions ? other_motions : &none};
+    casts.motions[0] = motions ? motions : &still;
+    casts.motions[1] = !pairs->other_bodies ? casts.motions[0] : other_motions ? other_motions : &still;
     casts.kernels = narc_kernels(&status, NULL);
-    if (!casts.kernels || both[0]->reserved[0] || both[0]->reserved[1] || both[1]->reserved[0] || both[1]->reserved[1])
+    for (int side = 0; side < 2; side++)
+        if (casts.motions[side]->reserved[0] || casts.motions[side]->reserved[1])
+            return false;
+    if (!casts.kernels)
         return false;
     batch.shapes = shapes;
     batch.a = bodies;
     batch.b = pairs->other_bodies ? pairs->other_bodies : bodies;
     batch.pairs = pairs;
     casts.batch = &batch;
-    casts.motions[0] = *both[0];
-    casts.motions[1] = pairs->other_bodies ? *both[1] : *both[0];
     casts.target = options->target;
     casts.targets.base = casts.depths.base = NULL;
     casts.tolerance = options->tolerance;
     casts.parting = options->parting;
     casts.nearest = false;
-    casts.out = rows;
+    casts.out = pairs->count == 1 ? out_rows : rows;
     size_t skipped = 0;
     for (size_t k = 0; k < pairs->count; k++) {
         const int broken = cast_alone(&casts, k, narc_have_own_bodies(pairs));
@@ -99,7 +104,8 @@ static bool cast_few(const narc_shapes *shapes, const narc_bodies *bodies, const
             return false;
         skipped += (size_t)broken;
     }
-    memcpy(out_rows, rows, pairs->count * sizeof *rows);
+    if (casts.out == rows)
+        memcpy(out_rows, rows, pairs->count * sizeof *rows);
     if (options->out_skipped)
         *options->out_skipped = skipped;
     return true;
@@ -131,15 +137,13 @@ narc_status narc_check_targets(const narc_cast_job *job, size_t count, narc_erro
 
 narc_status narc_check_casts(const narc_motions *motions, const narc_motions *other_motions,
                              const narc_cast_options *options, narc_cast_job *out_job, narc_error *error) {
-    static const narc_motions none = {.x = {0}};
-    const narc_motions *const both[2] = {motions ? motions : &none, other_motions ? other_motions : &none};
     narc_status status = check_options(options, error);
+    out_job->batch.motions[0] = motions ? motions : &still;
+    out_job->batch.motions[1] = other_motions ? other_motions : &still;
     if (status == NARC_OK)
-        status = narc_check_reserved(both[0]->reserved, 2, "motions", error);
+        status = narc_check_reserved(out_job->batch.motions[0]->reserved, 2, "motions", error);
     if (status == NARC_OK)
-        status = narc_check_reserved(both[1]->reserved, 2, "other_motions", error);
-    out_job->batch.motions[0] = *both[0];
-    out_job->batch.motions[1] = *both[1];
+        status = narc_check_reserved(out_job->batch.motions[1]->reserved, 2, "other_motions", error);
     out_job->batch.target = options->target;
     out_job->batch.tolerance = options->tolerance;
     out_job->batch.parting = options->parting;
@@ -197,7 +201,6 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
                             const narc_pairs *pairs, const narc_motions *other_motions,
                             const narc_cast_options *options, narc_impact *out_rows, size_t capacity,
                             narc_error *error) {
-    static const narc_cast_options defaults = {0};
     const narc_cast_options *const o = options ? options : &defaults;
     return cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity)
                ? NARC_OK

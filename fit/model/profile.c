@@ -40,10 +40,8 @@ static narc_interval make_interval(const narc_chain *chain, const narc_hull *hul
 
 /* Walks the directions from one angle to another, less than a half turn. */
 static size_t walk_sector(const narc_chain *chain, const narc_hull *hull, size_t arc, double start_angle,
-                          double end_angle, narc_interval *out_intervals) {
+                          double end_angle, narc_point start, narc_point end, narc_interval *out_intervals) {
     size_t count = 0, corner = narc_find_corner(hull, start_angle);
-    narc_point start = unit_at(start_angle);
-    const narc_point end = unit_at(end_angle);
     double left = end_angle - start_angle;
     /* How far it is from the start to the normal at which the corner ends. */
     double next = hull->angles[corner] - start_angle;
@@ -67,9 +65,12 @@ size_t narc_make_profile(const narc_chain *chain, const narc_hull *hull, narc_in
     for (size_t i = 0; i < chain->count; i++) {
         const double start = chain->angle[i], sweep = narc_end_angle(chain, i) - start;
         const unsigned parts = sweep > 1.5 * PI ? 4 : 2; /* a circle, or any other arc */
+        narc_point from = chain->normal[i];
         for (unsigned k = 0; k < parts; k++) {
-            count += walk_sector(chain, hull, i, start + sweep * k / parts, start + sweep * (k + 1) / parts,
-                                 out_intervals + count);
+            const double end = start + sweep * (k + 1) / parts;
+            const narc_point to = unit_at(end);
+            count += walk_sector(chain, hull, i, start + sweep * k / parts, end, from, to, out_intervals + count);
+            from = to;
         }
     }
     return count;

@@ -235,7 +235,7 @@ static double measure_side(const work *w, const ring *of, size_t i, size_t j) {
         if (i < j ? n >= i && n <= j : n >= i || n <= j)
             w->points[count++] = w->order[k].at;
     }
-    return narc_measure_emptiness(w->region, w->corners, narc_wrap_sorted(w->points, count, 0, w->corners));
+    return narc_measure_emptiness(w->region, w->corners, narc_wrap_sorted(w->points, count, 0, w->corners), NULL);
 }
 
 static int compare_places(const void *left, const void *right) {

@@ -25,8 +25,9 @@ size_t narc_wrap_points(narc_point *points, size_t count, narc_point *out_corner
  * `most` pieces or more NARC_ERROR_CAPACITY; NARC_ERROR_MEMORY. */
 narc_status narc_cut_region(const narc_region *region, size_t most, narc_pieces *out_pieces);
 
-/* Joins pieces whose common hull stays within the limit, those first that cover least empty ground. */
-narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces);
+/* Joins pieces whose common hull stays within the limit, those first that cover least empty ground; across others only while
+ * there are more than `most`. */
+narc_status narc_join_pieces(const narc_region *region, size_t most, narc_pieces *pieces);
 
 void narc_release_pieces(narc_pieces *pieces);
 

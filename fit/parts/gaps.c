@@ -255,6 +255,7 @@ void narc_limit_region(narc_region *region, double limit) {
             sums[k + 1].emptiness += over * over;
             sums[k + 1].far += distance > limit + 3 * reach;
             sums[k + 1].unsure += distance > limit - 2 * reach;
+            sums[k + 1].inside += distance == 0;
         }
     }
 }
@@ -308,15 +309,20 @@ static narc_cell_sums sum_row(const narc_region *region, const struct spans *spa
         return (narc_cell_sums){0};
     const narc_cell_sums *a = sums + clamp(spans->left[row], region->columns),
                          *b = sums + clamp(spans->right[row], region->columns) + 1;
-    return (narc_cell_sums){b->emptiness - a->emptiness, b->far - a->far, b->unsure - a->unsure};
+    return (narc_cell_sums){b->emptiness - a->emptiness, b->far - a->far, b->unsure - a->unsure, b->inside - a->inside};
 }
 
-double narc_measure_emptiness(const narc_region *region, const narc_point *corners, size_t count) {
+double narc_measure_emptiness(const narc_region *region, const narc_point *corners, size_t count, double *out_ground) {
     struct spans spans;
-    double sum = 0;
+    double sum = 0, ground = 0;
     find_spans(region, corners, count, &spans);
-    for (size_t row = spans.low; row <= spans.high; row++)
-        sum += sum_row(region, &spans, row).emptiness;
+    for (size_t row = spans.low; row <= spans.high; row++) {
+        const narc_cell_sums of = sum_row(region, &spans, row);
+        sum += of.emptiness;
+        ground += of.inside;
+    }
+    if (out_ground)
+        *out_ground = ground;
     return sum;
 }
 

@@ -174,7 +174,7 @@ static narc_status cut_and_join(narc_region *region, double limit, size_t most, 
     narc_limit_region(region, limit);
     narc_pieces pieces = {0};
     narc_status status = narc_cut_region(region, MORE_PIECES * most + SOME_PIECES, &pieces);
-    status = status ? status : narc_join_pieces(region, &pieces);
+    status = status ? status : narc_join_pieces(region, most, &pieces);
     if (!status && pieces.count > most)
         status = NARC_ERROR_CAPACITY;
     if (status)

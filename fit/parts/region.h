@@ -10,7 +10,7 @@
 /* A cell of the grid has one of these. */
 typedef struct narc_cell_sums {
     double emptiness; /* how much there is to cut away, of this row's cells before this one */
-    uint32_t far, unsure;
+    uint32_t far, unsure, inside;
 } narc_cell_sums;
 
 typedef struct narc_line {
@@ -55,8 +55,9 @@ narc_status narc_survey_region(narc_region *region, narc_error *error);
 /* Makes the sums for this limit. */
 void narc_limit_region(narc_region *region, double limit);
 
-/* How much empty ground, with half the limit taken off, a convex polygon covers. Cheap. */
-double narc_measure_emptiness(const narc_region *region, const narc_point *corners, size_t count);
+/* How much empty ground, with half the limit taken off, a convex polygon covers; and of the region, in cells, unless
+ * `out_ground` is NULL. Cheap. */
+double narc_measure_emptiness(const narc_region *region, const narc_point *corners, size_t count, double *out_ground);
 
 /* Is no point of the polygon further than the limit from the (simpler) region? */
 bool narc_is_within_limit(const narc_region *region, const narc_point *corners, size_t count);

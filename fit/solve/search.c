@@ -101,22 +101,24 @@ static bool take_solution(const narc_search *search, const narc_chain *chain, na
 }
 
 double narc_settle(narc_search *search, narc_chain *chain) {
-    size_t count = narc_make_profile(chain, search->problem.hull, search->intervals);
-    narc_difference_range range = narc_find_range(search->intervals, count);
-    if (narc_must_bound(&search->problem) && range.least < 0) {
-        narc_offset_chain(chain, -range.least, search->problem.family == NARC_FIT_POLYGON);
-        count = narc_make_profile(chain, search->problem.hull, search->intervals);
-        range = narc_find_range(search->intervals, count);
+    const narc_problem *problem = &search->problem;
+    narc_difference_range range = {0, 0};
+    if (narc_must_bound(problem) || narc_is_distance(problem))
+        range = narc_find_range(search->intervals, narc_make_profile(chain, problem->hull, search->intervals));
+    if (narc_must_bound(problem) && range.least < 0) {
+        narc_offset_chain(chain, -range.least, problem->family == NARC_FIT_POLYGON);
+        if (narc_is_distance(problem))
+            range = narc_find_range(search->intervals, narc_make_profile(chain, problem->hull, search->intervals));
     }
-    switch (search->problem.goal) {
+    switch (problem->goal) {
     case NARC_FIT_BOUND_AREA:
         return narc_chain_area(chain);
     case NARC_FIT_BOUND_PERIMETER:
         return narc_chain_perimeter(chain);
     case NARC_FIT_DIFFERENCE: /* no shape at all may differ by less than any n-arc, but that is no fit */
-        return narc_chain_area(chain) < LEAST_AREA * search->problem.hull->area
+        return narc_chain_area(chain) < LEAST_AREA * problem->hull->area
                    ? INFINITY
-                   : narc_difference_area(chain, search->problem.hull, (narc_point){0, 0}, NULL);
+                   : narc_difference_area(chain, problem->hull, (narc_point){0, 0}, NULL);
     default:
         return fmax(-range.least, range.largest);
     }

@@ -227,6 +227,30 @@ TEST(test_star) {
     free_outline(&of);
 }
 
+/* Teeth around a body: no part goes from tooth to tooth across others, unless fewer parts are asked for. */
+TEST(test_no_slivers_across) {
+    struct outline of = make_outline("cog");
+    narc_point points[40];
+    for (size_t k = 0; k < 40; k++) {
+        const double angle = PI * (double)k / 20 + (k % 2 ? 0.07 : 0), r = k % 2 ? 0.8 : 1 + 0.01 * (double)(k % 7);
+        points[k] = (narc_point){r * cos(angle), 0.8 * r * sin(angle)};
+    }
+    add_corners(&of, points, 40);
+    const double size = fabs(measure_area(&(narc_contours){points, 40, (size_t[]){40}, 1, 0}, 0));
+    size_t count = 0;
+    for (int few = 0; few < 2; few++) {
+        cover made = cut(&of, few ? count - 4 : 40, 0.04, 0);
+        double area = 0;
+        for (size_t k = 0; k < made.parts.count; k++)
+            area += fabs(measure_area(&made.polygons[k], 0));
+        assert_true(few || area <= 1.1 * size);
+        count = made.parts.count;
+        check_cover(&made, made.parts.distance, 0);
+        free_cover(&made);
+    }
+    free_outline(&of);
+}
+
 /* A slit and a hole that no disc of the tolerance fits into stay, however deep they are. */
 TEST(test_narrow_bays) {
     static const narc_point slit[] = {{0, 0}, {4, 0}, {4, 4}, {2.04, 4}, {2.02, 0.5}, {2, 4}, {0, 4}};

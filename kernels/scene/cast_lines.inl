@@ -32,6 +32,7 @@ INLINE vl find_touch(const narc_casts *casts, const struct touch *touch, size_t 
     const vd across = find_cross(u, motion), height = goal * goal * find_dot(motion, motion) - across * across;
     const vd duration = (find_dot(u, u) - goal * goal) / (d_sqrt(d_abs(height)) - find_dot(u, motion));
     vl found = d_lt(radii, d_set(INFINITY)) & d_lt(zero, goal) & d_le(zero, height);
+    UNROLL
     for (int side = 0; side < 2; side++) {
         const vl round = d_of_lanes(parts[side].round, h);
         if (!d_any(~round))
@@ -98,6 +99,7 @@ INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, co
         any |= d_any(d_of_lanes(round, h) & advance_line(casts, touch, k, h, out, next + h));
     if (!any)
         return;
+    UNROLL
     for (int side = 0; side < 2; side++) {
         parts[side] = find_part(&casts->side[side], k, side, live, touch);
         load_held(shapes, &parts[side], parts[side].arc, &arcs[side]);

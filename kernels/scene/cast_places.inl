@@ -29,13 +29,21 @@ INLINE dvec2 find_directions(vd angle) {
     const vl odd = d_le(size, one) & d_le(one, size), opposite = d_lt(one, size) | d_lt(part, d_set(0));
     const dvec2 p = {d_select(odd, -s, c), d_select(odd, c, s)};
     dvec2 direction = {d_select(opposite, -p.x, p.x), d_select(opposite, -p.y, p.y)};
-    const vl small = d_lt(d_abs(angle), d_set(0x1p20));
-    if (d_any(~small)) {
+    return direction;
+}
+
+/* Too large for that. */
+INLINE vl are_many_turns(vd angle) { return ~d_lt(d_abs(angle), d_set(0x1p20)); }
+
+INLINE dvec2 find_all_directions(vd angle) {
+    dvec2 direction = find_directions(angle);
+    const vl many = are_many_turns(angle);
+    if (d_any(many)) {
         double angles[D_WIDTH], cosine[D_WIDTH], sine[D_WIDTH];
         d_store(angles, angle);
         for (int l = 0; l < D_WIDTH; l++)
             narc_find_cosine(angles[l], &cosine[l], &sine[l]);
-        direction = (dvec2){d_select(small, direction.x, d_load(cosine)), d_select(small, direction.y, d_load(sine))};
+        direction = (dvec2){d_select(many, d_load(cosine), direction.x), d_select(many, d_load(sine), direction.y)};
     }
     return direction;
 }
@@ -55,7 +63,7 @@ INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
         const vd angle = d_of_floats(side->angle + slot), zero = d_set(0);
         dvec2 direction = {d_set(1), zero};
         if (d_any(d_lt(zero, d_abs(angle))))
-            direction = find_directions(d_of_floats(casts->time + slot) * angle);
+            direction = find_all_directions(d_of_floats(casts->time + slot) * angle);
         const dvec2 turned = turn(direction, find_rotation(side->cosine + slot, side->sine + slot));
         d_store(casts->turned_x[which] + slot, turned.x);
         d_store(casts->turned_y[which] + slot, turned.y);
@@ -66,6 +74,49 @@ INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
     v_store(casts->cosine_now[which] + k, v_select(turns, v_load(cosine), v_load(side->cosine + k)));
     v_store(casts->sine_now[which] + k, v_select(turns, v_load(sine), v_load(side->sine + k)));
 }
+
+/* The bodies of one cast that turns, in both halves of registers: their angles, and their rotations at the start. */
+#ifdef NARC_SIMD_ONE_H
+struct both {
+    vd angle;
+    dvec2 rotation;
+};
+
+INLINE struct both load_both(const narc_casts *casts) {
+    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
+    const dvec2 of_a = find_rotation(a->cosine, a->sine), of_b = find_rotation(b->cosine, b->sine);
+    return (struct both){d_both(d_of_floats(a->angle), d_of_floats(b->angle)),
+                         {d_both(of_a.x, of_b.x), d_both(of_a.y, of_b.y)}};
+}
+
+/* turn_bodies() of both, or false. */
+INLINE bool turn_both(narc_casts *casts, const struct both *both) {
+    const vd angle = d_set((double)casts->time[0]) * both->angle;
+    const vl many = are_many_turns(angle);
+    if (d_any(many) || d_any((vl)d_other((vd)many)))
+        return false;
+    const dvec2 turned = turn(find_directions(angle), both->rotation);
+    float cosine[2], sine[2];
+    _mm_storel_pi((__m64 *)(void *)cosine, _mm_cvtpd_ps(turned.x));
+    _mm_storel_pi((__m64 *)(void *)sine, _mm_cvtpd_ps(turned.y));
+    for (int which = 0; which < 2; which++) {
+        const bool turns = casts->side[which].angle[0] != 0;
+        d_store(casts->turned_x[which], which == 0 ? turned.x : d_other(turned.x));
+        d_store(casts->turned_y[which], which == 0 ? turned.y : d_other(turned.y));
+        casts->cosine_now[which][0] = turns ? cosine[which] : casts->side[which].cosine[0];
+        casts->sine_now[which][0] = turns ? sine[which] : casts->side[which].sine[0];
+    }
+    return true;
+}
+#elif defined(NARC_ONE_PAIR)
+struct both {
+    bool none;
+};
+
+INLINE struct both load_both(const narc_casts *casts) { return (struct both){casts == NULL}; }
+
+INLINE bool turn_both(const narc_casts *casts, const struct both *both) { return !casts && both->none; }
+#endif
 
 /* The positions of casts k ... at their times. */
 INLINE void move_bodies(narc_casts *casts, size_t k) {

@@ -92,7 +92,7 @@ NOINLINE void move_to_plane(const narc_cast_batch *given, const narc_casts *cast
     const double time = (double)casts->time[slot];
     if (find_plane_side(batch->shapes, casts, slot) != 0)
         return;
-    const narc_motions *const of_a = &given->motions[0], *const of_b = &given->motions[1];
+    const narc_motions *const of_a = given->motions[0], *const of_b = given->motions[1];
     const double motion_x = (double)narc_float_or(of_b->x, body_b, 0) - (double)narc_float_or(of_a->x, body_a, 0);
     const double motion_y = (double)narc_float_or(of_b->y, body_b, 0) - (double)narc_float_or(of_a->y, body_a, 0);
     const double x = narc_position_at(batch->b->x, b) - narc_position_at(batch->a->x, a) +

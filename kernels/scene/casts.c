@@ -215,7 +215,7 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     vf angles = v_set(0);
     for (int side = 0; side < 2; side++) {
         struct narc_cast_side *const its = &casts->side[side];
-        const narc_motions *const motions = &given->motions[side];
+        const narc_motions *const motions = given->motions[side];
         const struct placed_bodies bodies = load_placed_bodies(sets[side], call->layout[side], NULL, item[side]);
         const vi pairs = vi_load(number);
         vi_store(body[side], call->own ? vi_add(vi_add(pairs, pairs), vi_set(side)) : vi_load(item[side]));

@@ -81,6 +81,8 @@ INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
 INLINE int d_any(vl m) { return (_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1)) != 0; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 #ifdef NARC_SIMD_ONE_H
+INLINE vd d_both(vd a, vd b) { return _mm_unpacklo_pd(a, b); } /* in both halves of the register */
+INLINE vd d_other(vd a) { return _mm_unpackhi_pd(a, a); }
 INLINE vd d_of_floats(const float *p) { return _mm_cvtss_sd(_mm_setzero_pd(), _mm_load_ss(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm_store_ss(p, _mm_cvtsd_ss(_mm_setzero_ps(), a)); }
 #else
