@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "calls.h"
 #include "fail.h"
 #include "narc_broad_phase.h"
 #include "progress.h"
@@ -19,11 +20,6 @@ enum { MANY_BOXES = 2000000 };
 
 /* Boxes that the middle is taken from; room for pairs of each box, before they are counted. */
 enum { SAMPLES = 1000, LIKELY_PAIRS = 4 };
-
-static int compare_numbers(const void *left, const void *right) {
-    const double *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
 
 /* The median of some boxes' lower sides along one axis. A few bodies far away do not move it, so that the others keep
  * their precision. */
@@ -37,8 +33,7 @@ static double find_middle(const narc_aabb *boxes, size_t count, bool along_y) {
     }
     if (taken == 0)
         return 0;
-    qsort(sides, taken, sizeof *sides, compare_numbers);
-    return sides[taken / 2];
+    return find_median(sides, taken);
 }
 
 /* Numbers beyond the range of floats become the last float: what overlaps there still does. */

@@ -4,6 +4,7 @@
  */
 #include "calls.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "fail.h"
@@ -26,4 +27,14 @@ narc_workers choose_workers(const option *threads) {
     narc_workers workers;
     narc_openmp_workers(threads->value ? (unsigned)whole_option(threads, 1, LARGEST_THREADS) : 0, &workers);
     return workers;
+}
+
+static int compare_numbers(const void *left, const void *right) {
+    const double *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+double find_median(double *numbers, size_t count) {
+    qsort(numbers, count, sizeof *numbers, compare_numbers);
+    return numbers[count / 2];
 }

@@ -17,4 +17,7 @@ void choose_isa(const char *name);
 /* What --threads says; if it is not given, one thread for each processor. */
 narc_workers choose_workers(const option *threads);
 
+/* Of numbers, which it sorts. */
+double find_median(double *numbers, size_t count);
+
 #endif

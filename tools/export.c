@@ -109,10 +109,7 @@ static narc_aabb bound_piece(const piece *of) {
     return box;
 }
 
-static double measure_piece(const piece *of) {
-    const narc_aabb box = bound_piece(of);
-    return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
-}
+static double measure_piece(const piece *of) { return box_size(bound_piece(of)); }
 
 static void add_corner(piece *to, size_t *capacity, double x, double y, double bulge) {
     to->corners = grow(to->corners, capacity, to->count + 1, sizeof *to->corners);
@@ -527,14 +524,17 @@ static size_t count_corners(const export_body *of) {
 
 static void print_bodies(FILE *report, const exported *what) {
     size_t pieces = 0, corners = 0;
-    fprintf(report, "%-20s %8s %8s\n", "body", "pieces", "corners");
+    int width = 4; /* of names */
+    for (size_t i = 0; i < what->count; i++)
+        width = (int)fmax(width, (double)strlen(what->bodies[i].name));
+    fprintf(report, "%-*s %8s %8s\n", width, "body", "pieces", "corners");
     for (size_t i = 0; i < what->count; i++) {
         const export_body *of = &what->bodies[i];
-        fprintf(report, "%-20s %8zu %8zu\n", of->name, of->count, count_corners(of));
+        fprintf(report, "%-*s %8zu %8zu\n", width, of->name, of->count, count_corners(of));
         pieces += of->count;
         corners += count_corners(of);
     }
-    fprintf(report, "%-20s %8zu %8zu\n", "all", pieces, corners);
+    fprintf(report, "%-*s %8zu %8zu\n", width, "all", pieces, corners);
 }
 
 /* `out` may have {name}; NULL: nothing is written. */

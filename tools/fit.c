@@ -11,6 +11,7 @@
 #include "canvas.h"
 #include "chains.h"
 #include "commands.h"
+#include "draw_fit.h"
 #include "fail.h"
 #include "fit_inputs.h"
 #include "json.h"
@@ -252,13 +253,13 @@ static double measure_extent(const outline *of) {
     narc_contours contours;
     if (narc_flatten_path(of->path, 0, &contours, NULL) != NARC_OK)
         return 0;
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    narc_aabb box = EMPTY_BOX;
     for (size_t i = 0; i < contours.point_count; i++) {
         const narc_point p = contours.points[i];
-        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
+        box = join_boxes(box, (narc_aabb){p.x, p.y, p.x, p.y});
     }
     narc_release_contours(&contours);
-    return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+    return box_size(box);
 }
 
 typedef struct fitting {

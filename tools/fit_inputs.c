@@ -532,6 +532,7 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     outline *added = add_outline(outlines, file, 0,
                                  element ? make_shape_name(element, strlen(element)) : make_shape_name(base, stem));
     narc_error error;
+    added->is_object = element;
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false, exact = false;

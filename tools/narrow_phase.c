@@ -83,11 +83,6 @@ static void call_library(const batch *asked, narrow_result *result) {
     check_call(status, &error);
 }
 
-static int compare_numbers(const void *left, const void *right) {
-    const double *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
 static void measure_call(const batch *asked, narrow_result *result) {
     double seconds[MOST_RUNS], total = 0;
     while (result->runs < MOST_RUNS && total < MEASURED_SECONDS) {
@@ -95,8 +90,7 @@ static void measure_call(const batch *asked, narrow_result *result) {
         total += result->seconds;
         seconds[result->runs++] = result->seconds;
     }
-    qsort(seconds, (size_t)result->runs, sizeof *seconds, compare_numbers);
-    result->seconds = seconds[result->runs / 2];
+    result->seconds = find_median(seconds, (size_t)result->runs);
 }
 
 /* Which pairs collide, as the method finds it. With a margin below 0 they are not all among the contacts. */

@@ -51,8 +51,6 @@ typedef struct view {
 
 static double clamp(double value, double low, double high) { return fmin(fmax(value, low), high); }
 
-static double box_size(narc_aabb box) { return fmax(box.max_x - box.min_x, box.max_y - box.min_y); }
-
 static bool is_endless(const body_scene *scene, size_t index) {
     return scene->shapes->items[scene->bodies->items[index].item].form == NARC_FORM_HALF_PLANE;
 }

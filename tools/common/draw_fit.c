@@ -20,6 +20,8 @@ narc_aabb join_boxes(narc_aabb a, narc_aabb b) {
     return (narc_aabb){fmin(a.min_x, b.min_x), fmin(a.min_y, b.min_y), fmax(a.max_x, b.max_x), fmax(a.max_y, b.max_y)};
 }
 
+double box_size(narc_aabb box) { return fmax(box.max_x - box.min_x, box.max_y - box.min_y); }
+
 narc_aabb bound_fit(const narc_fit_result *fit) {
     narc_aabb box;
     narc_compute_aabb(fit->arcs, fit->arc_count, 0, &box);

@@ -21,6 +21,7 @@ typedef struct fit_look {
 /* The smallest box around both. Around nothing yet: */
 extern const narc_aabb EMPTY_BOX;
 narc_aabb join_boxes(narc_aabb a, narc_aabb b);
+double box_size(narc_aabb box); /* its larger side; of an empty one below 0 */
 
 /* The box of a fitted shape, and of points, in the outline's coordinates. */
 narc_aabb bound_fit(const narc_fit_result *fit);

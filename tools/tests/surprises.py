@@ -77,9 +77,11 @@ for expected, cases in (0, warned), (2, failed):
         code, err = told(file, data)
         pattern = message if ".*" in message else re.escape(message)
         assert code == expected and re.fullmatch(f"narc: {file}: {pattern}\n", err), (file, code, err, message)
+# Of many in a file an error has the name.
+code, err = told("layers.dxf", LINES.replace("0\nLINE\n8\na\n10\n4\n20\n0\n11\n4\n21\n3\n", "").encode(), "--ids", "*")
+assert code == 2 and err.endswith("narc: layers.dxf: 'a': all points of the outline lie on a line, it has no area\n"), err
 done = subprocess.run([NARC, "fit", "open.dxf", "--chain", "--open", "--tolerance", "0.1", "--out", "new.json"], capture_output=True, encoding="utf-8")
 assert done.returncode == 0 and not done.stderr, done
-
 # A tolerance that is not reached: what is said to do does.
 with open("comb.csv", "w", encoding="utf-8") as file:
     file.write("0,0\n10,0\n10,2\n2,2\n2,4\n10,4\n10,6\n2,6\n2,8\n10,8\n10,10\n0,10\n")
