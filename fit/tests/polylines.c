@@ -210,6 +210,81 @@ TEST(test_fewest) {
     }
 }
 
+/* Is some circle or line near all points of a run, by trial of those through three places across its first, middle and last
+ * point? The ends are free, so no chain within the tolerance has a piece that is near more; the places are an eighth of it
+ * apart, what lies between any of them and the next is less than a tenth of it away. */
+static bool is_one_piece(const narc_point *points, size_t total, size_t from, size_t length, double tolerance) {
+    enum { SIDE = 9, ALL = 2 * SIDE + 1 };
+    narc_point places[3][ALL];
+    if (length < 3)
+        return true;
+    for (size_t i = 0; i < 3; i++) {
+        const size_t at = from + i * (length - 1) / 2;
+        const narc_point before = points[(at + total - 1) % total], p = points[at % total],
+                         next = points[(at + 1) % total];
+        const double x = next.x - before.x, y = next.y - before.y, step = tolerance / 8 / hypot(x, y);
+        for (int k = 0; k < ALL; k++)
+            places[i][k] = (narc_point){p.x - step * (k - SIDE) * y, p.y + step * (k - SIDE) * x};
+    }
+    for (size_t trial = 0; trial < (size_t)ALL * ALL * ALL; trial++) {
+        const narc_point a = places[0][trial % ALL], b = places[1][trial / ALL % ALL], c = places[2][trial / ALL / ALL];
+        /* |p|^2 - 2 m.p = k from a: two equations for m. */
+        const double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y, turn = 2 * (bx * cy - by * cx);
+        const double bb = bx * bx + by * by, cc = cx * cx + cy * cy, x = (bb * cy - cc * by) / turn,
+                     y = (cc * bx - bb * cx) / turn, radius = hypot(x, y);
+        bool near = true;
+        for (size_t k = 0; near && k < length; k++) {
+            const narc_point p = points[(from + k) % total];
+            const double off = radius < 1e6 ? hypot(p.x - a.x - x, p.y - a.y - y) - radius
+                                            : ((p.x - a.x) * cy - (p.y - a.y) * cx) / sqrt(cc);
+            near = fabs(off) <= 1.1 * tolerance;
+        }
+        if (near)
+            return true;
+    }
+    return false;
+}
+
+enum { MANY = 240 };
+
+/* No chain within the tolerance of a ring's points has fewer pieces: each is near a run of them. */
+static size_t bound_ring(const narc_point *points, double tolerance) {
+    size_t runs[MANY], least = MANY;
+    for (size_t i = 0; i < MANY; i++) { /* a run has a shorter one from the next point */
+        runs[i] = i && runs[i - 1] > 1 ? runs[i - 1] - 1 : 1;
+        while (runs[i] < MANY && is_one_piece(points, MANY, i, runs[i] + 1, tolerance))
+            runs[i]++;
+    }
+    for (size_t first = 0; first < MANY; first++) {
+        size_t count = 0;
+        for (size_t at = 0; at < MANY; at += runs[(first + at) % MANY])
+            count++;
+        least = count < least ? count : least;
+    }
+    return least;
+}
+
+/* Most are as few as there can be, by a search that looks at no way of joining them; where that says less, by how much. */
+TEST(fewest_are_the_fewest) {
+    static const struct {
+        double waves, height;
+        size_t over;
+    } rings[] = {{2, 0.055347, 0}, {3, 0.064697, 0}, {3, 0.257285, 0}, {4, 0.227056, 0}, {5, 0.180097, 0},
+                 {5, 0.196051, 0}, {2, 0.129575, 1}, {4, 0.156838, 1}, {5, 0.221184, 4}};
+    for (size_t i = 0; i < sizeof rings / sizeof *rings; i++) {
+        narc_point points[MANY];
+        for (size_t k = 0; k < MANY; k++) {
+            const double a = 2 * PI * (double)k / MANY, r = 10 * (1 + rings[i].height * cos(rings[i].waves * a));
+            points[k] = (narc_point){r * cos(a), r * sin(a)};
+        }
+        narc_path *path = make_path();
+        draw_polygon(path, points, MANY);
+        const size_t found = count_fewest(path, 0.2), least = bound_ring(points, 0.2);
+        assert_in_range(found, least, least + rings[i].over);
+        narc_destroy_path(path);
+    }
+}
+
 /* A circle is two arcs, and a rectangle with round corners four lines and four arcs, exactly. */
 TEST(test_exact_shapes) {
     static const double turn[] = {0, 1, 0, -1, 0};
