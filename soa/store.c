@@ -131,6 +131,7 @@ static bool grow_headers(narc_shapes *shapes, size_t capacity) {
 
 /* Records behind the last one, NARC_READ_AHEAD or more: of a shape with one arc 16 may be read (load_own_arcs()). */
 enum { ARCS_AHEAD = 15 };
+_Static_assert(ARCS_AHEAD >= (int)NARC_READ_AHEAD, "what kernels read");
 
 /* Moves all blocks that are in use to a new array, one behind the other. */
 static bool move_records(narc_shapes *shapes, size_t capacity) {

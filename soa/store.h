@@ -221,7 +221,7 @@ struct narc_shapes {
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
     /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache
-     * lines, and end with the memory but for less than one, and records but for NARC_READ_AHEAD. */
+     * lines, and end with the memory but for less than one, and records but for what may be read ahead (store.c). */
     void *headers_memory, *records_memory;
 };
 

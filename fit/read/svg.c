@@ -17,6 +17,7 @@
  * What is thinner than a fifteenth of a pixel may fall between these rows. The tip of a needle with angle a is as thin
  * over 1 / (30 tan (a / 2)) pixels: above 0.47 for angles below 8 degrees.
  */
+#include <dlfcn.h>
 #include <librsvg/rsvg.h>
 #include <math.h>
 #include <stdio.h>
@@ -81,6 +82,40 @@ struct extent {
     int left, right, top, bottom;
 };
 
+/* ---------------------------------------------------------------------------- librsvg, where a drawing is read */
+
+/* Loading it and the thirty libraries that it needs is two thirds of what a start of the command takes. */
+#define FUNCTIONS(F)                                                                                                   \
+    F(new_from_data)                                                                                                   \
+    F(set_dpi)                                                                                                         \
+    F(has_sub)                                                                                                         \
+    F(render_layer)                                                                                                    \
+    F(get_geometry_for_layer)                                                                                          \
+    F(get_intrinsic_dimensions)                                                                                        \
+    F(get_intrinsic_size_in_pixels)
+
+#define DECLARE(name) TYPE_OF(rsvg_handle_##name) *name;
+static struct librsvg { FUNCTIONS(DECLARE) } rsvg;
+
+static bool find_function(void *library, const char *name, void *out_pointer) {
+    void *const function = library ? dlsym(library, name) : NULL;
+    memcpy(out_pointer, &function, sizeof function);
+    return function;
+}
+
+static narc_status load_librsvg(narc_error *error) {
+    static gsize state; /* 1: it is there, 2: it is not */
+    if (g_once_init_enter(&state)) {
+        void *const library = dlopen(NARC_LIBRSVG, RTLD_LAZY | RTLD_LOCAL);
+#define FIND(name) &&find_function(library, "rsvg_handle_" #name, &rsvg.name)
+        const bool found = true FUNCTIONS(FIND);
+        g_once_init_leave(&state, found ? 1 : 2);
+    }
+    return state == 1
+               ? NARC_OK
+               : narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "SVG files need %s, which can't be loaded", NARC_LIBRSVG);
+}
+
 /* ---------------------------------------------------------------------------- opening */
 
 enum { LONGEST_REASON = 160 };
@@ -110,11 +145,14 @@ static narc_status open_svg(const void *data, size_t size, RsvgHandle **out_hand
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the SVG file is empty");
     if (size >= 2 && memcmp(data, gzip, 2) == 0)
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "a compressed SVG file (svgz): it must be unpacked first");
+    const narc_status status = load_librsvg(error);
+    if (status)
+        return status;
     GError *problem = NULL;
-    *out_handle = rsvg_handle_new_from_data(data, size, &problem);
+    *out_handle = rsvg.new_from_data(data, size, &problem);
     if (!*out_handle)
         return fail_svg(problem, error);
-    rsvg_handle_set_dpi(*out_handle, 96); /* CSS: an inch has 96 user units */
+    rsvg.set_dpi(*out_handle, 96); /* CSS: an inch has 96 user units */
     return NARC_OK;
 }
 
@@ -130,9 +168,9 @@ struct rendering {
 
 static void *render(void *context) {
     struct rendering *r = context;
-    const gboolean done =
-        r->cairo ? rsvg_handle_render_layer(r->handle, r->cairo, r->element, &r->viewport, &r->problem)
-                 : rsvg_handle_get_geometry_for_layer(r->handle, NULL, &r->viewport, &r->ink, NULL, &r->problem);
+    const gboolean done = r->cairo
+                              ? rsvg.render_layer(r->handle, r->cairo, r->element, &r->viewport, &r->problem)
+                              : rsvg.get_geometry_for_layer(r->handle, NULL, &r->viewport, &r->ink, NULL, &r->problem);
     return done ? context : NULL;
 }
 
@@ -167,10 +205,10 @@ static narc_status find_page(RsvgHandle *handle, struct page *out_page, narc_err
     RsvgLength width, height;
     if (!render_apart(&rehearsal))
         return fail_svg(rehearsal.problem, error);
-    rsvg_handle_get_intrinsic_dimensions(handle, &has_width, &width, &has_height, &height, &has_view, &view);
+    rsvg.get_intrinsic_dimensions(handle, &has_width, &width, &has_height, &height, &has_view, &view);
     if (!has_view) {
         view = (RsvgRectangle){0};
-        has_view = rsvg_handle_get_intrinsic_size_in_pixels(handle, &view.width, &view.height);
+        has_view = rsvg.get_intrinsic_size_in_pixels(handle, &view.width, &view.height);
     }
     if (!has_view && !(is_whole(width) && is_whole(height)))
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the SVG file has no viewBox, and only a part of a size");
@@ -417,7 +455,7 @@ static narc_status find_element(RsvgHandle *handle, const char *id, char **out_e
     if (!element)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for an id of the SVG file");
     snprintf(element, size, "#%s", id);
-    if (!rsvg_handle_has_sub(handle, element)) {
+    if (!rsvg.has_sub(handle, element)) {
         free(element);
         return narc_fail(error, NARC_ERROR_INDEX, 0, 0, "the SVG file has no element with the id '%s'",
                          narc_make_excerpt(id).text);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * circles_beside.inl - circles beside the front of a run: where the foot of the centre lies is looked for among the
- * junctions, whose normals lie in the order of the arcs, by halving.
+ * junctions, whose normals lie in the order of the arcs, by halving, then step by step.
  *
  * Let p be the centre of the circle. Without its radius the gap is the distance of p from the closed run, where p lies
  * outside of that. It rises towards the foot from all sides, by at least as much as p lies beside the nearest normal of a

@@ -90,6 +90,7 @@ struct own_arcs {
 
 /* Arcs that follow each other; lanes behind the last one of a shape have anything (soa/store.c). */
 INLINE struct own_arcs load_own_arcs(const narc_record *arcs) {
+    _Static_assert(V_WIDTH <= 16, "soa/store.c has room for 16");
     static const int32_t lane[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     vf field[8];
     v_rows(arcs, sizeof *arcs, lane, field);

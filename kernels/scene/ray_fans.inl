@@ -305,7 +305,8 @@ INLINE uint32_t cast_in_lanes(const narc_ray_batch *batch, struct fan *f, const 
 }
 
 /* Casts one ray of a fan at a body, alone. */
-NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, uint32_t body, unsigned k) {
+NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct body_frame *frame, uint32_t body,
+                       unsigned k) {
     struct walk *const w = &f->walks[k];
     if (goes_in_lanes(f)) {
         put_hits(batch, f, 1u << k);
@@ -314,7 +315,7 @@ NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, uint32_t body
         w->limit = f->limits[k];
         w->limit_fraction = f->nearest.fraction[k];
     }
-    cast_at_body(batch, w, body);
+    cast_at_frame(batch, w, frame, body);
     f->limits[k] = w->limit;
     if (goes_in_lanes(f) && w->found > 0) {
         f->nearest.fraction[k] = w->rows->fraction;
@@ -333,15 +334,14 @@ INLINE bool visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size
         uint32_t rays = find_rays(f, &index->nodes[leaf], slot);
         struct body_frame frame;
         const uint32_t body = index->body[number];
-        if (!rays)
+        if (!rays || !load_body_frame(batch->shapes, batch->bodies, body, &frame))
             continue;
-        if (goes_in_lanes(f) && load_body_frame(batch->shapes, batch->bodies, body, &frame) &&
-            !narc_is_piece(frame.header))
+        if (goes_in_lanes(f) && !narc_is_piece(frame.header))
             rays = cast_in_lanes(batch, f, &frame, body, rays);
         for (; rays; rays &= rays - 1) {
             const unsigned k = (unsigned)FIND_LOWEST(rays);
             if (goes_in_lanes(f) || (index->masks ? index->masks[number] : UINT64_MAX) & f->walks[k].chosen.mask)
-                cast_one(batch, f, body, k);
+                cast_one(batch, f, &frame, body, k);
         }
     }
     const float limit = f->limit;

@@ -242,19 +242,21 @@ NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, struct b
 }
 
 /* Casts a ray at a body. Is it done? */
-NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, uint32_t body) {
+INLINE bool cast_at_frame(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
     narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
-    struct body_frame frame;
     struct meeting met;
-    if (!load_body_frame(batch->shapes, batch->bodies, body, &frame))
-        return false;
     if (w->chosen.owners)
-        return cast_at_part(batch, w, frame, body);
-    if (body == w->chosen.ignored || !find_meeting(&frame, &w->ray, batch->options->inside, false, &met) ||
-        !put_meeting(&frame, &w->ray, &met, w->limit_fraction, &hit))
+        return cast_at_part(batch, w, *frame, body);
+    if (body == w->chosen.ignored || !find_meeting(frame, &w->ray, batch->options->inside, false, &met) ||
+        !put_meeting(frame, &w->ray, &met, w->limit_fraction, &hit))
         return false;
     keep_hit(w, batch->most, &hit);
     return batch->options->any;
+}
+
+NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, uint32_t body) {
+    struct body_frame frame;
+    return load_body_frame(batch->shapes, batch->bodies, body, &frame) && cast_at_frame(batch, w, &frame, body);
 }
 
 /* The next slot that is left, its level, and what is below it: a node, or of a leaf a body. False if there is none. */

@@ -8,7 +8,7 @@ valgrind=$3
 
 # races ARGUMENTS...: how many are seen.
 races() {
-    "$valgrind" --tool=helgrind ${rules:+--suppressions="$rules"} --log-file=races.log "$narc" "$@" >out.txt 2>err.txt
+    "$valgrind" --tool=helgrind --fair-sched=yes ${rules:+--suppressions="$rules"} --log-file=races.log "$narc" "$@" >out.txt 2>err.txt
     grep -c "Possible data race" races.log
 }
 # orderly NAME ARGUMENTS...: no two threads get at the same memory but one after the other.
