@@ -94,7 +94,7 @@ struct extent {
     F(get_intrinsic_dimensions)                                                                                        \
     F(get_intrinsic_size_in_pixels)
 
-#define DECLARE(name) TYPE_OF(rsvg_handle_##name) *name;
+#define DECLARE(name) TYPE_OF(&rsvg_handle_##name) name;
 static struct librsvg { FUNCTIONS(DECLARE) } rsvg;
 
 static bool find_function(void *library, const char *name, void *out_pointer) {
