@@ -105,7 +105,7 @@ elseif(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_NARC_DEVELOPMENT_PACKAGE_NAME libnarc-dev)
   set(CPACK_DEBIAN_NARC_DEVELOPMENT_PACKAGE_SECTION libdevel)
   set(CPACK_DEBIAN_NARC_TOOLS_PACKAGE_NAME narc-tools)
-  if(NARC_SVG) # loaded where a drawing is read
+  if(NARC_SVG AND TARGET narc_fit) # loaded where a drawing is read
     set(CPACK_DEBIAN_NARC_TOOLS_PACKAGE_DEPENDS librsvg2-2)
   endif()
   # Of the static libraries.

@@ -257,7 +257,7 @@ static narc_status check_origin(const struct job *job, narc_error *error) {
     if (!job->request->keep_origin || rounding <= COARSEST * job->frame.radius)
         return NARC_OK;
     return narc_fail(
-        error, NARC_ERROR_NO_SOLUTION, 0, away,
+        error, NARC_ERROR_NO_SOLUTION, 0, 0,
         "the outline is %g from its origin, where single precision rounds by up to %g: a shape of radius %g "
         "can't keep that origin",
         away, rounding, job->frame.radius);
@@ -361,8 +361,8 @@ static narc_status finish_best(const struct job *job, const narc_ranking *best, 
         for (size_t i = 0; status == NARC_OK && i < out_result->arc_count; i++) {
             const double radius = out_result->arcs[i].radius;
             if (!(radius >= job->request->min_radius)) {
-                status = narc_fail(error, NARC_ERROR_NO_SOLUTION, i, radius,
-                                   "arc %zu has the radius %g, the least is %g", i, radius, job->request->min_radius);
+                status = narc_fail(error, NARC_ERROR_NO_SOLUTION, i, 0, "arc %zu has the radius %g, the least is %g", i,
+                                   radius, job->request->min_radius);
             }
         }
     }

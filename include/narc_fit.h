@@ -295,7 +295,7 @@ NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request
 
 typedef struct narc_parts_request {
     size_t most;      /* at most so many parts, 1 .. NARC_MAX_PARTS */
-    double tolerance; /* as few parts as are found that no point of is further than this from the outline; 0: the
+    double tolerance; /* few parts that no point of is further than this from the outline; 0: the
                          nearest that are found, at most `most` */
     double lap;       /* 0, or how far each part goes on into its neighbours, a length, so that shapes which only
                          approximate parts leave no seam between them: twice their tolerance is enough. The tolerance
@@ -315,10 +315,10 @@ typedef struct narc_parts {
 
 /* Cuts an outline into convex parts, which may overlap: approximate convex decomposition (Lien and Amato 2006). Inside
  * is what an odd number of contours is around; contours that cross are outlines each, but for holes that cross, and one that
- * crosses itself is the loops between its crossings. A bay or hole stays where no point
- * of it is further from the inside than the tolerance, so narrow ones may be as deep as they like. Cuts go from the
- * deepest bays to where that leaves least, and parts are joined again as far as the tolerance lets them be: a search, no
- * proof that fewer do not serve. Where the outline is as thin as a line, so is a part, with 0.1 % of its length in width.
+ * crosses itself is the loops between its crossings. A bay or hole stays where no point of it is further from the inside than
+ * the tolerance, so narrow ones may be as deep as they like. Cuts go from the deepest bays to where that leaves least, and
+ * parts are joined again as far as the tolerance lets them be, across others only where there are more than `most`: a search,
+ * no proof that fewer do not serve. Where the outline is as thin as a line, so is a part, with 0.1 % of its length in width.
  * Takes some hundredths of a second with a tolerance, ten times as long without. Free the result with
  * narc_release_parts(). Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (`most`; an outline without points),
  * NARC_ERROR_SIZE (no length; all points in one place), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with so many

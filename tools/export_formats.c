@@ -358,7 +358,7 @@ static void write_tres_3(FILE *file, const exported *what) { put_godot_shape(fil
 
 /* ---------------------------------------------------------------------------- engines */
 
-/* Circles, too: Matter makes polygons within of them, which are no closer than it likes. */
+/* Circles too: Matter would make polygons of them that lie inside, by more than the tolerance. */
 static void write_phaser(FILE *file, const exported *what) {
     cJSON *root = open_json();
     for (size_t i = 0; i < what->count; i++) {

@@ -54,7 +54,7 @@ static const char HELP[] =
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"
     "                  capsules, boxes and regular polygons within T become just that\n"
     "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
-    "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
+    "                  that overlap at cuts, 1 to 256: few that stay within --tolerance of the\n"
     "                  outline, or with --arcs, which is for each, the nearest; with neither:\n"
     "                  exactly the outline, of lines and convex arcs, without overlap\n"
     "  --bound         the shape contains the outline; the default\n"
@@ -394,7 +394,7 @@ static void suggest_tolerance(fitting *how, const narc_path *path, narc_fit_requ
         request.tolerance = strtod(text, NULL);
         if (narc_fit_path(path, &request, &fit, &last) != NARC_OK)
             continue;
-        const char *reason = is_smooth(&request) ? strrchr(error->message, ':') : NULL; /* radii: then edges do */
+        const char *reason = strstr(error->message, ": radii end at"); /* then edges do */
         const size_t used = reason ? (size_t)(reason - error->message) : strlen(error->message);
         snprintf(error->message + used, sizeof error->message - used, "%s--tolerance %s does",
                  reason ? ": --edges may do, " : "; ", text);

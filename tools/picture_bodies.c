@@ -138,8 +138,8 @@ static view choose_view(const char *path, const body_scene *scene) {
         world = bound_world(&seen, scene, &mean, &count);
         if (count == 0 && all > 0)
             fail("%s: the bodies are too far apart to draw", path);
-        warn_at(path, "%zu of %zu bodies, and rays, that are more than %g from the origin are left out", all - count,
-                all, seen.reach);
+        warn_at(path, "%zu of %zu bodies%s that are more than %g from the origin are left out", all - count, all,
+                scene->ray_count ? ", and rays," : "", seen.reach);
     }
     const double size = box_size(world);
     if (!(size > 0))

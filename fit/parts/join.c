@@ -117,8 +117,8 @@ static bool join_pair(joining *j, size_t a, size_t b) {
     return true;
 }
 
-/* Returns how many pieces are left, 0 where memory runs out. */
-static size_t join_nearest(joining *j, double largest_lap) {
+/* While more than so many pieces are left; returns how many are, 0 where memory runs out. */
+static size_t join_nearest(joining *j, double largest_lap, size_t most) {
     size_t left = 0;
     bool done = true;
     j->largest_lap = largest_lap;
@@ -130,7 +130,7 @@ static size_t join_nearest(joining *j, double largest_lap) {
     }
     for (size_t a = 0; a < j->count; a++)
         find_partner(j, a);
-    for (size_t a; done && cost_with_partner(j, a = find_cheapest(j)) < INFINITY;) {
+    for (size_t a; done && left > most && cost_with_partner(j, a = find_cheapest(j)) < INFINITY;) {
         const size_t b = j->partners[a];
         done = join_pair(j, a, b);
         update_partners(j, a, b);
@@ -155,9 +155,9 @@ narc_status narc_join_pieces(const narc_region *region, size_t most, narc_pieces
     const bool done = j.own && j.grounds && j.costs && j.partners && j.points && j.corners;
     for (size_t a = 0; done && a < j.count; a++)
         j.own[a] = narc_measure_emptiness(region, pieces->items[a].corners, pieces->items[a].count, &j.grounds[a]);
-    size_t left = done ? join_nearest(&j, LARGEST_LAP) : 0;
+    size_t left = done ? join_nearest(&j, LARGEST_LAP, 1) : 0;
     if (left > most)
-        left = join_nearest(&j, INFINITY);
+        left = join_nearest(&j, INFINITY, most);
     size_t kept = 0;
     for (size_t a = 0; a < j.count; a++) /* also where memory ran out */
         if (pieces->items[a].count)

@@ -36,14 +36,15 @@ static bool is_spared(void) {
     void *frames[DEPTH];
     scarcity.counts = false;
     const int count = backtrace(frames, DEPTH);
-    /* Nor what libgomp itself allocates, which ends the process too; it calls narc. */
+    /* Nor what libgomp itself allocates, for threads by the C library and its loader, which ends the process too; it calls
+     * narc. */
     bool spared = false, direct = true;
     Dl_info here, object;
     for (int k = 0; k < count && !spared; k++) {
         if (!dladdr(frames[0], &here) || !dladdr(frames[k], &object) || object.dli_fbase == here.dli_fbase)
             continue;
         spared = belongs_to_spared(object.dli_fname) || (direct && strstr(object.dli_fname, "/libgomp."));
-        direct = false;
+        direct = direct && (strstr(object.dli_fname, "/libc.") || strstr(object.dli_fname, "/ld-linux"));
     }
     scarcity.counts = true;
     return spared;

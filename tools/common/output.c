@@ -209,6 +209,13 @@ void commit_outputs(void) {
         free(out->path);
         free(out);
     }
+    for (size_t i = 0; i < places; i++)
+        if (!files[i].out)
+            free(files[i].target); /* an input's */
+    free(files);
+    files = NULL;
+    places = taken = 0;
+    last = current = NULL;
 }
 
 char *expand_pattern(const char *pattern, const char *name) {

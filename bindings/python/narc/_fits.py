@@ -149,7 +149,7 @@ def fit(outline: Outline | ArrayLike | Sequence[ArrayLike], arcs: int = 8, *, to
 
 def cut(outline: Outline | ArrayLike | Sequence[ArrayLike], tolerance: float = 0.0, *, most: int = 256, lap: float = 0.0,
         flatness: float = 0.0) -> list[Outline]:
-    """Cuts an outline into convex parts that hold its inside, as few as are found within `tolerance` of it, or, with 0, the
+    """Cuts an outline into convex parts that hold its inside, few within `tolerance` of it, or, with 0, the
     nearest `most`. `lap`: how far parts go on into their neighbours. narc.fit() makes a shape of each. Raises narc.Error."""
     paths, _, _ = _library().cut(_outline(outline), _whole("most", most), tolerance, lap, flatness)
     return [Outline._of(path) for path in paths]
