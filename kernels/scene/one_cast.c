@@ -78,22 +78,23 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
     narc_body at[] = {*asked->bodies[0], *asked->bodies[1]};
     const narc_one_pair pair = {&batch, &at[0], &at[1], contact, INFINITY, 0, false};
     int outcome = CAST_GOES_ON;
-    struct both both;
+    struct turning turning;
     at[0].x = at[0].y = 0;
     if (turns)
-        both = load_both(casts);
+        turning = load_turning(casts, 0);
     while (outcome == CAST_GOES_ON) {
         struct step step;
         move_bodies(casts, 0);
         at[1].x = (double)casts->x_now[0];
         at[1].y = (double)casts->y_now[0];
         if (turns)
-            turn_both(casts, &both);
+            turn_bodies(casts, 0, &turning);
         UNROLL
-        for (int side = 0; turns && side < 2; side++) {
-            at[side].cosine = casts->cosine_now[side][0];
-            at[side].sine = casts->sine_now[side][0];
-        }
+        for (int side = 0; turns && side < 2; side++)
+            if (casts->side[side].angle[0] != 0) {
+                at[side].cosine = casts->cosine_now[side][0];
+                at[side].sine = casts->sine_now[side][0];
+            }
         if (NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(&pair) <= 0)
             return UNANSWERED;
         const struct touch touch = load_contacts(contact, live);
