@@ -145,8 +145,8 @@ def test_slices_are_one_answer(heap, random, monkeypatch, threads):
                 index.casts(bodies[:160], motion[:160], turn[:160], ignored=np.arange(160))]
 
     whole = ask()
-    monkeypatch.setattr(narc._batch, "SLICE", 100)
-    monkeypatch.setattr(narc._scene, "SLICE", 100)
+    monkeypatch.setattr(narc._batch, "SLICE", 128)
+    monkeypatch.setattr(narc._scene, "SLICE", 128)
     for k, (part, one) in enumerate(zip(ask(), whole)):
         assert part.tobytes() == one.tobytes(), k
     with pytest.raises(ValueError, match="body has 5 items, where there are 600"):
