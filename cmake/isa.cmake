@@ -25,10 +25,6 @@ set_source_files_properties("${PROJECT_SOURCE_DIR}/kernels/sat/pair.c" "${PROJEC
 function(narc_add_isa_objects target name isa)
   add_library(${target} OBJECT ${ARGN})
   target_compile_definitions(${target} PRIVATE NARC_ISA_NAME=${name} NARC_SIMD="simd/${isa}.h")
-  # The header of AVX's functions takes longer to read than many kernels to compile. (Caches of compilers know no such.)
-  if(isa MATCHES "^avx" AND NOT CMAKE_C_COMPILER_LAUNCHER)
-    target_precompile_headers(${target} PRIVATE <immintrin.h>)
-  endif()
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
   set_target_properties(${target} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
   separate_arguments(flag_list UNIX_COMMAND "${NARC_ISA_FLAGS_${isa}}")
