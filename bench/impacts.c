@@ -15,7 +15,7 @@ struct flights {
     narc_shapes *shapes;
     struct outline polygon; /* stands for the shape in Box2D */
     narc_body *bodies;
-    struct motion *motions;
+    narc_motion *motions;
     narc_impact *impacts;
     float *fractions;
     size_t count;
@@ -61,21 +61,21 @@ static void make_flights(struct flights *f, double turning) {
                                    (float)sin(angle),
                                    1,
                                    0};
-        f->motions[k] = (struct motion){(float)(way * cos(to)), (float)(way * sin(to)),
-                                        (float)(turning * random_between(&random, -1, 1))};
+        f->motions[k] = (narc_motion){(float)(way * cos(to)), (float)(way * sin(to)),
+                                      (float)(turning * random_between(&random, -1, 1))};
     }
 }
 
-static void cast(const struct flights *f, size_t first, size_t count, narc_impact *out) {
-    const struct motion *motion = f->motions + 2 * first;
+static void cast(const struct flights *f, narc_impact *out) {
+    const narc_motion *const motion = f->motions;
     narc_bodies bodies;
-    narc_view_bodies(f->bodies + 2 * first, 2 * count, &bodies);
+    narc_view_bodies(f->bodies, 2 * f->count, &bodies);
     narc_motions motions = {.x = NARC_COLUMN(motion, x), .y = NARC_COLUMN(motion, y)};
-    const narc_pairs pairs = {.count = count};
+    const narc_pairs pairs = {.count = f->count};
     narc_error error;
     if (f->turning)
         motions.angle = NARC_COLUMN(motion, angle);
-    must(narc_cast_pairs(f->shapes, &bodies, &motions, &pairs, NULL, NULL, out + first, count, &error), &error);
+    must(narc_cast_pairs(f->shapes, &bodies, &motions, &pairs, NULL, NULL, out, f->count, &error), &error);
 }
 
 static void run(struct row *row) {
@@ -87,11 +87,15 @@ static void run(struct row *row) {
                                     .motions = f->motions,
                                     .straight = !f->turning};
         row->peer->ask(row->peer_state, &asked, f->fractions);
+    } else if (row->alone) {
+        const narc_motion *motion = f->motions;
+        narc_error error;
+        for (size_t k = 0; k < f->count; k++, motion += 2)
+            must(narc_cast_pair(f->shapes, &f->bodies[2 * k], motion, &f->bodies[2 * k + 1], motion + 1, NULL,
+                                &f->impacts[k], &error),
+                 &error);
     } else {
-        for (size_t k = 0, batch; k < f->count; k += batch) {
-            batch = batch_of(row, k);
-            cast(f, k, batch, f->impacts);
-        }
+        cast(f, f->impacts);
     }
 }
 
@@ -106,7 +110,7 @@ static void prepare(struct row *row) {
     add_shape(f, strchr(row->bench.name, '/') + 1);
     make_flights(f, row->question->what);
     narc_impact *expected = allocate(f->count, sizeof *expected);
-    cast(f, 0, f->count, expected);
+    cast(f, expected);
     run(row);
     for (size_t k = 0; k < f->count; k++) {
         const bool hit = expected[k].count == NARC_CAST_HIT;

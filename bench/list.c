@@ -64,7 +64,7 @@ static const struct group groups[] = {
     {"hull-8", "points", "clouds", "BEST box2d"},
     {"hull-200", "points", "clouds", "BEST"},
     {"polyline", "n8 gons8", "pile", "BEST"},
-    {FLIGHTS, "squares slabs gons8 n8", "flights", BOTH " box2d"},
+    {FLIGHTS, "squares slabs gons8 n8", "flights", "BEST BEST/alone avx2 avx2/alone box2d"},
     {"index-good index-fast", "gons8", SCENES, "BEST"},
     {"move-1 move-100 move-2000 move-near-2000", "gons8", SCENES, "BEST box2d"},
     {"ground-none ground-among", "boxes", "hills short-hills", "BEST avx2"},

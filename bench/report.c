@@ -104,7 +104,7 @@ static const struct table tables[] = {
     {"ns a pair, times of impact | motion", "boxes 1 : 1 = squares; boxes 1 : 8 = slabs; 8-gons = gons8; 8 arcs = n8",
      "straight = straight; turning by up to 1 = turning; turning by up to 6 = turning-6",
      "batch = impact-$2/$1/flights/BEST / 5; AVX2 = impact-$2/$1/flights/avx2 / 5;"
-     "one by one = impact-$2/$1/flights/BEST/by1 / 5; AVX2 = impact-$2/$1/flights/avx2/by1 / 5;"
+     "one by one = impact-$2/$1/flights/BEST/alone / 5; AVX2 = impact-$2/$1/flights/avx2/alone / 5;"
      "Box2D = impact-$2/$1/flights/box2d",
      1},
     {"ns a box of an index", SCENES, "", "built = index-good/gons8/$1/BEST; built `fast` = index-fast/gons8/$1/BEST",

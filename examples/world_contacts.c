@@ -164,30 +164,28 @@ void world_make_contacts(world *w) {
     }
 }
 
+static narc_body before(const world_body *body) {
+    return (narc_body){(double)body->from.x, (double)body->from.y, body->from_rotation.x, body->from_rotation.y, 1,
+                       body->shape};
+}
+
 /* Bodies that were deeper before may get hardly deeper; else the solver sees to them. */
 narc_status world_stop_bullets(world *w) {
-    const world_body *all = w->bodies, *end = all + w->body_count;
-    const narc_motions motions = {
-        NARC_COLUMN(all, motion.x), NARC_COLUMN(all, motion.y), NARC_COLUMN(all, turn), {NULL}};
-    narc_bodies before = view_bodies(w);
-    before.x = NARC_POSITION_COLUMN(all, from.x);
-    before.y = NARC_POSITION_COLUMN(all, from.y);
-    before.cosine = NARC_COLUMN(all, from_rotation.x);
-    before.sine = NARC_COLUMN(all, from_rotation.y);
+    const world_body *const end = w->bodies + w->body_count;
     for (world_body *body = w->bodies; body < end + w->ground_count; body++)
         body->motion = subtract(body->position, body->from);
     for (size_t k = 0; k < w->result->count; k++) {
-        const uint32_t slot = w->result->order[k];
         const world_contact *const c = world_contact_of(w, k);
-        const uint32_t pair[2] = {w->result->pairs.a.base[slot], w->result->pairs.b.base[slot]};
         const float deepest = smaller(c->points[0].separation, c->points[1].separation);
-        const narc_pairs one = {.count = 1, .a = {&pair[0], 0}, .b = {&pair[1], 0}};
+        const narc_body a = before(c->a), b = before(c->b);
+        const narc_motion motion_a = {c->a->motion.x, c->a->motion.y, c->a->turn},
+                          motion_b = {c->b->motion.x, c->b->motion.y, c->b->turn};
         const narc_cast_options options = {.target = -larger(c->depth, 0.03f * c->depth - deepest),
                                            .tolerance = 0.01f * c->depth,
                                            .front_only = w->platform_count > 0};
         narc_impact hit = {.count = 0};
         if (c->depth > 0 && !c->passes &&
-            narc_cast_pairs(w->store, &before, &motions, &one, NULL, &options, &hit, 1, &w->error) != NARC_OK)
+            narc_cast_pair(w->store, &a, &motion_a, &b, &motion_b, &options, &hit, &w->error) != NARC_OK)
             return w->error.status;
         if (hit.count > 0)
             c->a->stop = c->b->stop = smaller(hit.fraction, smaller(c->a->stop, c->b->stop));

@@ -831,6 +831,13 @@ auto cast_pairs(const narc_shapes *shapes, const narc_bodies &bodies, const narc
         });
 }
 
+// Of two bodies.
+inline result<narc_impact> cast_pair(const narc_shapes *shapes, const narc_body &a, const narc_motion &motion_a,
+                                     const narc_body &b, const narc_motion &motion_b,
+                                     const narc_cast_options &options = {}) {
+    return detail::ask<narc_impact>(narc_cast_pair, shapes, &a, &motion_a, &b, &motion_b, &options);
+}
+
 template <class Rows>
 auto cast_shapes(narc_index *index, const narc_shapes *shapes, const narc_bodies &bodies, const narc_bodies &movers,
                  const narc_motions &motions, const narc_index_query &search, const narc_cast_options &options,

@@ -277,6 +277,12 @@ typedef struct narc_motions {
     void *reserved[2]; /* NULL */
 } narc_motions;
 
+/* The motion of one body: by how much it moves and turns in a step. */
+typedef struct narc_motion {
+    float x, y;
+    float angle;
+} narc_motion;
+
 /* What is 0 or NULL has its default, as all has for {0}.
  *   target        the separation that is looked for: 0: touch; above 0: closer than that; below 0: so deep
  *   tolerance     where turning moves a body's outline, a hit has a separation within target .. target + tolerance; 0:
@@ -356,6 +362,15 @@ NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodie
                                      const narc_pairs *pairs, const narc_motions *other_motions,
                                      const narc_cast_options *options, narc_impact *out_rows, size_t capacity,
                                      narc_error *error);
+
+/* The cast of two bodies, which is row 0 of a batch of that pair, to the last bit (body 1 is B): for whoever casts one by one.
+ *   motion_a, motion_b   NULL: it stands still
+ *   options              NULL: defaults. What counts of it is target, tolerance, parting, front_only and out_skipped
+ * Errors, all found before anything is written: as narc_cast_pairs(), and NARC_ERROR_INDEX (a shape that is not there).
+ * Allocates nothing. */
+NARC_API narc_status narc_cast_pair(const narc_shapes *shapes, const narc_body *a, const narc_motion *motion_a,
+                                    const narc_body *b, const narc_motion *motion_b, const narc_cast_options *options,
+                                    narc_impact *out_row, narc_error *error);
 
 /* What each mover hits first: the least (fraction, body).
  *   index, bodies    what stands still while movers move, as in narc_cast_rays()

@@ -217,12 +217,12 @@ typedef struct narc_cast_batch {
     narc_impact *out;
 } narc_cast_batch;
 
-/* One cast by itself, of shapes that are no pieces of chains: A at the origin, and B where it is from there, with the pair's
- * shift. Motions are x, y, and the angle. The row is that of `pair`, or of its mover (`nearest`), who may hit `body`. */
+/* One cast by itself, of shapes that are no pieces of chains. The row is that of `pair`, or of its mover (`nearest`), who may hit
+ * `body`. */
 typedef struct narc_one_cast {
     const narc_shapes *shapes;
-    narc_body *bodies[2]; /* as a caller's, A at the origin; they move */
-    float motions[2][3];
+    const narc_body *bodies[2];
+    const narc_motion *motions[2];
     float target, tolerance;
     uint32_t pair, body;
     bool nearest;

@@ -345,7 +345,7 @@ static size_t find_impacts(void *context, const struct asked *asked, void *out) 
     for (size_t k = 0; k < asked->count; k++) {
         if (asked->straight) {
             const narc_body *a = &asked->bodies[2 * k], *b = a + 1;
-            const struct motion *of_a = &asked->motions[2 * k], *of_b = of_a + 1;
+            const narc_motion *of_a = &asked->motions[2 * k], *of_b = of_a + 1;
             const b2Transform at_a = {{(float)a->x, (float)a->y}, {a->cosine, a->sine}};
             const b2Transform at_b = {{(float)b->x, (float)b->y}, {b->cosine, b->sine}};
             const b2ShapeCastPairInput input = {
@@ -361,7 +361,7 @@ static size_t find_impacts(void *context, const struct asked *asked, void *out) 
         b2TOIInput input = {.proxyA = proxy, .proxyB = proxy, .maxFraction = 1};
         for (size_t side = 0; side < 2; side++) {
             const narc_body *body = &asked->bodies[2 * k + side];
-            const struct motion *motion = &asked->motions[2 * k + side];
+            const narc_motion *motion = &asked->motions[2 * k + side];
             b2Sweep *sweep = side == 0 ? &input.sweepA : &input.sweepB;
             sweep->c1 = (b2Vec2){(float)body->x, (float)body->y};
             sweep->c2 = (b2Vec2){(float)body->x + motion->x, (float)body->y + motion->y};

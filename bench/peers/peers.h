@@ -11,11 +11,6 @@ struct ray {
     float x, y, motion_x, motion_y;
 };
 
-/* How far a body moves and turns. */
-struct motion {
-    float x, y, angle;
-};
-
 /* What a run asks; a peer looks at its part. */
 struct asked {
     size_t count;
@@ -30,7 +25,7 @@ struct asked {
     const uint32_t *moved; /* of which these have moved */
     const struct outline *polygon; /* "impact" of bodies 2 k and 2 k + 1: float, when they meet, above 1 if never */
     const narc_body *bodies;
-    const struct motion *motions;
+    const narc_motion *motions;
     bool straight;           /* none turns */
     const float (*cloud)[2]; /* "hull": of so many points after so many; uint8_t, corners. */
     size_t cloud_size;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * casts.c - narc_cast_pairs(): argument checks, then pairs part by part (kernels/scene/casts.c).
+ * casts.c - narc_cast_pairs(): argument checks, then pairs part by part (kernels/scene/casts.c); narc_cast_pair(), which is
+ * the kernel of one cast.
  */
 #include <math.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 enum { PART = 1024 };
 
 static const narc_motions still;
+static const narc_motion at_rest;
 static const narc_cast_options defaults;
 
 static narc_status check_number(float number, const char *name, narc_error *error) {
@@ -32,6 +34,12 @@ static narc_status check_options(const narc_cast_options *options, narc_error *e
     return status == NARC_OK ? narc_check_reserved(options->reserved, 1, "options", error) : status;
 }
 
+/* Is a cast the other kernels': does it let go, or is there a piece of a chain? */
+INLINE bool is_for_others(const narc_shapes *shapes, const narc_body *a, const narc_body *b, float parting) {
+    return parting > 0 || (shapes->piece_count > 0 &&
+                           (narc_is_piece(&shapes->headers[a->shape]) || narc_is_piece(&shapes->headers[b->shape])));
+}
+
 /* Pair `number` of a batch by itself, or of a call whose pairs bring their `own` bodies: 1 if it has no answer, below 0 if it is
  * the other kernels', or names what does not exist. */
 INLINE int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
@@ -39,19 +47,19 @@ INLINE int cast_alone(const narc_cast_batch *casts, size_t number, bool own) {
     const narc_shapes *const shapes = batch->shapes;
     narc_one_cast one;
     narc_gathered pair;
-    if (!narc_gather_pair(shapes, batch->a, batch->b, batch->pairs, own, number, &pair) || casts->parting > 0)
-        return -1;
-    if (shapes->piece_count > 0 &&
-        (narc_is_piece(&shapes->headers[pair.a.shape]) || narc_is_piece(&shapes->headers[pair.b.shape])))
+    narc_motion motion[2];
+    if (!narc_gather_pair(shapes, batch->a, batch->b, batch->pairs, own, number, &pair) ||
+        is_for_others(shapes, &pair.a, &pair.b, casts->parting))
         return -1;
     size_t body[2]; /* the caller's numbers */
     UNROLL
     for (int side = 0; side < 2; side++) {
         const narc_motions *const given = casts->motions[side];
         body[side] = own ? 2 * number + (size_t)side : narc_body_at(batch->pairs, side, number);
-        one.motions[side][0] = narc_float_or(given->x, body[side], 0);
-        one.motions[side][1] = narc_float_or(given->y, body[side], 0);
-        one.motions[side][2] = narc_float_or(given->angle, body[side], 0);
+        motion[side].x = narc_float_or(given->x, body[side], 0);
+        motion[side].y = narc_float_or(given->y, body[side], 0);
+        motion[side].angle = narc_float_or(given->angle, body[side], 0);
+        one.motions[side] = &motion[side];
     }
     const size_t row = casts->nearest ? body[0] : number;
     one.shapes = shapes;
@@ -205,4 +213,44 @@ narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies
     return cast_few(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity)
                ? NARC_OK
                : cast_batch(shapes, bodies, motions, pairs, other_motions, o, out_rows, capacity, error);
+}
+
+/* Two bodies through a batch, which says what is wrong, and asks the other kernels. */
+NOINLINE narc_status cast_two(const narc_one_cast *asked, const narc_cast_options *options, narc_error *error) {
+    if (!asked->bodies[0] || !asked->bodies[1] || !asked->out_row)
+        return narc_fail_missing(error, !asked->bodies[0] ? "a" : !asked->bodies[1] ? "b" : "out_row");
+    const narc_body two[] = {*asked->bodies[0], *asked->bodies[1]};
+    const narc_motion ways[] = {*asked->motions[0], *asked->motions[1]};
+    const narc_motions motions = {NARC_COLUMN(ways, x), NARC_COLUMN(ways, y), NARC_COLUMN(ways, angle), {NULL}};
+    narc_cast_options own = *options;
+    narc_bodies bodies;
+    narc_view_bodies(two, 2, &bodies);
+    own.targets = (narc_float_column){NULL, 0};
+    own.workers = NULL;
+    return cast_batch(asked->shapes, &bodies, &motions, &(narc_pairs){.count = 1}, NULL, &own, asked->out_row, 1,
+                      error);
+}
+
+narc_status narc_cast_pair(const narc_shapes *shapes, const narc_body *a, const narc_motion *motion_a,
+                           const narc_body *b, const narc_motion *motion_b, const narc_cast_options *options,
+                           narc_impact *out_row, narc_error *error) {
+    const narc_cast_options *const o = options ? options : &defaults;
+    const narc_one_cast one = {.shapes = shapes,
+                               .bodies = {a, b},
+                               .motions = {motion_a ? motion_a : &at_rest, motion_b ? motion_b : &at_rest},
+                               .target = o->target,
+                               .tolerance = o->tolerance,
+                               .body = 1,
+                               .out_row = out_row};
+    const narc_kernel_table *kernels = NULL;
+    narc_status status = NARC_OK;
+    if (shapes && a && b && out_row && a->shape < shapes->count && b->shape < shapes->count &&
+        !is_for_others(shapes, a, b, o->parting) && (!options || check_options(options, NULL) == NARC_OK))
+        kernels = narc_kernels(&status, NULL);
+    const int skipped = kernels ? kernels->cast(&one) : -1;
+    if (skipped < 0)
+        return cast_two(&one, o, error);
+    if (o->out_skipped)
+        *o->out_skipped = (size_t)skipped;
+    return NARC_OK;
 }

@@ -50,69 +50,57 @@ INLINE vm find_turning(const narc_casts *casts, size_t k) {
     return v_lt(v_set(0), v_max(v_abs(angle_a), v_abs(angle_b)));
 }
 
-/* The rotations of casts k ... at their times; what does not turn keeps its own, to the bit. */
-INLINE void turn_bodies(narc_casts *casts, int which, size_t k) {
-    const struct narc_cast_side *const side = &casts->side[which];
-    float cosine[V_WIDTH], sine[V_WIDTH];
-    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
-        const size_t slot = k + (size_t)h;
-        const vd angle = d_of_floats(side->angle + slot), zero = d_set(0);
-        dvec2 direction = {d_set(1), zero};
-        if (d_any(d_lt(zero, d_abs(angle))))
-            direction = find_directions(d_of_floats(casts->time + slot) * angle);
-        const dvec2 turned = turn(direction, find_rotation(side->cosine + slot, side->sine + slot));
-        d_store(casts->turned_x[which] + slot, turned.x);
-        d_store(casts->turned_y[which] + slot, turned.y);
-        d_put_floats(cosine + h, turned.x);
-        d_put_floats(sine + h, turned.y);
-    }
-    const vm turns = v_lt(v_set(0), v_abs(v_load(side->angle + k)));
-    v_store(casts->cosine_now[which] + k, v_select(turns, v_load(cosine), v_load(side->cosine + k)));
-    v_store(casts->sine_now[which] + k, v_select(turns, v_load(sine), v_load(side->sine + k)));
-}
-
-#ifdef NARC_ONE_PAIR
-/* The bodies of one cast that turns, in one register where it has room for both: their angles, and their rotations at the
- * start. */
-enum { HOLDERS = 2 / D_HELD };
-struct both {
+/* The bodies of casts that turn: their angles, and their rotations at the start. Both in one register where it has room. */
+enum { HOLDERS = 2 / D_ROOM };
+struct turning {
     vd angle[HOLDERS];
     dvec2 rotation[HOLDERS];
 };
 
-INLINE struct both load_both(const narc_casts *casts) {
+INLINE struct turning load_turning(const narc_casts *casts, size_t slot) {
     const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
-    const dvec2 of[] = {find_rotation(a->cosine, a->sine), find_rotation(b->cosine, b->sine)};
-    const vd angle[] = {d_of_floats(a->angle), d_of_floats(b->angle)};
-    struct both both;
+    const dvec2 rotation[] = {find_rotation(a->cosine + slot, a->sine + slot),
+                              find_rotation(b->cosine + slot, b->sine + slot)};
+    const vd angle[] = {d_of_floats(a->angle + slot), d_of_floats(b->angle + slot)};
+    struct turning turning;
     for (int k = 0; k < HOLDERS; k++) {
-        both.angle[k] = d_both(angle[k], angle[1]);
-        both.rotation[k] = (dvec2){d_both(of[k].x, of[1].x), d_both(of[k].y, of[1].y)};
+        turning.angle[k] = d_both(angle[k], angle[1]);
+        turning.rotation[k] = (dvec2){d_both(rotation[k].x, rotation[1].x), d_both(rotation[k].y, rotation[1].y)};
     }
-    return both;
+    return turning;
 }
 
-/* turn_bodies() of both. */
-INLINE void turn_both(narc_casts *casts, const struct both *both) {
-    const vd time = d_set((double)casts->time[0]);
+/* Their rotations at their times. */
+INLINE void turn_bodies(narc_casts *casts, size_t slot, const struct turning *turning) {
+    const vd time = d_both(d_of_floats(casts->time + slot), d_of_floats(casts->time + slot)), zero = d_set(0);
     dvec2 turned[HOLDERS];
-    for (int k = 0; k < HOLDERS; k++)
-        turned[k] = turn(find_directions(time * both->angle[k]), both->rotation[k]);
+    for (int k = 0; k < HOLDERS; k++) {
+        dvec2 direction = {d_set(1), zero};
+        if (D_ROOM > 1 || d_any(d_lt(zero, d_abs(turning->angle[k]))))
+            direction = find_directions(time * turning->angle[k]);
+        turned[k] = turn(direction, turning->rotation[k]);
+    }
     const vd x[] = {turned[0].x, d_other(turned[HOLDERS - 1].x)}, y[] = {turned[0].y, d_other(turned[HOLDERS - 1].y)};
     UNROLL
     for (int which = 0; which < 2; which++) {
-        const struct narc_cast_side *const side = &casts->side[which];
-        d_store(casts->turned_x[which], x[which]);
-        d_store(casts->turned_y[which], y[which]);
-        d_put_floats(casts->cosine_now[which], x[which]);
-        d_put_floats(casts->sine_now[which], y[which]);
-        if (side->angle[0] == 0) {
-            casts->cosine_now[which][0] = side->cosine[0];
-            casts->sine_now[which][0] = side->sine[0];
-        }
+        d_store(casts->turned_x[which] + slot, x[which]);
+        d_store(casts->turned_y[which] + slot, y[which]);
+        d_put_floats(casts->cosine_now[which] + slot, x[which]);
+        d_put_floats(casts->sine_now[which] + slot, y[which]);
     }
 }
-#endif
+
+/* What does not turn, of casts k ..., keeps its own rotation, to the bit. */
+INLINE void keep_rotations(narc_casts *casts, size_t k) {
+    UNROLL
+    for (int which = 0; which < 2; which++) {
+        const struct narc_cast_side *const side = &casts->side[which];
+        float *const cosine = casts->cosine_now[which] + k, *const sine = casts->sine_now[which] + k;
+        const vm turns = v_lt(v_set(0), v_abs(v_load(side->angle + k)));
+        v_store(cosine, v_select(turns, v_load(cosine), v_load(side->cosine + k)));
+        v_store(sine, v_select(turns, v_load(sine), v_load(side->sine + k)));
+    }
+}
 
 /* The positions of casts k ... at their times. */
 INLINE void move_bodies(narc_casts *casts, size_t k) {

@@ -275,12 +275,11 @@ NOINLINE void place_casts(narc_casts *casts) {
         const vm live = vm_front((int)(casts->count - k));
         const bool any_turns = vm_any(vm_and(live, find_turning(casts, k)));
         move_bodies(casts, k);
-        for (int side = 0; side < 2; side++) {
-            v_store(casts->cosine_now[side] + k, v_load(casts->side[side].cosine + k));
-            v_store(casts->sine_now[side] + k, v_load(casts->side[side].sine + k));
-            if (any_turns)
-                turn_bodies(casts, side, k);
+        for (size_t slot = k; any_turns && slot < k + V_WIDTH; slot += D_WIDTH) {
+            const struct turning turning = load_turning(casts, slot);
+            turn_bodies(casts, slot, &turning);
         }
+        keep_rotations(casts, k);
     }
 }
 

@@ -14,8 +14,8 @@
 
 #include "kernels.h"
 
-/* What becomes of a cast. */
-enum { UNANSWERED = -1, ANSWERED, SKIPPED };
+/* What becomes of a cast. STRAIGHT: what turns moves nothing by it. */
+enum { UNANSWERED = -1, ANSWERED, SKIPPED, STRAIGHT };
 
 #if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
 
@@ -47,25 +47,21 @@ INLINE int begin(const narc_one_cast *asked, narc_casts *casts, bool turns) {
         its->cosine[0] = body->cosine;
         its->sine[0] = body->sine;
         its->scale[0] = body->scale;
-        its->angle[0] = turns ? asked->motions[side][2] : 0;
-        loaded.motion_x[side][0] = asked->motions[side][0];
-        loaded.motion_y[side][0] = asked->motions[side][1];
-        loaded.shift_x[0] = loaded.shift_y[0] = 0; /* it is in the way */
+        its->angle[0] = turns ? asked->motions[side]->angle : 0;
+        loaded.motion_x[side][0] = asked->motions[side]->x;
+        loaded.motion_y[side][0] = asked->motions[side]->y;
+        loaded.shift_x[0] = loaded.shift_y[0] = 0; /* it is in B's place */
         load_outline(asked->shapes, (const int32_t *)its->shape, turns, 0, its, &loaded.outline[side]);
         loaded.fine = vm_and(loaded.fine, are_fine(its, 0, &loaded.outline[side]));
     }
-    casts->x[0] = asked->bodies[1]->x;
-    casts->y[0] = asked->bodies[1]->y;
+    casts->x[0] = asked->bodies[1]->x - asked->bodies[0]->x;
+    casts->y[0] = asked->bodies[1]->y - asked->bodies[0]->y;
     casts->target[0] = asked->target;
     casts->back[0] = CAST_FREE;
     casts->rounds[0] = 0;
     begin_half(asked->tolerance, casts, 0, 0, &loaded, outcome);
     return vm_any(loaded.fine) ? (int)outcome[0] : CAST_BROKEN;
 }
-
-NOINLINE int begin_line(const narc_one_cast *asked, narc_casts *casts) { return begin(asked, casts, false); }
-
-NOINLINE int begin_turn(const narc_one_cast *asked, narc_casts *casts) { return begin(asked, casts, true); }
 
 static const narc_query all_rows = {.margin = INFINITY};
 
@@ -75,25 +71,26 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
     narc_batch batch; /* of which little is read */
     batch.shapes = asked->shapes;
     batch.query = &all_rows;
-    narc_body *const b = asked->bodies[1];
-    const narc_one_pair pair = {&batch, asked->bodies[0], b, contact, INFINITY, 0, false};
+    narc_body at[] = {*asked->bodies[0], *asked->bodies[1]};
+    const narc_one_pair pair = {&batch, &at[0], &at[1], contact, INFINITY, 0, false};
     int outcome = CAST_GOES_ON;
-    struct both both;
+    struct turning turning;
+    at[0].x = at[0].y = 0;
     if (turns)
-        both = load_both(casts);
+        turning = load_turning(casts, 0);
     while (outcome == CAST_GOES_ON) {
         struct step step;
         move_bodies(casts, 0);
-        b->x = (double)casts->x_now[0];
-        b->y = (double)casts->y_now[0];
+        at[1].x = (double)casts->x_now[0];
+        at[1].y = (double)casts->y_now[0];
         if (turns)
-            turn_both(casts, &both);
+            turn_bodies(casts, 0, &turning);
         UNROLL
-        for (int side = 0; turns && side < 2; side++) {
-            narc_body *const body = asked->bodies[side];
-            body->cosine = casts->cosine_now[side][0];
-            body->sine = casts->sine_now[side][0];
-        }
+        for (int side = 0; turns && side < 2; side++)
+            if (casts->side[side].angle[0] != 0) {
+                at[side].cosine = casts->cosine_now[side][0];
+                at[side].sine = casts->sine_now[side][0];
+            }
         if (NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(&pair) <= 0)
             return UNANSWERED;
         const struct touch touch = load_contacts(contact, live);
@@ -109,21 +106,15 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
     return outcome;
 }
 
-NOINLINE int follow_line(const narc_one_cast *asked, narc_casts *casts, narc_contact *contact) {
-    return follow(asked, casts, contact, false);
-}
-
-NOINLINE int follow_turn(const narc_one_cast *asked, narc_casts *casts, narc_contact *contact) {
-    return follow(asked, casts, contact, true);
-}
-
-int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+/* A cast from its begin to its row. Nothing is given the address of what is under way, so that it stays in registers. */
+INLINE int cast(const narc_one_cast *asked, bool turns) {
     narc_casts casts;
     narc_contact contact;
-    const bool turns = asked->motions[0][2] != 0 || asked->motions[1][2] != 0; /* a NaN does */
-    int outcome = (turns ? begin_turn : begin_line)(asked, &casts);
+    int outcome = begin(asked, &casts, turns);
+    if (turns && outcome == CAST_GOES_ON && !vm_any(find_turning(&casts, 0)))
+        return STRAIGHT;
     if (outcome == CAST_GOES_ON)
-        outcome = (turns && vm_any(find_turning(&casts, 0)) ? follow_turn : follow_line)(asked, &casts, &contact);
+        outcome = follow(asked, &casts, &contact, turns);
     if (outcome == UNANSWERED)
         return UNANSWERED;
     if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED) {
@@ -133,6 +124,16 @@ int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
         *asked->out_row = (narc_impact){.pair = asked->pair};
     }
     return outcome == CAST_BROKEN ? SKIPPED : ANSWERED;
+}
+
+NOINLINE int cast_line(const narc_one_cast *asked) { return cast(asked, false); }
+
+NOINLINE int cast_turn(const narc_one_cast *asked) { return cast(asked, true); }
+
+int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+    const bool turns = asked->motions[0]->angle != 0 || asked->motions[1]->angle != 0; /* a NaN does */
+    const int answered = turns ? cast_turn(asked) : STRAIGHT;
+    return answered == STRAIGHT ? cast_line(asked) : answered;
 }
 
 #else

@@ -110,23 +110,23 @@ INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_
 #endif
 #endif
 
-/* Of a register of which one lane is in use, all D_HELD may be: d_both() fills them, from two lanes or from the first. */
+/* A register of which one lane is in use has room for two: d_both() fills it, and d_other() takes the second out. Elsewhere
+ * both leave the first as it is. D_HELD lanes are in use then, of which d_any_held() asks. */
 #ifdef NARC_SIMD_ONE_H
-enum { D_HELD = 2 };
+enum { D_ROOM = 2 };
 INLINE vd d_both(vd a, vd b) { return _mm_unpacklo_pd(a, b); }
 INLINE vd d_other(vd a) { return _mm_unpackhi_pd(a, a); }
 INLINE int d_any_held(vl m) { return _mm_movemask_pd((vd)m) != 0; }
 #else
-enum { D_HELD = D_WIDTH };
-INLINE int d_any_held(vl m) { return d_any(m); }
-#if V_WIDTH == 1
+enum { D_ROOM = 1 };
 INLINE vd d_both(vd a, vd b) {
     (void)b;
     return a;
 }
 INLINE vd d_other(vd a) { return a; }
+INLINE int d_any_held(vl m) { return d_any(m); }
 #endif
-#endif
+enum { D_HELD = D_ROOM * D_WIDTH };
 
 #ifdef NARC_SIMD_ONE_H
 INLINE vd d_load(const double *p) { return d_set(*p); }

@@ -742,6 +742,9 @@ void test_casts() {
     narc_impact impact[2];
     CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, options, impact));
     CHECK(same(impact[0], hits[0]) && same(impact[1], hits[1]));
+    const narc_impact alone =
+        narc::cast_pair(scene.shapes, movers[0], {10, 0, 0}, narc::body(0, 0, 0), {0, 0, 0}).value();
+    CHECK(alone.body == 1 && alone.fraction == hits[0].fraction);
     const std::vector<float> targets = {0.5f, 0};
     const auto each = narc::cast_options().target(9).targets(narc::column(targets));
     CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, each, impact));

@@ -76,6 +76,7 @@ static void check_numbers(void) {
     LAYOUT(narc_mass, 32, AT(area, 0) && AT(centroid_x, 8) && AT(centroid_y, 16) && AT(second_moment, 24));
     LAYOUT(narc_circle, 24, AT(x, 0) && AT(y, 8) && AT(radius, 16));
     LAYOUT(narc_aabb, 32, AT(min_x, 0) && AT(min_y, 8) && AT(max_x, 16) && AT(max_y, 24));
+    LAYOUT(narc_motion, 12, AT(x, 0) && AT(y, 4) && AT(angle, 8));
     LAYOUT(narc_body, 32, AT(x, 0) && AT(y, 8) && AT(cosine, 16) && AT(sine, 20) && AT(scale, 24) && AT(shape, 28));
     LAYOUT(narc_box, 16, AT(min_x, 0) && AT(min_y, 4) && AT(max_x, 8) && AT(max_y, 12));
     LAYOUT(narc_touch_event, 24,

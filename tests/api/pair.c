@@ -14,18 +14,13 @@
 
 enum { BODIES = 60, PAIRS = 600 };
 
-static narc_body find_body(const struct scene *scene, uint32_t index) {
-    const struct body *body = &scene->bodies[index];
-    return (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
-}
-
 /* Bodies 2k and 2k + 1 are those of pair k. */
 static narc_body *find_rows(const struct scene *scene) {
     narc_body *rows = malloc(2 * scene->pair_count * sizeof *rows);
     assert_non_null(rows);
     for (size_t k = 0; k < scene->pair_count; k++) {
-        rows[2 * k] = find_body(scene, scene->pairs[k].a);
-        rows[2 * k + 1] = find_body(scene, scene->pairs[k].b);
+        rows[2 * k] = scene_body(scene, scene->pairs[k].a);
+        rows[2 * k + 1] = scene_body(scene, scene->pairs[k].b);
     }
     return rows;
 }
@@ -189,11 +184,11 @@ TEST(two_sets) {
     narc_body others[BODIES], of_a[PAIRS], of_b[PAIRS];
     uint32_t b[PAIRS];
     for (uint32_t k = 0; k < BODIES; k++)
-        others[BODIES - 1 - k] = find_body(&scene, k);
+        others[BODIES - 1 - k] = scene_body(&scene, k);
     for (size_t k = 0; k < PAIRS; k++) {
         b[k] = BODIES - 1 - scene.pairs[k].b;
-        of_a[k] = find_body(&scene, scene.pairs[k].a);
-        of_b[k] = find_body(&scene, scene.pairs[k].b);
+        of_a[k] = scene_body(&scene, scene.pairs[k].a);
+        of_b[k] = scene_body(&scene, scene.pairs[k].b);
     }
     const narc_bodies bodies = scene_bodies(&scene);
     narc_bodies other_bodies;
@@ -421,7 +416,7 @@ TEST(two_bodies_that_are_wrong) {
 static void check_direct(const struct scene *scene, const narc_query *query, const struct contacts *all,
                          const struct manifolds *points) {
     for (size_t k = 0; k < scene->pair_count; k++) {
-        const narc_body a = find_body(scene, scene->pairs[k].a), b = find_body(scene, scene->pairs[k].b);
+        const narc_body a = scene_body(scene, scene->pairs[k].a), b = scene_body(scene, scene->pairs[k].b);
         narc_contact contact;
         narc_manifold manifold;
         narc_error error;

@@ -37,6 +37,7 @@ static narc_manifold manifolds[PAIRS];
 static float separations[PAIRS];
 static narc_impact impacts[PAIRS];
 static narc_motions motions;
+static const narc_motion way = {.x = 0.25f, .angle = 1};
 static narc_cast_options cast_options;
 static narc_index *scenery;
 static narc_index_query search;
@@ -188,6 +189,7 @@ static narc_status ask_index(narc_error *error) {
     CALL(one_manifold, narc_find_manifolds(store, &own, &one, NULL, manifolds, 1, &count, error))                      \
     CALL(two_contact, narc_find_contact(store, &two[0], &two[1], NULL, contacts, error))                               \
     CALL(two_manifold, narc_find_manifold(store, &two[0], &two[1], NULL, manifolds, error))                            \
+    CALL(two_cast, narc_cast_pair(store, &two[0], &way, &two[1], NULL, &cast_options, impacts, error))                 \
     CALL(cast_pairs, narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast_options, impacts, PAIRS, error))    \
     CALL(cast_shapes,                                                                                                  \
          narc_cast_shapes(scenery, store, &bodies, &bodies, &motions, &search, &cast_options, impacts, PAIRS, error))  \

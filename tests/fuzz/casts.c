@@ -15,16 +15,12 @@
 
 enum { BODIES = 12, RAYS = 8, PAIRS = RAYS };
 
-struct motion {
-    float x, y, angle;
-};
-
 struct question {
     struct scene scene;
     narc_index *index;
     narc_box boxes[BODIES];
     struct test_ray rays[RAYS];
-    struct motion motions[BODIES];
+    narc_motion motions[BODIES];
     narc_ray_options rays_asked;
     uint32_t owner[BODIES];
     float target, parting;
@@ -141,7 +137,7 @@ static double separation_at(const struct question *q, uint32_t pair, double time
     struct reference_body two[2];
     const uint32_t numbers[2] = {q->scene.pairs[pair].a, q->scene.pairs[pair].b};
     for (int k = 0; k < 2; k++) {
-        const struct motion *const motion = &q->motions[numbers[k]];
+        const narc_motion *const motion = &q->motions[numbers[k]];
         struct reference_body body = scene_reference(&q->scene, numbers[k]);
         const double angle = atan2(body.sine, body.cosine) + time * (double)motion->angle;
         body.x += time * (double)motion->x;
@@ -160,7 +156,7 @@ static void check_impact(const struct question *q, const narc_impact *impact) {
     if (q->parting > 0) /* no deeper than that, and what turning may add */
         target = fmin(target, separation_at(q, impact->pair, 0, &bound) - (double)q->parting - 0.1 - 2 * bound);
     for (int k = 0; k < 2; k++) {
-        const struct motion *const motion =
+        const narc_motion *const motion =
             &q->motions[k ? q->scene.pairs[impact->pair].b : q->scene.pairs[impact->pair].a];
         speed += fabs((double)motion->x) + fabs((double)motion->y) + 20 * fabs((double)motion->angle);
     }
@@ -218,8 +214,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     q.target = (float)take_step(&from, 0.5);
     q.parting = take_below(&from, 2) ? 0 : fabsf((float)take_step(&from, 0.25));
     for (size_t k = 0; k < BODIES; k++)
-        q.motions[k] = (struct motion){(float)take_step(&from, 8), (float)take_step(&from, 8),
-                                       take_below(&from, 2) ? (float)take_step(&from, 3) : 0};
+        q.motions[k] = (narc_motion){(float)take_step(&from, 8), (float)take_step(&from, 8),
+                                     take_below(&from, 2) ? (float)take_step(&from, 3) : 0};
     for (size_t k = 0; k < RAYS; k++)
         q.rays[k] = (struct test_ray){(double)(float)take_step(&from, 8), (double)(float)take_step(&from, 8),
                                       (float)take_step(&from, 16), (float)take_step(&from, 16), 1};

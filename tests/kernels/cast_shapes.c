@@ -84,24 +84,15 @@ TEST(test_broken_movers) {
 /* ------------------------------------------------------------------------------------------------ known */
 
 /* Casts one pair of boxes, the first of which moves. */
-static narc_impact cast_boxes(struct body a, struct body b, struct test_motion motion,
-                              const narc_cast_options *options) {
+static narc_impact cast_boxes(struct body a, struct body b, narc_motion motion, const narc_cast_options *options) {
     narc_shapes *const store = empty_store();
     store_shape(store, box_of(2, 2, 0));
     store_shape(store, box_of(8, 0.125, 0));
-    const narc_body rows[2] = {{a.x, a.y, a.cosine, a.sine, a.scale, a.shape},
-                               {b.x, b.y, b.cosine, b.sine, b.scale, b.shape}};
-    const float motions[2][3] = {{motion.x, motion.y, motion.angle}};
-    narc_bodies bodies;
-    narc_view_bodies(rows, 2, &bodies);
-    const narc_motions moving = {{&motions[0][0], sizeof motions[0]},
-                                 {&motions[0][1], sizeof motions[0]},
-                                 {&motions[0][2], sizeof motions[0]},
-                                 {NULL}};
+    const narc_body of_a = {a.x, a.y, a.cosine, a.sine, a.scale, a.shape},
+                    of_b = {b.x, b.y, b.cosine, b.sine, b.scale, b.shape};
     narc_impact impact;
     narc_error error;
-    expect_ok(narc_cast_pairs(store, &bodies, &moving, &(narc_pairs){.count = 1}, NULL, options, &impact, 1, &error),
-              &error);
+    expect_ok(narc_cast_pair(store, &of_a, &motion, &of_b, NULL, options, &impact, &error), &error);
     narc_destroy_shapes(store);
     return impact;
 }
@@ -122,7 +113,7 @@ TEST(test_circles_that_touch) {
     struct body a = at(0, 0, 0, 0), b = at(1.4142217590853303, 0.00011313774096818694, 0, 0);
     a.scale = b.scale = 0.5f;
     for (size_t k = 0; k < test_trials(20000); k++) {
-        const struct test_motion motion = {(float)(2 * b.x), (float)(2 * b.y), k % 3 == 2 ? 0.1f : 0};
+        const narc_motion motion = {(float)(2 * b.x), (float)(2 * b.y), k % 3 == 2 ? 0.1f : 0};
         const narc_impact impact = cast_boxes(a, b, motion, NULL);
         assert_true(impact.count == NARC_CAST_HIT && impact.fraction < 0.5f);
         const double angle = random_between(&random, 0, 6.3);
@@ -207,50 +198,50 @@ TEST(test_movers_that_touch) {
 
 TEST(test_known) {
     const struct body left = at(0, 0, 0, 0), right = at(10, 0, 0, 0);
-    narc_impact i = cast_boxes(left, right, (struct test_motion){16, 0, 0}, NULL);
+    narc_impact i = cast_boxes(left, right, (narc_motion){16, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_HIT);
     assert_true(i.fraction == 0.5f && i.separation == 0 && i.normal_x == 1 && i.normal_y == 0);
     assert_true(i.point_x == 1 && i.point_y == 0 && i.body == 1 && i.pair == 0);
-    i = cast_boxes(left, right, (struct test_motion){7.5f, 0, 0}, NULL);
+    i = cast_boxes(left, right, (narc_motion){7.5f, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
-    i = cast_boxes(left, right, (struct test_motion){8, 0, 0}, NULL); /* they touch as the step ends */
+    i = cast_boxes(left, right, (narc_motion){8, 0, 0}, NULL); /* they touch as the step ends */
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 1);
-    i = cast_boxes(left, right, (struct test_motion){16, 0, 0}, &(narc_cast_options){.target = 4});
+    i = cast_boxes(left, right, (narc_motion){16, 0, 0}, &(narc_cast_options){.target = 4});
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 0.25f && i.separation == 4);
-    i = cast_boxes(left, right, (struct test_motion){16, 0, 0}, &(narc_cast_options){.target = -1});
+    i = cast_boxes(left, right, (narc_motion){16, 0, 0}, &(narc_cast_options){.target = -1});
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 0.5625f && i.separation == -1);
-    i = cast_boxes(left, right, (struct test_motion){16, 0, 0}, &(narc_cast_options){.target = -2.5f});
+    i = cast_boxes(left, right, (narc_motion){16, 0, 0}, &(narc_cast_options){.target = -2.5f});
     assert_int_equal(i.count, NARC_CAST_MISS); /* never so deep */
     /* At the start: touching and parting, apart and parting, deeper and parting. */
-    i = cast_boxes(left, at(2, 0, 0, 0), (struct test_motion){-1, 0, 0}, NULL);
+    i = cast_boxes(left, at(2, 0, 0, 0), (narc_motion){-1, 0, 0}, NULL);
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 0);
-    i = cast_boxes(left, at(2.0625, 0, 0, 0), (struct test_motion){-1, 0, 0}, NULL);
+    i = cast_boxes(left, at(2.0625, 0, 0, 0), (narc_motion){-1, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
-    i = cast_boxes(left, at(1.5, 0, 0, 0), (struct test_motion){-1, 0, 0}, NULL);
+    i = cast_boxes(left, at(1.5, 0, 0, 0), (narc_motion){-1, 0, 0}, NULL);
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 0 && i.separation == -0.5f);
     /* No motion. */
-    i = cast_boxes(left, right, (struct test_motion){0, 0, 0}, NULL);
+    i = cast_boxes(left, right, (narc_motion){0, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
-    i = cast_boxes(left, at(1, 0, 0, 0), (struct test_motion){0, 0, 0}, NULL);
+    i = cast_boxes(left, at(1, 0, 0, 0), (narc_motion){0, 0, 0}, NULL);
     assert_true(i.count == NARC_CAST_HIT && i.fraction == 0 && i.separation == -1);
     /* It slides past, closer than half a rounding of its way, but apart. */
-    i = cast_boxes(left, at(5, 2 + 1e-5, 0, 0), (struct test_motion){100, 0, 0}, NULL);
+    i = cast_boxes(left, at(5, 2 + 1e-5, 0, 0), (narc_motion){100, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
-    i = cast_boxes(left, at(5, 2 - 1e-5, 0, 0), (struct test_motion){100, 0, 0}, NULL);
+    i = cast_boxes(left, at(5, 2 - 1e-5, 0, 0), (narc_motion){100, 0, 0}, NULL);
     assert_int_equal(i.count, NARC_CAST_HIT);
     EXPECT(i.fraction, 0.03, 1e-6);
     /* A bar of 8 x 1/8 turns by a quarter turn, until a corner of its end, at (4, -1/16) before, is 2 lower. */
-    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (struct test_motion){0, 0, -1.5707963f}, NULL);
+    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (narc_motion){0, 0, -1.5707963f}, NULL);
     assert_int_equal(i.count, NARC_CAST_HIT);
     assert_true(i.separation >= 0 && i.separation <= 2.0f / 1024);
     EXPECT(i.fraction, (asin(2 / hypot(4, 0.0625)) - atan2(0.0625, 4)) / 1.57079632679, 1e-3);
     /* A whole turn beside it: the bar comes back to where it was, and was in between. */
-    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (struct test_motion){0, 0, 6.2831853f}, NULL);
+    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (narc_motion){0, 0, 6.2831853f}, NULL);
     assert_int_equal(i.count, NARC_CAST_HIT);
-    i = cast_boxes(at(0, 3, 0, 1), at(8.5, 0, 0, 0), (struct test_motion){0, 0, 6.2831853f}, NULL);
+    i = cast_boxes(at(0, 3, 0, 1), at(8.5, 0, 0, 0), (narc_motion){0, 0, 6.2831853f}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
     /* What turns in touch and parts by that. */
-    i = cast_boxes(at(0, 1.0625 + 1e-4, 0, 1), at(3.5, 0, 0, 0), (struct test_motion){0, 1, 0.01f}, NULL);
+    i = cast_boxes(at(0, 1.0625 + 1e-4, 0, 1), at(3.5, 0, 0, 0), (narc_motion){0, 1, 0.01f}, NULL);
     assert_int_equal(i.count, NARC_CAST_MISS);
 }
 

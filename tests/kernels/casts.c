@@ -17,7 +17,7 @@
 /* A scene whose bodies move: body k by motion[k]. */
 struct moving {
     struct scene scene;
-    struct test_motion *motion;
+    narc_motion *motion;
     float target, tolerance, parting;
 };
 
@@ -31,6 +31,19 @@ static narc_impact *cast_all(const struct moving *m, size_t *out_skipped) {
     narc_error error;
     expect_ok(narc_cast_pairs(m->scene.store, &bodies, &motions, &pairs, NULL, &options, rows, pairs.count, &error),
               &error);
+    for (size_t k = 0; k < pairs.count; k += 8) { /* two bodies without a batch have the same row */
+        const uint32_t a = m->scene.pairs[k].a, b = m->scene.pairs[k].b;
+        const narc_body of_a = scene_body(&m->scene, a), of_b = scene_body(&m->scene, b);
+        narc_cast_options own = options;
+        narc_impact row;
+        own.out_skipped = NULL;
+        expect_ok(narc_cast_pair(m->scene.store, &of_a, &m->motion[a], &of_b, &m->motion[b], &own, &row, &error),
+                  &error);
+        assert_true(row.pair == 0 && row.body <= 1);
+        row.pair = (uint32_t)k;
+        row.body = row.count > 0 ? b : 0;
+        assert_memory_equal(&row, &rows[k], sizeof row);
+    }
     return rows;
 }
 
@@ -200,15 +213,15 @@ static void print_summary(const char *name, const struct summary *t) {
 /* ------------------------------------------------------------------------------------------------ what is cast */
 
 /* A way to a place: its length is of the order of the size, or far longer; sometimes there is none. */
-static struct test_motion random_motion(struct test_random *random, double size, double turning) {
+static narc_motion random_motion(struct test_random *random, double size, double turning) {
     const double angle = random_between(random, -4, 4);
     const double way = random_below(random, 8) == 0 ? 0 : size * random_log_between(random, 0.05, 60);
     double turn = random_below(random, 4) == 0 ? 0 : turning * random_between(random, -1, 1);
-    return (struct test_motion){(float)(way * cos(angle)), (float)(way * sin(angle)), (float)turn};
+    return (narc_motion){(float)(way * cos(angle)), (float)(way * sin(angle)), (float)turn};
 }
 
 /* Moves a body back from where it is after a part of its motion. */
-static void move_back(struct body *body, const struct test_motion *motion, double time, narc_precision precision) {
+static void move_back(struct body *body, const narc_motion *motion, double time, narc_precision precision) {
     const double angle = atan2((double)body->sine, (double)body->cosine) - time * (double)motion->angle;
     body->x -= time * (double)motion->x;
     body->y -= time * (double)motion->y;
@@ -436,12 +449,12 @@ TEST(test_quarter_turn) {
         for (size_t b = 0; b < m.scene.body_count; b++) {
             struct body *const body = &m.scene.bodies[b];
             const struct body was = *body;
-            const struct test_motion motion = m.motion[b];
+            const narc_motion motion = m.motion[b];
             body->x = -was.y;
             body->y = was.x;
             body->cosine = -was.sine;
             body->sine = was.cosine;
-            m.motion[b] = (struct test_motion){-motion.y, motion.x, motion.angle};
+            m.motion[b] = (narc_motion){-motion.y, motion.x, motion.angle};
         }
         narc_impact *const turned = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
@@ -526,8 +539,8 @@ TEST(test_named_tolerances) {
                 placed->y += above - reference_solve_gap(&a, &b).gap;
             }
             m.motion[2 * pair + 1] =
-                (struct test_motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
-                                     (float)random_between(&random, -1.5, 1.5)};
+                (narc_motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
+                              (float)random_between(&random, -1.5, 1.5)};
         }
         narc_impact *const rows = cast_all(&m, NULL);
         for (size_t pair = 0; pair < PAIRS; pair++) {
@@ -598,7 +611,7 @@ TEST(test_along_tiles) {
         on.x = next.x + c * x - s * y;
         on.y = next.y + s * x + c * y;
         on.shape = 1;
-        m.motion[2 * pair] = (struct test_motion){(float)(c * way), (float)(s * way), 0};
+        m.motion[2 * pair] = (narc_motion){(float)(c * way), (float)(s * way), 0};
         scene_add_two(&m.scene, on, next);
     }
     narc_impact *const rows = cast_all(&m, NULL);
@@ -672,9 +685,9 @@ TEST(test_sets_of_bodies) {
         float *const shift = guard_allocate(count * sizeof *shift);
         narc_impact *const expected = guard_allocate(count * sizeof *expected);
         narc_impact *const found = guard_allocate(count * sizeof *found);
-        for (size_t b = 0; b < body_count; b++) {
+        for (uint32_t b = 0; b < body_count; b++) {
             const struct body *const body = &m.scene.bodies[b];
-            wide[b] = (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
+            wide[b] = scene_body(&m.scene, b);
             rows[b] = (struct narrow){body->x_single, body->y_single, body->cosine, body->sine};
         }
         for (size_t pair = 0; pair < count; pair++)

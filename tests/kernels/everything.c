@@ -307,13 +307,13 @@ TEST(survives_garbage) {
         for (size_t k = 0; k < COUNT; k++) {
             struct body *const body = &world.scene.bodies[k];
             float *const numbers[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine, &body->scale};
-            struct test_motion *const motion = &world.motion[k];
+            narc_motion *const motion = &world.motion[k];
             for (size_t i = 0; i < 5; i++)
                 *numbers[i] = any_float(&random, *numbers[i]);
             body->x = any_double(&random, body->x);
             body->y = any_double(&random, body->y);
-            *motion = (struct test_motion){any_float(&random, motion->x), any_float(&random, motion->y),
-                                           any_float(&random, motion->angle)};
+            *motion = (narc_motion){any_float(&random, motion->x), any_float(&random, motion->y),
+                                    any_float(&random, motion->angle)};
             boxes[k] = (narc_box){any_float(&random, -1), any_float(&random, -1), any_float(&random, 3),
                                   any_float(&random, 3)};
         }

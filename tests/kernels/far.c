@@ -110,8 +110,8 @@ TEST(an_index_far_away_has_the_same_answers) {
         size_t hits = 0, impacts = 0;
         for (size_t k = 0; k < BODIES; k++)
             world.motion[k] =
-                (struct test_motion){(float)random_between(&random, -4, 4), (float)random_between(&random, -4, 4),
-                                     random_below(&random, 2) ? (float)random_between(&random, -3, 3) : 0};
+                (narc_motion){(float)random_between(&random, -4, 4), (float)random_between(&random, -4, 4),
+                              random_below(&random, 2) ? (float)random_between(&random, -3, 3) : 0};
         memset(&here, 0, sizeof here);
         ask_all(&world, rays, (narc_point){0, 0}, false, &here);
         for (size_t k = 0; k < sizeof places / sizeof *places; k++) {

@@ -279,7 +279,7 @@ TEST(casts_meet_the_boundary) {
         struct site site = make_site(&random);
         for (size_t k = 0; k < 40; k++) {
             const size_t family = random_below(&random, FAMILY_COUNT);
-            narc_body bodies[2], ordered[2];
+            narc_body bodies[2];
             place(&random, &site, family, 0, bodies);
             const double size = (double)bodies[1].scale * extent(&site.shape[family]);
             place(&random, &site, family, size * random_between(&random, 1, 4), bodies);
@@ -291,22 +291,14 @@ TEST(casts_meet_the_boundary) {
                                        (float)(size * random_between(&random, -4, 4))};
             const float angle[2] = {0, turns ? (float)random_between(&random, -3, 3) : 0};
             const float target = random_below(&random, 2) ? (float)(0.05 * size) : 0;
-            const uint32_t plane = plane_is_b ? 1 : 0, body = 1 - plane;
-            float x[2], y[2], w[2];
-            ordered[plane] = bodies[0];
-            ordered[body] = bodies[1];
-            x[plane] = motion_x[0], x[body] = motion_x[1];
-            y[plane] = motion_y[0], y[body] = motion_y[1];
-            w[plane] = angle[0], w[body] = angle[1];
-            narc_bodies view;
-            narc_view_bodies(ordered, 2, &view);
-            const uint32_t a[] = {0}, b[] = {1};
-            const narc_pairs pair = {.count = 1, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-            const narc_motions motions = {.x = NARC_ARRAY(x), .y = NARC_ARRAY(y), .angle = NARC_ARRAY(w)};
+            const narc_motion motions[] = {{motion_x[0], motion_y[0], 0}, {motion_x[1], motion_y[1], angle[1]}};
+            const uint32_t a = plane_is_b ? 1 : 0, b = 1 - a;
             const narc_cast_options options = {.target = target, .tolerance = turns ? (float)(1e-3 * size) : 0};
             narc_impact row;
             narc_error error;
-            expect_ok(narc_cast_pairs(site.shapes, &view, &motions, &pair, NULL, &options, &row, 1, &error), &error);
+            expect_ok(
+                narc_cast_pair(site.shapes, &bodies[a], &motions[a], &bodies[b], &motions[b], &options, &row, &error),
+                &error);
             double first = INFINITY, least = INFINITY;
             for (int step = 0; step <= 4000; step++) {
                 const double time = step / 4000.0;

@@ -212,7 +212,7 @@ TEST(moved_shapes_meet_when_parts_do) {
     size_t hits = 0;
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
-        const float turn[2] = {(float)random_between(&random, -3, 3), 0}, x[2] = {8, 0}, y[2] = {1, 0};
+        const float turn = (float)random_between(&random, -3, 3);
         const struct body at = turned_body(random_between(&random, -4, 4), 1);
         narc_shapes *const store = empty_store();
         const uint32_t stored = store_shape(store, shape);
@@ -223,16 +223,13 @@ TEST(moved_shapes_meet_when_parts_do) {
                          NARC_OK);
         const narc_body two[2] = {{-4, -0.5, 1, 0, 1, store_shape(store, moved)},
                                   {0.5, random_between(&random, -2, 2), 1, 0, 1, stored}};
-        narc_bodies bodies;
-        narc_view_bodies(two, 2, &bodies);
-        const narc_motions motions = {.x = NARC_ARRAY(x), .y = NARC_ARRAY(y), .angle = NARC_ARRAY(turn)};
         narc_impact row;
-        assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &(narc_pairs){.count = 1}, NULL,
-                                         &(narc_cast_options){.tolerance = (float)tolerance}, &row, 1, NULL),
+        assert_int_equal(narc_cast_pair(store, &two[0], &(narc_motion){8, 1, turn}, &two[1], NULL,
+                                        &(narc_cast_options){.tolerance = (float)tolerance}, &row, NULL),
                          NARC_OK);
         const double end = row.count == NARC_CAST_MISS ? 1 : (double)row.fraction;
         for (int k = 0; k <= 20; k++) {
-            const double here = separation_at(store, &part, (narc_point){8, 1}, (double)turn[0], end * k / 20, &two[1]);
+            const double here = separation_at(store, &part, (narc_point){8, 1}, (double)turn, end * k / 20, &two[1]);
             assert_true(here >= -rounding || (row.count == NARC_CAST_HIT && row.fraction == 0));
             if (k == 20 && row.count == NARC_CAST_HIT && row.fraction > 0)
                 assert_true(here <= tolerance + rounding);

@@ -23,7 +23,7 @@ static narc_points points;
 static narc_motions motions;
 static narc_error error;
 static struct test_ray *items;
-static const struct test_motion still[BODIES];
+static const narc_motion still[BODIES];
 static const uint32_t first_body[BODIES];
 static union {
     narc_ray_hit hits[ROWS];
@@ -321,6 +321,31 @@ TEST(refuses_casts_of_pairs) {
     REFUSED(ARGUMENT, "out_rows is NULL", CAST(store, &pairs, NULL, NULL, NULL, 2));
     expect_untouched();
     expect_ok(CAST(store, &(narc_pairs){0}, NULL, NULL, NULL, 0), &error);
+#undef CAST
+}
+
+TEST(refuses_casts_of_two_bodies) {
+    const narc_body a = {.cosine = 1, .scale = 1}, b = {.x = 4, .cosine = 1, .scale = 1};
+    const narc_body nowhere = {.cosine = 1, .scale = 1, .shape = 1000}, broken = {.cosine = 1};
+    const narc_motion motion = {.x = 4};
+    const float target = NAN;
+    size_t skipped = 9;
+    narc_impact row;
+#define CAST(shapes, a, b, options, row) narc_cast_pair(shapes, a, &motion, b, NULL, options, row, &error)
+    REFUSED(ARGUMENT, "shapes is NULL", CAST(NULL, &a, &b, NULL, out.impacts));
+    REFUSED(ARGUMENT, "a is NULL", CAST(store, NULL, &b, NULL, out.impacts));
+    REFUSED(ARGUMENT, "b is NULL", CAST(store, &a, NULL, NULL, out.impacts));
+    REFUSED(ARGUMENT, "out_row is NULL", CAST(store, &a, &b, NULL, NULL));
+    REFUSED(INDEX, "shape 1000", CAST(store, &a, &nowhere, NULL, out.impacts));
+    REFUSED(INDEX, "shape 1000", CAST(store, &nowhere, &b, NULL, out.impacts));
+    REFUSED(NOT_FINITE, "options.target is", CAST(store, &a, &b, (&(narc_cast_options){.target = NAN}), out.impacts));
+    REFUSED(ARGUMENT, "parting is -1", CAST(store, &a, &b, (&(narc_cast_options){.parting = -1}), out.impacts));
+    expect_untouched();
+    narc_cast_options options = {.targets = {&target, 0}, .out_skipped = &skipped}; /* those of a batch do not count */
+    expect_ok(CAST(store, &a, &b, &options, &row), &error);
+    assert_true(row.count == NARC_CAST_HIT && row.body == 1 && skipped == 0);
+    expect_ok(CAST(store, &a, &broken, &options, &row), &error);
+    assert_true(row.count == NARC_CAST_MISS && row.pair == 0 && skipped == 1);
 #undef CAST
 }
 

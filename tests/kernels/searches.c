@@ -18,7 +18,7 @@ struct search {
     size_t count;
     struct test_ray *items; /* rays; points are where they begin, and movers, which go the same way */
     struct body *movers;
-    struct test_motion *motion;
+    narc_motion *motion;
     float *targets; /* of movers */
     uint64_t *mask;
     uint32_t *ignored, *ignored_owner, *owner; /* the latter: of bodies, */
@@ -362,7 +362,7 @@ static struct search make_search(struct test_random *random, narc_precision prec
         s.movers[k].y = ray->y;
         s.movers[k].shape = (uint32_t)random_below(random, s.room.scene.shape_count);
         round_position(&s.movers[k], precision);
-        s.motion[k] = (struct test_motion){ray->motion_x, ray->motion_y, 0};
+        s.motion[k] = (narc_motion){ray->motion_x, ray->motion_y, 0};
         if (k % 3)
             s.motion[k].angle = (float)random_between(random, -4, 4);
         if (k % 3 < 2)
@@ -436,7 +436,7 @@ TEST(longest_ways_go_by_number) {
             s.movers[k].scale *= 0x1p-23f;
             s.targets[k] *= 0x1p-23f;
             round_position(&s.movers[k], s.room.scene.precision);
-            s.motion[k] = (struct test_motion){s.items[k].motion_x, s.items[k].motion_y, k % 4 ? 0 : 0.5f};
+            s.motion[k] = (narc_motion){s.items[k].motion_x, s.items[k].motion_y, k % 4 ? 0 : 0.5f};
         }
         index_room(&s.room, false, false);
         for (int kind = 0; kind < KINDS; kind++) {

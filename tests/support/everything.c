@@ -305,7 +305,7 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
         world.margins[k] = random_below(random, 9) ? (float)random_between(random, -0.1, 0.3) : NAN;
         world.points[k] = (struct test_ray){.x = a->x + (double)contacts.rows[k].point_x * far,
                                             .y = a->y + (double)contacts.rows[k].point_y * far};
-        world.motion[scene.pairs[k].a] = (struct test_motion){(float)(b->x - a->x), (float)(b->y - a->y), 0};
+        world.motion[scene.pairs[k].a] = (narc_motion){(float)(b->x - a->x), (float)(b->y - a->y), 0};
         world.motion[scene.pairs[k].b].angle = k % 4 ? 0 : (float)random_between(random, -3, 3);
     }
     for (size_t k = 0; k < rays; k++) {

@@ -68,7 +68,7 @@ void expect_sane_answers(const struct everything *e, const struct answers *answe
  * are, rays at the first bodies. */
 struct world {
     struct scene scene;
-    struct test_motion *motion;
+    narc_motion *motion;
     struct test_ray *rays, *points;
     size_t ray_count;
     float *shift, *margins; /* of each pair, of every other world */

@@ -72,12 +72,17 @@ narc_bodies scene_bodies(const struct scene *scene) {
     return bodies;
 }
 
+narc_body scene_body(const struct scene *scene, uint32_t index) {
+    const struct body *body = &scene->bodies[index];
+    return (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
+}
+
 narc_pairs scene_pairs(const struct scene *scene) {
     return (narc_pairs){
         .count = scene->pair_count, .a = NARC_COLUMN(scene->pairs, a), .b = NARC_COLUMN(scene->pairs, b)};
 }
 
-narc_motions view_motions(const struct test_motion *motion) {
+narc_motions view_motions(const narc_motion *motion) {
     return (narc_motions){
         .x = NARC_COLUMN(motion, x), .y = NARC_COLUMN(motion, y), .angle = NARC_COLUMN(motion, angle)};
 }

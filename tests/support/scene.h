@@ -48,13 +48,11 @@ uint32_t scene_add_pair(struct scene *scene, uint32_t a, uint32_t b);
 void scene_add_two(struct scene *scene, struct body a, struct body b);
 
 narc_bodies scene_bodies(const struct scene *scene);
+narc_body scene_body(const struct scene *scene, uint32_t index);
 narc_pairs scene_pairs(const struct scene *scene);
 
-/* How a body moves, and those of all bodies as columns. */
-struct test_motion {
-    float x, y, angle;
-};
-narc_motions view_motions(const struct test_motion *motion);
+/* Motions of bodies, as columns. */
+narc_motions view_motions(const narc_motion *motion);
 
 /* A body for the reference, its rotation made of length 1, as the library does. */
 struct reference_body scene_reference(const struct scene *scene, uint32_t body);

@@ -15,8 +15,8 @@ columns stay in your arrays and are not copied. Errors are narc.Error (a ValueEr
 from importlib import import_module as _import_module
 from typing import Any as _Any
 
-from ._batch import (bodies, box_pairs, boxes, casts, contact, contacts, manifold, manifolds, overlaps, pairs, place_parts, poses,
-                     refine, separations, validate)
+from ._batch import (bodies, box_pairs, boxes, casts, contact, contacts, impact, manifold, manifolds, overlaps, pairs, place_parts,
+                     poses, refine, separations, validate)
 from ._fits import Fit, NamedShape, Outline, cut, cut_exactly, fit, fit_chains, hull, read_shapes, write_shapes
 from ._narc import Error, NoAnswer, OutOfRange, get_isa, set_isa
 from ._narc import version as __version__
@@ -39,7 +39,7 @@ __all__ = ["AABB", "ARC", "BODY", "BOX", "CHAIN_ENTRY", "CIRCLE", "CONSTANTS", "
            "REFINED_CONTACT", "Shapes", "Step", "TOUCH_EVENT", "__version__", "adjust", "bodies", "bounding_box",
            "bounding_circle", "box_pairs", "boxes", "casts", "center", "contact", "contacts", "contains", "cut", "cut_exactly",
            "depths",
-           "distances", "fit", "fit_chains", "flatten", "get_isa", "hull", "inscribed_circle", "inside", "manifold",
+           "distances", "fit", "fit_chains", "flatten", "get_isa", "hull", "impact", "inscribed_circle", "inside", "manifold",
            "manifolds", "mass", "mirror", "move", "outlines", "overlaps", "pairs", "perimeter", "place_parts", "poses",
            "radius_range", "rays", "read_shapes", "refine", "separations", "set_isa", "support", "union_mass", "validate",
            "validate_arcs", "weld", "write_shapes"]

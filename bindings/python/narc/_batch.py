@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, cast, overload
 
 import numpy as np
@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, as_points, split
+from ._tables import (BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, as_points, row_type,
+                      split)
 
 # Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
 SLICE = 1 << 18
@@ -322,6 +323,15 @@ def contact(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **op
 def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **options: Any) -> np.void:
     """The manifold of two bodies, rows of narc.BODY: a row of narc.MANIFOLD, `count` 0 where there is none."""
     return _two(_narc.find_manifold, MANIFOLD, shapes, a, b, margin, options)
+
+
+def impact(shapes: Shapes, a: np.void, b: np.void, motion_a: Sequence[float] = (0, 0, 0),
+           motion_b: Sequence[float] = (0, 0, 0), **options: Any) -> np.void:
+    """When two bodies, rows of narc.BODY, meet that move and turn by (x, y, angle): a row of narc.IMPACT. `options` as casts()."""
+    out = np.zeros(1, IMPACT)
+    ways = np.array([((x, y), angle) for x, y, angle in (motion_a, motion_b)], row_type("narc_motion"))
+    _narc.cast_pair(shapes, a, ways[:1], b, ways[1:], options or None, out)
+    return out[0]  # type: ignore[no-any-return]
 
 
 def refine(shapes: Shapes, bodies: Bodies, pairs: PairsLike, rows: Rows, *, others: Bodies | None = None) -> Rows:

@@ -83,5 +83,6 @@ CALL(find_inside, "shapes:Shapes bodies:narc_bodies@B points:narc_points@Q body:
 CALL(find_nearest, "index:Index shapes:Shapes bodies:narc_bodies@B points:narc_points@Q options:narc_nearest_options@Q out:>narc_distance", COUNT, narc_find_nearest(p[0], p[1], p[2], p[3], p[4], p[5], n[5], e))
 CALL(find_distances, "shapes:Shapes bodies:narc_bodies@B points:narc_points@Q body:narc_index_column@Q threads:threads out:>narc_distance@Q", COUNT, narc_find_distances(p[0], p[1], p[2], p[3], p[4], p[5], e))
 CALL(cast_pairs, "shapes:Shapes bodies:narc_bodies@B motions:narc_motions@B pairs:narc_pairs@P options:narc_cast_options@P out:>narc_impact", COUNT, narc_cast_pairs(p[0], p[1], p[2], p[3], NULL, p[4], p[5], n[5], e))
+CALL(cast_pair, "shapes:Shapes a:<narc_body motion_a:<narc_motion b:<narc_body motion_b:<narc_motion options:narc_cast_options out:>narc_impact*1", COUNT, n[1] && n[2] && n[3] && n[4] ? narc_cast_pair(p[0], p[1], p[2], p[3], p[4], p[5], p[6], e) : NARC_ERROR_COUNT)
 CALL(cast_shapes, "index:Index! shapes:Shapes bodies:narc_bodies@B movers:narc_bodies@Q motions:narc_motions@Q search:narc_index_query@Q options:narc_cast_options@Q out:>narc_impact", COUNT, narc_cast_shapes(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], n[7], e))
 /* clang-format on */

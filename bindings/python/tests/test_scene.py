@@ -174,6 +174,8 @@ def test_half_planes_are_ground_without_end():
     assert pairs[rows["pair"]].tolist() == [[0, 1]] and rows["separation"] == pytest.approx(-0.1, abs=1e-6)
     hits, pairs = narc.casts(shapes, bodies, [[0, 0], [0, 0], [0, -3]], angle=[0, 0, 1])
     assert pairs[hits["count"] > 0].tolist() == [[0, 1], [0, 2]] and hits["fraction"][-1] == pytest.approx(0.5, abs=1e-3)
+    alone = narc.impact(shapes, bodies[0], bodies[2], motion_b=(0, -3, 1))
+    assert alone["body"] == 1 and alone["fraction"] == hits["fraction"][-1]
 
 
 def circle_scene(random, count=400):
