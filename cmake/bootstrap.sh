@@ -160,11 +160,12 @@ check() {
 
 # The same, where the preset's tests are few: their programs alone are built. CMake's lists of tests know them.
 check_some() {
+    say "build/$1"
     cmake --preset "$1" || fail "configuring build/$1 failed"
-    build "$1" $({ ctest --preset "$1" -N | sed -n 's/^ *Test *#[0-9]*: \([^ ]*\).*/\1/p'
+    cmake --build --preset "$1" --target $({ ctest --preset "$1" -N | sed -n 's/^ *Test *#[0-9]*: \([^ ]*\).*/\1/p'
         find "build/$1" -name CTestTestfile.cmake -exec \
             sed -n 's|^add_test(\[=\[\(.*\)\]=\].*/\(test_[a-z0-9_]*\)".*|\1 \2|p' {} +
-    } | awk 'NF == 1 { named[$1] } NF == 2 && $1 in named { print $2 }' | sort -u) ${3:-}
+    } | awk 'NF == 1 { named[$1] } NF == 2 && $1 in named { print $2 }' | sort -u) ${3:-} || fail "building build/$1 failed"
     ${2:-} ctest --preset "$1" || fail "tests failed in build/$1"
 }
 

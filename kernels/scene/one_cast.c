@@ -6,7 +6,7 @@
  */
 #define NARC_ONE_PAIR
 #undef NARC_SIMD
-#ifdef __AVX__
+#ifdef __AVX2__
 #define NARC_SIMD "simd/one.h"
 #else
 #define NARC_SIMD "simd/scalar.h"

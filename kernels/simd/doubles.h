@@ -28,8 +28,10 @@ INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
 INLINE vd d_of_floats(const float *p) { return (double)*p; }
 INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
 #else
-#if defined(__SSE2__)
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <smmintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
 #elif defined(__wasm_simd128__)

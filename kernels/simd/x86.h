@@ -7,7 +7,11 @@
 
 #include "simd/simd.h"
 
+#ifdef __AVX__
 #include <immintrin.h>
+#else /* a tenth of that to read */
+#include <smmintrin.h>
+#endif
 
 /* Indices that kernels have just stored, compilers take from the vector that they were in: by pairs, since 64 bits come
  * out as fast as 32. */
