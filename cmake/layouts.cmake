@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Lists what the public headers declare, for soa/layouts.c, which includes it and so them: structures with their members, enumerations, constants. Run as
-#   cmake -D "HEADERS=<header>;..." -D OUT=<layouts.inl> -P layouts.cmake
+# Lists what the public headers declare, for soa/layouts.c, which includes it and so them: structures with their members,
+# enumerations, constants. Run as
+#   cmake -D "HEADERS=<header>;..." -D OUT=<declared.h> -P layouts.cmake
 cmake_minimum_required(VERSION 3.22)
 
 # The members that a declaration has of a structure go to `line`.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * layouts.c - the tables of public structures and constants. cmake/layouts.cmake reads the headers and makes layouts.inl,
+ * layouts.c - the tables of public structures and constants. cmake/layouts.cmake reads the headers and makes declared.h,
  * which includes them and lists what they declare; numbers come from the compiler.
  */
 #include "narc_layouts.h"
@@ -19,7 +19,7 @@
 #define STRUCTURE(type, ...)       static const narc_member members_of_##type[] = {__VA_ARGS__};
 #define ENUMERATION(type)
 #define CONSTANT(name)
-#include "layouts.inl"
+#include "declared.h"
 #undef STRUCTURE
 #undef ENUMERATION
 #undef CONSTANT
@@ -29,7 +29,7 @@ static const narc_layout layouts[] = {
     {#type, sizeof(type), _Alignof(type), members_of_##type, sizeof members_of_##type / sizeof *members_of_##type},
 #define ENUMERATION(type)          {#type, sizeof(type), _Alignof(type), NULL, 0},
 #define CONSTANT(name)
-#include "layouts.inl"
+#include "declared.h"
 #undef STRUCTURE
 #undef ENUMERATION
 #undef CONSTANT
@@ -39,7 +39,7 @@ static const narc_constant constants[] = {
 #define STRUCTURE(type, ...)
 #define ENUMERATION(type)
 #define CONSTANT(name)             {#name, (double)(name)},
-#include "layouts.inl"
+#include "declared.h"
 };
 /* clang-format on */
 

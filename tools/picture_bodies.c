@@ -123,7 +123,10 @@ static narc_aabb bound_world(const view *seen, const body_scene *scene, double *
             world = join_boxes(world, (narc_aabb){ray->x, ray->y, ray->x, ray->y});
     }
     *out_mean = *out_count ? sizes / (double)*out_count : box_size(world);
-    return world;
+    if (box_size(world) > 0)
+        return world;
+    *out_mean = 1; /* Ground without end alone has no size of its own. */
+    return (narc_aabb){world.min_x - 1, world.min_y - 1, world.max_x + 1, world.max_y + 1};
 }
 
 /* Chooses the page's size and how the world lies on it. */
@@ -137,13 +140,13 @@ static view choose_view(const char *path, const body_scene *scene) {
         seen.reach = NARC_MAX_DISTANCE / 2;
         world = bound_world(&seen, scene, &mean, &count);
         if (count == 0 && all > 0)
-            fail("%s: the bodies are too far apart to draw", path);
+            fail("%s: the bodies are too far from the origin to draw", path);
         warn_at(path, "%zu of %zu bodies%s that are more than %g from the origin are left out", all - count, all,
                 scene->ray_count ? ", and rays," : "", seen.reach);
     }
     const double size = box_size(world);
     if (!(size > 0))
-        fail("%s: the bodies are too far apart to draw", path);
+        fail("%s: the bodies are too far from the origin to draw", path);
     const double side = clamp(GOOD_BODY * size / mean, SMALLEST_PAGE, LARGEST_PAGE) - 2 * MARGIN;
     find_samples(scene, &seen);
     const bool legend = has_legend(seen.shown);

@@ -3,7 +3,7 @@
 # words that are not C17 stand in soa/compiler.h and the public include/narc_export.h alone. With
 #   CLANG, HEADERS, LAYOUTS  the libraries go through clang's front end as for Microsoft's compiler, without a warning, with
 #                            mingw-w64's headers (which take the compiler for GCC; compiler.h alone asks for it); LAYOUTS is
-#                            where layouts.inl lies
+#                            where declared.h lies
 cmake_minimum_required(VERSION 3.22)
 set(words "__(attribute|builtin|typeof|asm|declspec|restrict|inline|has_feature|int128)|_Pragma|_MSC_|__GNU|__clang")
 foreach(layer include soa kernels dispatch methods files fit tools examples)

@@ -18,10 +18,6 @@ static bool forbid_pages(void *pages, size_t size) {
     DWORD old;
     return VirtualProtect(pages, size, PAGE_NOACCESS, &old);
 }
-static void unmap_pages(void *pages, size_t size) {
-    (void)size;
-    VirtualFree(pages, 0, MEM_RELEASE);
-}
 static size_t page_size(void) { return 4096; }
 #elif defined(__wasm__)
 /* No page can be forbidden: what is written there is found at the end, what is read is not. */
@@ -29,10 +25,6 @@ static size_t page_size(void) { return 4096; }
 
 static void *map_pages(size_t size) { return malloc(size); }
 static bool forbid_pages(void *pages, size_t size) { return memset(pages, GUARD_JUNK, size) != NULL; }
-static void unmap_pages(void *pages, size_t size) {
-    (void)size;
-    free(pages);
-}
 static size_t page_size(void) { return 256; }
 #else
 #include <sys/mman.h>
@@ -43,7 +35,6 @@ static void *map_pages(size_t size) {
     return pages == MAP_FAILED ? NULL : pages;
 }
 static bool forbid_pages(void *pages, size_t size) { return mprotect(pages, size, PROT_NONE) == 0; }
-static void unmap_pages(void *pages, size_t size) { munmap(pages, size); }
 static size_t page_size(void) { return (size_t)sysconf(_SC_PAGESIZE); }
 #endif
 
@@ -55,20 +46,16 @@ struct block {
     unsigned char *memory;
 };
 
-static struct block *blocks;
+/* Those in use, and those that were, by their number of pages: pages are slow to come by. Until they are used again they
+   are junk that must stay, and the address sanitizer forbids them. */
+static struct block *blocks, *idle[64];
 
-void *guard_allocate(size_t size) {
-    struct block *block = malloc(sizeof(*block));
-    assert_non_null(block);
-    size_t page = page_size(), inside = (size + page - 1) / page * page + (size == 0 ? page : 0);
-    unsigned char *map = map_pages(inside + 2 * page);
-    assert_non_null(map);
-    memset(map + page, GUARD_JUNK, inside);
-    assert_true(forbid_pages(map, page) && forbid_pages(map + page + inside, page));
-    *block = (struct block){blocks, map, inside + 2 * page, page, map + page + inside - size};
-    blocks = block;
-    return block->memory;
-}
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+#else
+#define ASAN_POISON_MEMORY_REGION(memory, size)
+#define ASAN_UNPOISON_MEMORY_REGION(memory, size)
+#endif
 
 static bool is_junk(const unsigned char *from, const unsigned char *to) {
     bool whole = true;
@@ -77,20 +64,54 @@ static bool is_junk(const unsigned char *from, const unsigned char *to) {
     return whole;
 }
 
+static struct block **find_idle(size_t map_size, size_t page) { return idle + map_size / page % 64; }
+
+static struct block *make_block(size_t map_size, size_t page) {
+    struct block *block = malloc(sizeof(*block));
+    assert_non_null(block);
+    unsigned char *map = map_pages(map_size);
+    assert_non_null(map);
+    memset(map + page, GUARD_JUNK, map_size - 2 * page);
+    assert_true(forbid_pages(map, page) && forbid_pages(map + map_size - page, page));
+    *block = (struct block){NULL, map, map_size, page, NULL};
+    return block;
+}
+
+void *guard_allocate(size_t size) {
+    const size_t page = page_size(), inside = (size + page - 1) / page * page + (size == 0 ? page : 0);
+    struct block **link = find_idle(inside + 2 * page, page);
+    while (*link && (*link)->map_size != inside + 2 * page)
+        link = &(*link)->next;
+    struct block *block = *link;
+    if (block)
+        *link = block->next;
+    else
+        block = make_block(inside + 2 * page, page);
+    ASAN_UNPOISON_MEMORY_REGION(block->map + page, inside);
+    assert_true(is_junk(block->map + page, block->map + page + inside));
+    block->memory = block->map + page + inside - size;
+    block->next = blocks;
+    blocks = block;
+    return block->memory;
+}
+
 void guard_release(void *memory) {
     struct block **link = &blocks;
     while (*link && (*link)->memory != memory)
         link = &(*link)->next;
     struct block *block = *link;
     assert_non_null(block);
+    unsigned char *end = block->map + block->map_size;
     assert_true(is_junk(block->map + block->page, block->memory));
 #ifdef FORBIDDEN_IS_JUNK
-    const unsigned char *end = block->map + block->map_size;
     assert_true(is_junk(block->map, block->map + block->page) && is_junk(end - block->page, end));
 #endif
     *link = block->next;
-    unmap_pages(block->map, block->map_size);
-    free(block);
+    memset(block->memory, GUARD_JUNK, (size_t)(end - block->page - block->memory));
+    ASAN_POISON_MEMORY_REGION(block->map + block->page, block->map_size - 2 * block->page);
+    link = find_idle(block->map_size, block->page);
+    block->next = *link;
+    *link = block;
 }
 
 void *guard_copy(const void *bytes, size_t size) {

@@ -109,7 +109,7 @@ printf 'a,b\n0,0\n0,1\n' >wide-pairs.csv
 works "a pair too far apart for an answer" collide --shapes shapes.json --bodies wide.csv --pairs wide-pairs.csv
 check "it is told" reports "skipped pairs" 1
 for kind in png svg; do
-    fails "too far apart to draw, $kind" "narc: new.$kind: .*too far apart" collide --shapes shapes.json \
+    fails "too far out to draw, $kind" "narc: new.$kind: .*too far from the origin" collide --shapes shapes.json \
         --bodies wide.csv --picture new.$kind --out new.csv
 done
 printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,1.5,0,0\n' >near.csv
@@ -174,6 +174,8 @@ plane="--shapes plane.json --bodies plane.csv"
 works "ground without end" collide $plane --out plane.txt --picture plane.svg
 check "the slope meets two discs" test "$(tail -n +2 plane.txt | cut -d, -f1,2 | tr '\n' ' ')" = "0,1 0,2 "
 check "deep in the slope" contact plane.txt 2 "0 1 -0.522331755 -0.295520207 0.955336489"
+printf 'shape,x,y,angle\nfloor,3,4,0.3\n' >alone.csv
+works "a slope alone" collide --shapes plane.json --bodies alone.csv --picture alone.png
 printf 'shape,x,y,angle\ndisc,0,0.5,0\nfloor,1e6,-0.25,0\ndisc,2,9,0\nfloor,5,-7,-1.5707963267948966\n' >level.csv
 works "level ground, a wall" collide --shapes plane.json --bodies level.csv --out level.txt --picture level.png
 check "the disc meets the ground" contact level.txt 2 "0 1 -0.25 0 -1"

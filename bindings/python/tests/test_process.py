@@ -130,10 +130,10 @@ def test_objects_are_pickled(scene):
 def test_slices_are_one_answer(heap, random, monkeypatch, threads):
     shapes, bodies = heap
     index = narc.Index(shapes, bodies)
-    points, turn = random.random((1500, 2)) * 5, random.random(1500) * 7
-    pairs = random.integers(0, 3000, (1500, 2))
+    points, turn = random.random((600, 2)) * 5, random.random(600) * 7
+    pairs = random.integers(0, 3000, (600, 2))
     motion = np.stack([np.cos(turn), np.sin(turn)], 1)
-    some = random.integers(0, 3000, 1500)
+    some = random.integers(0, 3000, 600)
 
     def ask():
         return [narc.contacts(shapes, bodies, pairs, threads=threads), narc.contacts(shapes, bodies, pairs, margins=turn.astype("f4")),
@@ -142,14 +142,14 @@ def test_slices_are_one_answer(heap, random, monkeypatch, threads):
                 index.rays(points, motion, fraction=turn / 7, ignored=some, owners={"owner": np.arange(3000), "ignored": some}),
                 index.rays((1, 2), motion, most=3), index.nearest(points, most=2, ignored=some), narc.inside(shapes, bodies, points, some),
                 narc.distances(shapes, bodies, points, some), narc.rays(shapes, bodies, points, motion, some),
-                index.casts(bodies[:400], motion[:400], turn[:400], ignored=np.arange(400))]
+                index.casts(bodies[:160], motion[:160], turn[:160], ignored=np.arange(160))]
 
     whole = ask()
-    monkeypatch.setattr(narc._batch, "SLICE", 256)
-    monkeypatch.setattr(narc._scene, "SLICE", 256)
+    monkeypatch.setattr(narc._batch, "SLICE", 100)
+    monkeypatch.setattr(narc._scene, "SLICE", 100)
     for k, (part, one) in enumerate(zip(ask(), whole)):
         assert part.tobytes() == one.tobytes(), k
-    with pytest.raises(ValueError, match="body has 5 items, where there are 1500"):
+    with pytest.raises(ValueError, match="body has 5 items, where there are 600"):
         narc.distances(shapes, bodies, points, some[:5])
 
 
