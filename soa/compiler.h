@@ -77,11 +77,12 @@
 #endif
 
 /* The processor's kind. On x86, the low and the high half of an extended control register; cpuid.h is of these compilers
- * too. */
+ * too. With AVX, lanes of `a` where the sign of `mask` is set, of `b` elsewhere: of their intrinsic GCC makes another mask. */
 #if defined(__x86_64__) || defined(__i386__)
 #define NARC_ON_X86
 #define READ_CONTROL_REGISTER(number, out_low, out_high)                                                               \
     __asm__ volatile("xgetbv" : "=a"(*(out_low)), "=d"(*(out_high)) : "c"(number))
+#define SELECT_LANES(out, mask, a, b) __asm__("vblendvps %3, %2, %1, %0" : "=x"(*(out)) : "x"(b), "xm"(a), "x"(mask))
 #elif defined(__aarch64__)
 #define NARC_ON_ARM64
 #elif defined(__wasm__)

@@ -47,10 +47,9 @@ INLINE vf v_min(vf a, vf b) { return _mm_min_ss(a, b); }
 INLINE vf v_max(vf a, vf b) { return _mm_max_ss(a, b); }
 INLINE vm v_lt(vf a, vf b) { return _mm_cmplt_ss(a, b); }
 INLINE vm v_le(vf a, vf b) { return _mm_cmple_ss(a, b); }
-/* As assembly: GCC makes another mask of the sign of a mask, for each selection. */
 INLINE vf v_select(vm m, vf a, vf b) {
     vf out;
-    __asm__("vblendvps %3, %2, %1, %0" : "=x"(out) : "x"(b), "xm"(a), "x"(m));
+    SELECT_LANES(&out, m, a, b);
     return out;
 }
 INLINE vf v_pack(vp p, vf a) {
