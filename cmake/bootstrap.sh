@@ -370,7 +370,7 @@ test_app() {
 test_dem_with_sanitizers() {
     build_app dem dem-asan -DCMAKE_BUILD_TYPE=Debug \
         "-DCMAKE_C_FLAGS=$(sed -n 's/^CMAKE_C_FLAGS:[A-Z]*=//p' build/asan/CMakeCache.txt)"
-    ASAN_OPTIONS=detect_stack_use_after_return=1 test_app dem-asan -LE slow
+    ASAN_OPTIONS=detect_stack_use_after_return=1:handle_sigill=2 test_app dem-asan -LE slow
 }
 
 # More ranks than cores are fine for tests.
