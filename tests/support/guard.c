@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sanitizers.h"
 #include "support.h"
 
 #if defined(_WIN32)
@@ -50,7 +51,7 @@ struct block {
    are junk that must stay, and the address sanitizer forbids them. */
 static struct block *blocks, *idle[64];
 
-#ifdef __SANITIZE_ADDRESS__
+#if HAS_ADDRESS_SANITIZER
 #include <sanitizer/asan_interface.h>
 #else
 #define ASAN_POISON_MEMORY_REGION(memory, size)

@@ -6,12 +6,20 @@
 #ifndef NARC_TEST_SANITIZERS_H
 #define NARC_TEST_SANITIZERS_H
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IS_SANITIZED 1
+#ifdef __SANITIZE_ADDRESS__
+#define HAS_ADDRESS_SANITIZER 1
 #elif defined(__has_feature) /* clang */
-#define IS_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#define HAS_ADDRESS_SANITIZER __has_feature(address_sanitizer)
 #else
-#define IS_SANITIZED 0
+#define HAS_ADDRESS_SANITIZER 0
+#endif
+
+#ifdef __SANITIZE_THREAD__
+#define IS_SANITIZED 1
+#elif defined(__has_feature)
+#define IS_SANITIZED (HAS_ADDRESS_SANITIZER || __has_feature(thread_sanitizer))
+#else
+#define IS_SANITIZED HAS_ADDRESS_SANITIZER
 #endif
 
 #endif
