@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any, cast, overload
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _narc
 from ._shapes import Shapes
-from ._tables import (BODY, BOX, CONTACT, IMPACT, MANIFOLD, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, as_points, row_type,
+from ._tables import (BODY, BOX, CONTACT, IMPACT, MANIFOLD, MOTION, REFINED_CONTACT, Bodies, Pairs, Rows, as_array, as_points,
                       split)
 
 # Ctrl-C is heard between slices of so many pairs or questions; of bits whole words.
@@ -325,12 +325,16 @@ def manifold(shapes: Shapes, a: np.void, b: np.void, *, margin: float = 0.0, **o
     return _two(_narc.find_manifold, MANIFOLD, shapes, a, b, margin, options)
 
 
-def impact(shapes: Shapes, a: np.void, b: np.void, motion_a: Sequence[float] = (0, 0, 0),
-           motion_b: Sequence[float] = (0, 0, 0), **options: Any) -> np.void:
-    """When two bodies, rows of narc.BODY, meet that move and turn by (x, y, angle): a row of narc.IMPACT. `options` as casts()."""
-    out = np.zeros(1, IMPACT)
-    ways = np.array([((x, y), angle) for x, y, angle in (motion_a, motion_b)], row_type("narc_motion"))
-    _narc.cast_pair(shapes, a, ways[:1], b, ways[1:], options or None, out)
+def impact(shapes: Shapes, a: np.void, b: np.void, motion_a: ArrayLike = (0, 0, 0),
+           motion_b: ArrayLike = (0, 0, 0), **options: Any) -> np.void:
+    """When two bodies, rows of narc.BODY, meet that move and turn by (x, y, angle): a row of narc.IMPACT. `options`: target,
+    tolerance, front_only, parting, as in casts()."""
+    out, ways = np.zeros(1, IMPACT), [narrow(motion_a), narrow(motion_b)]
+    for name, way in zip(("motion_a", "motion_b"), ways):
+        if way.shape != (3,):
+            raise ValueError(f"{name}: the shape is to be (3,), not {way.shape}")
+    rows = np.stack(ways).view(MOTION)
+    _narc.cast_pair(shapes, a, rows[0], b, rows[1], options or None, out)
     return out[0]  # type: ignore[no-any-return]
 
 

@@ -153,6 +153,22 @@ def test_two_bodies_are_a_batch_of_one(scene):
         assert narc.manifold(scene.shapes, scene.bodies[a], scene.bodies[b])["count"] == points["count"][k]
 
 
+def test_a_cast_of_two_bodies_is_a_batch_of_one(scene, random):
+    ways = random.uniform(-3, 3, (len(scene.bodies), 3)).astype(np.float32)
+    pairs = narc.pairs(scene.shapes, scene.bodies, margin=3.0)[:200]
+    for options in ({}, {"target": 0.1, "tolerance": 0.01}, {"parting": 0.1}):
+        rows = narc.casts(scene.shapes, scene.bodies, ways[:, :2], pairs, angle=ways[:, 2], **options)
+        assert (rows["count"] == 1).sum() > 20
+        for k, (a, b) in enumerate(pairs):
+            row = narc.impact(scene.shapes, scene.bodies[a], scene.bodies[b], ways[a], ways[b].tolist(), **options)
+            row["pair"], row["body"] = k, b if row["count"] else 0
+            assert row.tobytes() == rows[k].tobytes()
+    broken = scene.bodies[0].copy()
+    broken["xy"] = np.nan
+    with pytest.warns(narc.NoAnswer, match="1 of"):
+        assert narc.impact(scene.shapes, broken, scene.bodies[1])["count"] == 0
+
+
 def test_rows_again_in_double_precision(scene):
     pairs = narc.pairs(scene.shapes, scene.bodies)
     rows = narc.contacts(scene.shapes, scene.bodies, pairs)
@@ -289,6 +305,10 @@ REFUSED = [
     (lambda s: narc.overlaps(s.shapes, s.bodies, {"ab": [[0, 1]], "other_bodies": s.bodies}), TypeError, "pairs: other_bodies"),
     (lambda s: narc.contacts(s.shapes, s.bodies, np.zeros((1, 3), "u4")), ValueError, r"pairs: the shape is to be .n, 2., not .1, 3."),
     (lambda s: narc.contact(s.shapes, [[0.0, 0, 1, 0]], [[0.1, 0, 1, 0]]), TypeError, "a: rows of narc_body are wanted"),
+    (lambda s: narc.impact(s.shapes, *s.bodies[:2], motion_b=(1, 2)), ValueError, r"motion_b: the shape is to be \(3,\), not \(2,\)"),
+    (lambda s: narc.impact(s.shapes, *s.bodies[:2], ("a", 0, 0)), TypeError, "numbers are wanted"),
+    (lambda s: narc.impact(s.shapes, *s.bodies[:2], target=np.nan), narc.Error, "options.target is nan"),
+    (lambda s: narc.impact(s.shapes, *s.bodies[:2], threads=2), TypeError, "threads"),
     (lambda s: narc.pairs(s.shapes, s.bodies, kind=np.full(300, 256)), narc.OutOfRange, "filter.kind: item 0 is 256"),
     (lambda s: s.shapes.circle("wide"), TypeError, "radius: a number is wanted, not 'wide'"),
     (lambda s: s.shapes.regular(3.5, 1), TypeError, "corners: a whole number is wanted, not 3.5"),
