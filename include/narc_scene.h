@@ -18,6 +18,7 @@
  *
  *       narc_cast_ray_pairs() does a ray hit a body, and where?        narc_ray_hit
  *       narc_cast_pairs()     when do two moving bodies meet?          narc_impact
+ *       narc_cast_pair()      the same of two bodies by themselves     narc_impact
  *       narc_find_distances() how far is a point from a body?          narc_distance
  *       narc_find_inside()    is a point within a body?                bits
  *
@@ -41,7 +42,7 @@
  *                       .motion_x = NARC_ARRAY(dx), .motion_y = NARC_ARRAY(dy)};
  *     narc_cast_rays(index, shapes, &bodies, &rays, NULL, hit, 1080, NULL);
  *
- * Functions that take a const index, and narc_cast_pairs(), may be called from any number of threads at once, with
+ * Functions that take a const index, and those that need none, may be called from any number of threads at once, with
  * NARC_STACK_SIZE bytes of stack.
  */
 #ifndef NARC_SCENE_H
