@@ -84,9 +84,20 @@ enum { QUEUE_FIELDS = OVERLAP_FIELDS };
 enum { QUEUE_FIELDS = FIELDS };
 #endif
 
+/* A field in a queue: numbers, or of one pair by itself what is in the register. */
+#ifdef NARC_ONE_PAIR
+typedef vf queue_field;
+INLINE vf load_field(const vf *field) { return *field; }
+INLINE void store_field(vf *field, vf a) { *field = a; }
+#else
+typedef float queue_field;
+INLINE vf load_field(const float *field) { return v_load(field); }
+INLINE void store_field(float *field, vf a) { v_store(field, a); }
+#endif
+
 struct queue {
-    _Alignas(64) float item[QUEUE_FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
-    int32_t *record_a, *record_b;                    /* the arcs that a stage found: push() leaves them out */
+    _Alignas(64) queue_field item[QUEUE_FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
+    int32_t *record_a, *record_b;                          /* the arcs that a stage found: push() leaves them out */
     int count;
     int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
     bool whole;            /* first stage of overlaps: are whole arcs worth their price? */
@@ -106,7 +117,7 @@ INLINE void start_queue(struct queue *queue, struct found_arcs *arcs) {
     queue->record_b = arcs->record_b;
 }
 
-INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }
+INLINE vf get(const struct queue *queue, int field, int k) { return load_field(queue->item[field] + k); }
 
 INLINE vi get_bits(const struct queue *queue, int field, int k) { return vi_bits(get(queue, field, k)); }
 
@@ -128,8 +139,8 @@ INLINE struct ring get_ring_b(const struct queue *queue, int k) {
 }
 
 INLINE void store_vec2(struct queue *queue, int field, int k, vec2 a) {
-    v_store(queue->item[field] + k, a.x);
-    v_store(queue->item[field + 1] + k, a.y);
+    store_field(queue->item[field] + k, a.x);
+    store_field(queue->item[field + 1] + k, a.y);
 }
 
 /* Are both shapes of the pairs k ... smooth? */
@@ -167,7 +178,7 @@ SHARED void push(struct queue *queue, vm keep, const vf *item, int fields) {
     const int end = queue->count;
     UNROLL
     for (int f = 0; f < fields; f++)
-        v_store(queue->item[f] + end, v_pack(packing, item[f]));
+        store_field(queue->item[f] + end, v_pack(packing, item[f]));
     queue->count = end + COUNT_BITS(vm_bits(keep));
 }
 
@@ -191,9 +202,9 @@ static inline void pad(struct queue *queue) {
         return;
     UNROLL
     for (int f = 0; f < QUEUE_FIELDS; f++)
-        v_store(queue->item[f] + queue->count, v_set(0));
-    v_store(queue->item[INFO_A] + queue->count, v_of_bits(vi_set(1)));
-    v_store(queue->item[INFO_B] + queue->count, v_of_bits(vi_set(1)));
+        store_field(queue->item[f] + queue->count, v_set(0));
+    store_field(queue->item[INFO_A] + queue->count, v_of_bits(vi_set(1)));
+    store_field(queue->item[INFO_B] + queue->count, v_of_bits(vi_set(1)));
 }
 
 /* The numbers of the pairs k ..., counted from the first of the call. */

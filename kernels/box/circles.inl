@@ -350,7 +350,9 @@ INLINE void write_circles(const struct call *call, const struct circle_pair *pai
         answer.radius_b = choose_side(of, is_a, curved, pair->radius_circle);
     }
     if (of != TWO_CIRCLES && call->question->kind == MANIFOLD_ROWS) {
-        vi reach = find_form_reach(pair, of, c);
+        vi reach = vi_set(0); /* of an edge */
+        if (BLOCK > 1 || !vm_any(pair->edge))
+            reach = find_form_reach(pair, of, c);
         if (of == ANY_CIRCLES)
             reach = vi_select(pair->sides, reach, all_round);
         answer.reach_a = choose_side_bits(of, is_a, all_round, reach);

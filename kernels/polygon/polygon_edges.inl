@@ -319,9 +319,9 @@ SHARED struct polygon_edge ask_both(const narc_record *records, const struct que
 
 INLINE struct polygon_edge find_seen_edge(const narc_record *records, const struct queue *queue, int k) {
     struct seen_polygons from[2];
-    vi facing_a, facing_b;
-    find_arcs(records, queue, k, get_vec2(queue, AXIS, k), &facing_a, &facing_b);
     see_polygons(records, queue, k, from);
+    const vi facing_a = find_arc(records, from[1].first, from[1].info, from[0].axis),
+             facing_b = find_arc(records, from[0].first, from[0].info, from[1].axis);
     const struct asked_junctions a = ask_facing(&from[0], facing_a), b = ask_facing(&from[1], facing_b);
     const vm of_b = v_lt(a.gap, b.gap);
     const vi edge_b = vi_add(b.edge, vi_set(MAX_CORNERS));

@@ -24,18 +24,7 @@ INLINE vi count_below(vi count, const int16_t *angles, const int32_t *record, vi
 }
 
 /* How many junctions of its shape come before a direction, in each lane: up to the 16 bits of the angles. */
-INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 direction) {
-    const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
-    const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
-#ifdef V_COUNT_EIGHT /* angles follow each other from record to record */
-    int32_t first, all, below = 0, done = 0;
-    vi_store(&first, record);
-    vi_store(&all, count);
-    do
-        below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
-    while ((done += 8) < all);
-    return vi_set(below);
-#else
+INLINE vi count_junctions(const narc_record *records, vi record, vi count, vi angle) {
     vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
     for (int done = 0;; done += NARC_RECORD_ANGLES) {
         int32_t index[V_WIDTH];
@@ -50,14 +39,26 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
         twice = vi_select(more, twice, vi_set((int32_t)0x80008000u)); /* nothing is below that */
     }
     return vi_add(vi_and(before, vi_set(0xffff)), vi_shift_right(before, 16));
-#endif
 }
 
 /* The record of the arc that holds a direction, in each lane. */
 INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 direction) {
-    const vi count = get_arc_count(info), before = count_junctions(records, first_record, count, direction);
+    const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
+    const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET))), count = get_arc_count(info);
+#ifdef V_COUNT_EIGHT /* angles follow each other from record to record; integers stay out of vectors */
+    int32_t first, all, below = 0, done = 0;
+    vi_store(&first, first_record);
+    vi_store(&all, count);
+    do
+        below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
+    while ((done += 8) < all);
+    const int32_t behind = (int32_t)((uint32_t)(all + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES);
+    return vi_set(first + behind + (below > 0 ? below : all) - 1);
+#else
+    const vi before = count_junctions(records, first_record, count, angle);
     const vi index = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
     return vi_add(find_first_arc(first_record, info), index);
+#endif
 }
 
 /* The arcs of the pairs k ... of a queue that hold n and -n. */

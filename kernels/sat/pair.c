@@ -9,7 +9,7 @@
  */
 #define NARC_ONE_PAIR
 #undef NARC_SIMD
-#ifdef __AVX__
+#ifdef __AVX2__
 #define NARC_SIMD "simd/one.h"
 #else
 #define NARC_SIMD "simd/scalar.h"
@@ -82,7 +82,7 @@ INLINE struct filter set_up_one(const struct call *call, const narc_one_pair *as
 INLINE void fill_one(struct queue *queue, const vf item[FIELDS]) {
     UNROLL
     for (int f = 0; f < ROW_FIELDS; f++)
-        v_store(queue->item[f], item[f]);
+        store_field(queue->item[f], item[f]);
     queue->count = 1;
 }
 

@@ -60,8 +60,8 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
     queue->count = begin;
     for (int k = begin; k < end; k += V_WIDTH) {
         const vm live = vm_front(end - k);
-        const vf slack = get(queue, SLACK, k), room = v_set(V_WIDTH == 1 ? LOOSE : 2); /* corners may be looked up */
-        const vf limit = v_add(get_margins(call, queue, k), v_mul(room, slack));
+        const vf slack = get(queue, SLACK, k);
+        const vf limit = v_add(get_margins(call, queue, k), v_mul(v_set(LOOSE), slack));
         const struct polygon_edge found = find_polygon_edge(call->batch->shapes->records, queue, k);
         const struct best_edge *best = &found.best;
         const vm near = vm_and_not(live, v_lt(limit, best->gap));
@@ -72,7 +72,7 @@ static void compare_edges(const struct call *call, struct queue *queues, int beg
         vf item[FIELDS];
         if (CAPACITY == 1) { /* it stays in its place */
             store_vec2(queue, DIRECTION, k, best->normal);
-            v_store(queue->item[EDGE_CODE] + k, code);
+            store_field(queue->item[EDGE_CODE] + k, code);
             queue->count = vm_any(clear) != 0;
             if (!vm_any(clear))
                 pass_on(queue, k, live, FIELDS, &queues[DECIDE]);

@@ -6,7 +6,7 @@
  */
 #define NARC_ONE_PAIR
 #undef NARC_SIMD
-#ifdef __AVX__
+#ifdef __AVX2__
 #define NARC_SIMD "simd/one.h"
 #else
 #define NARC_SIMD "simd/scalar.h"
@@ -14,8 +14,8 @@
 
 #include "kernels.h"
 
-/* What becomes of a cast. */
-enum { UNANSWERED = -1, ANSWERED, SKIPPED };
+/* What becomes of a cast. STRAIGHT: what turns moves nothing by it. */
+enum { UNANSWERED = -1, ANSWERED, SKIPPED, STRAIGHT };
 
 #if NARC_SHORTCUTS && (defined(__SSE4_1__) || defined(__ARM_NEON))
 
@@ -63,10 +63,6 @@ INLINE int begin(const narc_one_cast *asked, narc_casts *casts, bool turns) {
     return vm_any(loaded.fine) ? (int)outcome[0] : CAST_BROKEN;
 }
 
-NOINLINE int begin_line(const narc_one_cast *asked, narc_casts *casts) { return begin(asked, casts, false); }
-
-NOINLINE int begin_turn(const narc_one_cast *asked, narc_casts *casts) { return begin(asked, casts, true); }
-
 static const narc_query all_rows = {.margin = INFINITY};
 
 /* Takes what touches at the cast's times, until it ends. */
@@ -110,21 +106,15 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
     return outcome;
 }
 
-NOINLINE int follow_line(const narc_one_cast *asked, narc_casts *casts, narc_contact *contact) {
-    return follow(asked, casts, contact, false);
-}
-
-NOINLINE int follow_turn(const narc_one_cast *asked, narc_casts *casts, narc_contact *contact) {
-    return follow(asked, casts, contact, true);
-}
-
-int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+/* A cast from its begin to its row. Nothing is given the address of what is under way, so that it stays in registers. */
+INLINE int cast(const narc_one_cast *asked, bool turns) {
     narc_casts casts;
     narc_contact contact;
-    const bool turns = asked->motions[0]->angle != 0 || asked->motions[1]->angle != 0; /* a NaN does */
-    int outcome = (turns ? begin_turn : begin_line)(asked, &casts);
+    int outcome = begin(asked, &casts, turns);
+    if (turns && outcome == CAST_GOES_ON && !vm_any(find_turning(&casts, 0)))
+        return STRAIGHT;
     if (outcome == CAST_GOES_ON)
-        outcome = (turns && vm_any(find_turning(&casts, 0)) ? follow_turn : follow_line)(asked, &casts, &contact);
+        outcome = follow(asked, &casts, &contact, turns);
     if (outcome == UNANSWERED)
         return UNANSWERED;
     if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED) {
@@ -134,6 +124,16 @@ int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
         *asked->out_row = (narc_impact){.pair = asked->pair};
     }
     return outcome == CAST_BROKEN ? SKIPPED : ANSWERED;
+}
+
+NOINLINE int cast_line(const narc_one_cast *asked) { return cast(asked, false); }
+
+NOINLINE int cast_turn(const narc_one_cast *asked) { return cast(asked, true); }
+
+int NARC_ISA_SYMBOL(narc_cast_, NARC_ISA_NAME)(const narc_one_cast *asked) {
+    const bool turns = asked->motions[0]->angle != 0 || asked->motions[1]->angle != 0; /* a NaN does */
+    const int answered = turns ? cast_turn(asked) : STRAIGHT;
+    return answered == STRAIGHT ? cast_line(asked) : answered;
 }
 
 #else

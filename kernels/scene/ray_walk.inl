@@ -242,7 +242,8 @@ NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, struct b
 }
 
 /* Casts a ray at a body. Is it done? */
-INLINE bool cast_at_frame(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, uint32_t body) {
+NOINLINE bool cast_at_frame(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame,
+                            uint32_t body) {
     narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
     struct meeting met;
     if (w->chosen.owners)
@@ -254,7 +255,7 @@ INLINE bool cast_at_frame(const narc_ray_batch *batch, struct walk *w, const str
     return batch->options->any;
 }
 
-NOINLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, uint32_t body) {
+INLINE bool cast_at_body(const narc_ray_batch *batch, struct walk *w, uint32_t body) {
     struct body_frame frame;
     return load_body_frame(batch->shapes, batch->bodies, body, &frame) && cast_at_frame(batch, w, &frame, body);
 }

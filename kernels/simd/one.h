@@ -47,7 +47,12 @@ INLINE vf v_min(vf a, vf b) { return _mm_min_ss(a, b); }
 INLINE vf v_max(vf a, vf b) { return _mm_max_ss(a, b); }
 INLINE vm v_lt(vf a, vf b) { return _mm_cmplt_ss(a, b); }
 INLINE vm v_le(vf a, vf b) { return _mm_cmple_ss(a, b); }
-INLINE vf v_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m); }
+/* As assembly: GCC makes another mask of the sign of a mask, for each selection. */
+INLINE vf v_select(vm m, vf a, vf b) {
+    vf out;
+    __asm__("vblendvps %3, %2, %1, %0" : "=x"(out) : "x"(b), "xm"(a), "x"(m));
+    return out;
+}
 INLINE vf v_pack(vp p, vf a) {
     (void)p;
     return a;
@@ -58,7 +63,9 @@ INLINE void vi_store(int32_t *p, vi a) { *p = _mm_cvtsi128_si32(a); }
 INLINE vi vi_add(vi a, vi b) { return _mm_add_epi32(a, b); }
 INLINE vi vi_sub(vi a, vi b) { return _mm_sub_epi32(a, b); }
 INLINE vm vi_lt(vi a, vi b) { return _mm_castsi128_ps(_mm_cmpgt_epi32(b, a)); }
-INLINE vi vi_select(vm m, vi a, vi b) { return _mm_blendv_epi8(b, a, _mm_castps_si128(m)); }
+INLINE vi vi_select(vm m, vi a, vi b) {
+    return _mm_castps_si128(v_select(m, _mm_castsi128_ps(a), _mm_castsi128_ps(b)));
+}
 INLINE vi vi_and(vi a, vi b) { return _mm_and_si128(a, b); }
 INLINE vi vi_shift_left(vi a, int n) { return _mm_slli_epi32(a, n); }
 INLINE vi vi_shift_right(vi a, int n) { return _mm_srli_epi32(a, n); }
@@ -70,8 +77,7 @@ INLINE vi vi_count16(vi counts, vi below, vi values) { return _mm_sub_epi16(coun
 #define V_COUNT_EIGHT v_count_eight
 INLINE int v_count_eight(const int16_t *values, vi below) {
     const __m128i eight = _mm_loadu_si128((const __m128i *)(const void *)values);
-    const __m128i limit = _mm_shuffle_epi32(_mm_shufflelo_epi16(below, 0), 0);
-    return COUNT_BITS((unsigned)_mm_movemask_epi8(_mm_cmpgt_epi16(limit, eight))) / 2;
+    return COUNT_BITS((unsigned)_mm_movemask_epi8(_mm_cmpgt_epi16(_mm_broadcastw_epi16(below), eight))) / 2;
 }
 INLINE vi vi_lanes(void) { return _mm_setzero_si128(); }
 INLINE vm vm_and(vm a, vm b) { return _mm_and_ps(a, b); }
