@@ -453,15 +453,12 @@ dem() {
     ls -ld out/dem/*
 }
 
-# Several tests run at once: threads that wait must not keep the processors from those that they wait for.
-quiet_threads="OMP_WAIT_POLICY=passive"
-
 # Of what is random a fifth of the trials, where all would take minutes more: these are for who changes a kernel.
 few_trials=0.2
 
 # One build, the one that users have, and what answers in minutes; the gate has the rest. Or another preset's.
 test_build() {
-    export "$quiet_threads"
+    export OMP_WAIT_POLICY=passive # several tests run at once: who waits must not keep the processors from others
     slow='slow|bench'
     case $1 in
     ci)
@@ -513,7 +510,7 @@ gate_beside() {
 }
 
 gate() {
-    export "$quiet_threads"
+    export OMP_WAIT_POLICY=passive
     require_packages $gate_packages
     build ci all
     install_package ci
