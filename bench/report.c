@@ -119,7 +119,8 @@ static const struct table tables[] = {
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",
      1000},
     {"ns a body on ground | what",
-     "balls = balls/few-hills; boxes = boxes/few-hills; balls, a half-plane = balls/plane; boxes = boxes/plane",
+     "balls = balls/few-hills; boxes = boxes/few-hills; balls, a half-plane = balls/plane;"
+     "boxes, a half-plane = boxes/plane",
      "pairs that are there = pairs; a step = among",
      "narc = ground-$2/$1/BEST / 3; AVX2 = ground-$2/$1/avx2 / 3; Box2D = ground-$2/$1/box2d", 1},
 };
