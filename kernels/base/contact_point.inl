@@ -160,26 +160,39 @@ struct touching_pair {
     vi first_a, first_b, info_a, info_b;
     vf scale_a, scale_b;
     vec2 to_world;
+    bool round_a, round_b; /* is it a circle, for certain, in all lanes? Constants */
 };
+
+/* What a body touches with: of a circle the arc 0, of another one an arc or the edge before it. Where that is an edge,
+ * *out_edge. */
+INLINE vi tell_feature(const struct feature *f, vi first_record, vi info, vf scale, bool round, vm *out_edge) {
+    *out_edge = round ? vm_front(0) : touches_edge(f, info, scale);
+    if (round)
+        return vi_set(0);
+    return vi_add(find_arc_number(f->record, first_record, info),
+                  vi_select(*out_edge, vi_set(NARC_FEATURE_EDGE), vi_set(0)));
+}
+
+INLINE vi tell_reach(const struct feature *f, vec2 n, vi info, vm edge, bool round) {
+    return round ? vi_set(-1) : find_reach(f, n, info, edge); /* NARC_REACH_ONE twice */
+}
 
 /* The answer to pairs that touch along n, in A's frame. `reaches`: are they asked for? */
 INLINE struct answer tell_touch(const struct touching_pair *pair, vf separation, vec2 n, const struct feature *on_a,
                                 const struct feature *on_b, bool reaches) {
     const vi info_a = pair->info_a, info_b = pair->info_b, zero = vi_set(0);
     const vec2 to_world = pair->to_world;
-    const vm edge_a = touches_edge(on_a, info_a, pair->scale_a), edge_b = touches_edge(on_b, info_b, pair->scale_b);
-    const vi number_a = find_arc_number(on_a->record, pair->first_a, info_a);
-    const vi number_b = find_arc_number(on_b->record, pair->first_b, info_b);
-    const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));
-    const vi feature_b = vi_add(number_b, vi_select(edge_b, vi_set(NARC_FEATURE_EDGE), zero));
+    vm edge_a, edge_b;
+    const vi feature_a = tell_feature(on_a, pair->first_a, info_a, pair->scale_a, pair->round_a, &edge_a);
+    const vi feature_b = tell_feature(on_b, pair->first_b, info_b, pair->scale_b, pair->round_b, &edge_b);
     return (struct answer){.separation = separation,
                            .normal = v2_rotate(to_world, n),
                            .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b))),
                            .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
                            .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius),
-                           .reach_a = reaches ? find_reach(on_a, n, info_a, edge_a) : zero,
-                           .reach_b = reaches ? find_reach(on_b, n, info_b, edge_b) : zero};
+                           .reach_a = reaches ? tell_reach(on_a, n, info_a, edge_a, pair->round_a) : zero,
+                           .reach_b = reaches ? tell_reach(on_b, n, info_b, edge_b, pair->round_b) : zero};
 }
 
 /* The same of the pairs k ... of a queue. */
@@ -191,7 +204,9 @@ INLINE struct answer find_answer(const struct queue *queue, int k, vf separation
                                        get_bits(queue, INFO_B, k),
                                        get(queue, SCALE_A, k),
                                        get(queue, SCALE_B, k),
-                                       get_vec2(queue, ROTATION_A, k)};
+                                       get_vec2(queue, ROTATION_A, k),
+                                       false,
+                                       false};
     return tell_touch(&pair, separation, n, on_a, on_b, reaches);
 }
 

@@ -63,6 +63,15 @@ INLINE char *find_place(const struct call *call, int32_t pair) {
     return rows->out.base + (ptrdiff_t)item * rows->out.stride;
 }
 
+/* Where a list tells which pairs are asked of, dense rows lie at the numbers that it has. */
+NOINLINE void find_listed_places(const struct call *call, vi rows, char *place[V_WIDTH]) {
+    int32_t row[V_WIDTH];
+    vi_store(row, rows);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        if (row[lane] < NARC_ROW_GROUP)
+            place[lane] = find_place(call, row[lane]);
+}
+
 /* Notes that pairs have a row, in the lanes `keep`, and finds their places; elsewhere the spare one: what lanes write in
  * vain stays in one line of the cache. One pair by itself is not asked for without a row. */
 INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
@@ -73,19 +82,18 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
         return;
     }
     char *const first = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
-    const uintptr_t base = (uintptr_t)first, stride = (uintptr_t)rows->out.stride,
-                    beyond = (uintptr_t)rows->spare - (base + NARC_ROW_GROUP * stride);
-    int32_t row[V_WIDTH];
-    vi_store(row, vi_select(keep, pairs, vi_set(NARC_ROW_GROUP)));
+    const uintptr_t stride = (uintptr_t)rows->out.stride,
+                    from[2] = {(uintptr_t)first, (uintptr_t)rows->spare - NARC_ROW_GROUP * stride};
+    const vi numbers = vi_select(keep, pairs, vi_set(NARC_ROW_GROUP));
+    uint32_t row[V_WIDTH];
+    vi_store((int32_t *)row, numbers);
     for (int lane = 0; lane < V_WIDTH; lane++) { /* without a branch: which lanes have an answer can't be foreseen */
-        const uintptr_t at = (uint32_t)row[lane];
-        place[lane] = (char *)(base + at * stride + at / NARC_ROW_GROUP * beyond);
+        const uintptr_t at = row[lane];
+        place[lane] = (char *)(from[at / NARC_ROW_GROUP] + at * stride);
         rows->known[at] = 1;
     }
     if (rows->dense && call->batch->query->selection.base)
-        for (int lane = 0; lane < V_WIDTH; lane++)
-            if (row[lane] < NARC_ROW_GROUP)
-                place[lane] = find_place(call, row[lane]);
+        find_listed_places(call, numbers, place);
 }
 
 /* The places behind those that are listed, for the lanes `keep`; elsewhere the spare one. */

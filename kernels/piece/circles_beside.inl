@@ -136,7 +136,8 @@ INLINE vm answer_circles_beside(const struct call *call, const struct run_touch 
                                        get_item_bits(item, INFO_B),
                                        item[SCALE_A],
                                        item[SCALE_B],
-                                       {item[ROTATION_A], item[ROTATION_A + 1]}};
+                                       {item[ROTATION_A], item[ROTATION_A + 1]},
+                                       .round_a = of == RUN_IS_B};
     const vf scale = pick(of, is_a, pair.scale_a, pair.scale_b),
              scale_circle = pick(of, is_a, pair.scale_b, pair.scale_a);
     const vm shallow = vm_and_not(is_circle_shallow(call->batch->shapes->records, touch->circle_field, scale_circle,

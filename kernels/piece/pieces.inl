@@ -42,19 +42,24 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
     return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
 }
 
-/* Is a circle so shallow that it reaches the piece (narc_is_shallow()), for certain? By the fields of its arc, with its scale,
- * and the record of the solid, with the piece's. */
-INLINE vm is_circle_shallow(const narc_record *records, const vf circle[4], vf circle_scale, vi solid_record,
-                            vf piece_scale, vf separation) {
-    const vf room = v_set(0x1p-17f), depth = v_mul(v_set(-1 - 0x1p-17f), separation);
+/* Is a body so shallow that it reaches the piece (narc_is_shallow()), for certain? By its inner radius, the record of the
+ * solid, and the piece's scale. */
+INLINE vm is_shallow(const narc_record *records, vf inner, vi solid_record, vf piece_scale, vf separation) {
+    const vf depth = v_mul(v_set(-1 - 0x1p-17f), separation);
     int32_t index[V_WIDTH];
     vf solid[4];
     vi_store(index, solid_record);
     v_rows(records, sizeof *records, index, solid);
+    return vm_and(v_le(depth, v_add(inner, inner)), v_le(depth, v_mul(solid[0], piece_scale)));
+}
+
+/* The same of a circle, by the fields of its arc, with its scale. */
+INLINE vm is_circle_shallow(const narc_record *records, const vf circle[4], vf circle_scale, vi solid_record,
+                            vf piece_scale, vf separation) {
     /* The inner circle of its header lacks some roundings of the extent. */
     const vf extent = v_add(v_add(v_abs(circle[0]), v_abs(circle[1])), circle[2]);
-    const vf inner = v_mul(v_sub(circle[2], v_mul(room, extent)), circle_scale);
-    return vm_and(v_le(depth, v_add(inner, inner)), v_le(depth, v_mul(solid[0], piece_scale)));
+    const vf inner = v_mul(v_sub(circle[2], v_mul(v_set(0x1p-17f), extent)), circle_scale);
+    return is_shallow(records, inner, solid_record, piece_scale, separation);
 }
 
 /* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
@@ -62,44 +67,37 @@ INLINE vm is_circle_shallow(const narc_record *records, const vf circle[4], vf c
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
     const narc_batch *const batch = call->batch;
     const bool front_only = batch->query->front_only != 0;
-    const vm of_a = has_mark(get_bits(queue, INFO_A, k), NARC_PIECE_MARKS);
+    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
+    const vm of_a = has_mark(info_a, NARC_PIECE_MARKS), both = vm_and(of_a, has_mark(info_b, NARC_PIECE_MARKS));
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
     const vi last = vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count));
-    const vm round =
-        has_flag(vi_select(of_a, get_bits(queue, INFO_B, k), get_bits(queue, INFO_A, k)), NARC_SHAPE_CIRCLE);
-    if (!front_only && vm_any(vm_and(which, round))) {
-        const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
-        int32_t index[V_WIDTH];
-        vf circle[4];
-        vi_store(index, vi_select(of_a, ring_b.base, ring_a.base));
-        v_rows(batch->shapes->records, sizeof *batch->shapes->records, index, circle);
-        const vm shallow = is_circle_shallow(batch->shapes->records, circle, v_select(of_a, scale_b, scale_a), last,
-                                             v_select(of_a, scale_a, scale_b), separation);
-        which = vm_and_not(which, vm_and(round, shallow));
+    const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
+    const uint32_t piece_is_a = vm_bits(of_a);
+    const narc_shape_header *header[2][V_WIDTH];
+    int32_t pair[V_WIDTH];
+    float inner[V_WIDTH] = {0};
+    get_pairs(queue, k, pair);
+    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+        const int l = FIND_LOWEST(lanes);
+        const size_t number = find_number(call, pair[l]);
+        header[0][l] = find_header(batch, batch->a, batch->pairs->a, number);
+        header[1][l] = find_header(batch, batch->b, batch->pairs->b, number);
+        inner[l] = header[piece_is_a >> l & 1][l]->inner_radius;
+    }
+    if (!front_only) {
+        const vf scaled = v_mul(v_load(inner), v_select(of_a, scale_b, scale_a));
+        const vm shallow =
+            is_shallow(batch->shapes->records, scaled, last, v_select(of_a, scale_a, scale_b), separation);
+        which = vm_and_not(which, vm_and_not(shallow, both));
     }
     if (!vm_any(which))
         return which;
-    const uint32_t piece_is_a = vm_bits(of_a);
-    int32_t pair[V_WIDTH], solid[V_WIDTH];
+    int32_t solid[V_WIDTH];
     float scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
-    uint32_t left = 0;
-    get_pairs(queue, k, pair);
     vi_store(solid, last);
-    v_store(scale[0], get(queue, SCALE_A, k));
-    v_store(scale[1], get(queue, SCALE_B, k));
+    v_store(scale[0], scale_a);
+    v_store(scale[1], scale_b);
     v_store(depth, separation);
-    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
-        const int l = FIND_LOWEST(lanes), side = piece_is_a >> l & 1 ? 0 : 1;
-        const size_t number = find_number(call, pair[l]);
-        const narc_shape_header *const body = side ? find_header(batch, batch->a, batch->pairs->a, number)
-                                                   : find_header(batch, batch->b, batch->pairs->b, number);
-        const double thickness = (double)batch->shapes->records[(uint32_t)solid[l]].solid.thickness;
-        if (front_only || narc_is_piece(body) ||
-            !narc_is_shallow(body, (double)scale[1 - side][l], (double)scale[side][l] * thickness, (double)depth[l]))
-            left |= lanes & (0 - lanes);
-    }
-    if (!left)
-        return vm_front(0);
     const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
     const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
     float field[2][4][V_WIDTH];
@@ -108,20 +106,20 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         for (int f = 0; f < 4; f++)
             v_store(field[side][f], fields[f]);
     }
-    for (; left; left &= left - 1) {
-        const int l = FIND_LOWEST(left);
-        const size_t number = find_number(call, pair[l]);
-        const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
-                                                    find_header(batch, batch->b, batch->pairs->b, number)};
+    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+        const int l = FIND_LOWEST(lanes), piece = piece_is_a >> l & 1 ? 0 : 1;
+        const narc_shape_header *const body = header[1 - piece][l];
+        const double thickness = (double)batch->shapes->records[(uint32_t)solid[l]].solid.thickness;
+        if (!front_only && !narc_is_piece(body) &&
+            narc_is_shallow(body, (double)scale[1 - piece][l], (double)scale[piece][l] * thickness, (double)depth[l]))
+            continue;
         narc_contact_side touching[2];
         for (int side = 0; side < 2; side++)
-            touching[side] = (narc_contact_side){header[side],
-                                                 narc_arcs_of(batch->shapes, header[side]),
-                                                 (double)scale[side][l],
-                                                 (double)field[side][0][l],
-                                                 (double)field[side][1][l],
-                                                 (double)field[side][2][l],
-                                                 (double)field[side][3][l]};
+            touching[side] =
+                (narc_contact_side){header[side][l],           narc_arcs_of(batch->shapes, header[side][l]),
+                                    (double)scale[side][l],    (double)field[side][0][l],
+                                    (double)field[side][1][l], (double)field[side][2][l],
+                                    (double)field[side][3][l]};
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));
