@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * ground.c - what ground costs in a step: columns of three rounded boxes on hills, which shake a little, by themselves and
- * with the ground's entries behind them; balls or boxes, each on the ground, beside a peer's chain.
+ * with the ground's entries behind them; balls or boxes, each on the ground, beside a peer's chain. Ground without end is
+ * flat, and one piece.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -46,6 +47,15 @@ static struct walk walk_hills(size_t pieces, double size) {
     return w;
 }
 
+/* One flat piece so long, between two more. */
+static struct walk walk_flat(double length) {
+    const double x[] = {0, -0.1, -length, -length - 1};
+    struct walk w = {.arcs = allocate(4, sizeof(narc_arc)), .count = 4};
+    for (size_t k = 0; k < w.count; k++)
+        w.arcs[k] = (narc_arc){x[k], 0, 0, pi / 2, pi / 2};
+    return w;
+}
+
 /* Where arcs and straight edges meet. */
 static void list_points(const struct walk *walk, struct scene *out) {
     struct vector *points = allocate(2 * walk->count, sizeof *points);
@@ -78,17 +88,30 @@ struct country {
     uint8_t *touching;
 };
 
-/* Columns of so many bodies, which are 1 high. */
-static struct country make_country(const struct walk *walk, const struct outline *outline, size_t count, int levels,
-                                   double pitch) {
+/* Bodies that are 1 high. */
+static void add_column(struct country *c, double x, double y, int levels) {
+    for (int level = 0; level < levels; level++) {
+        c->runs[c->made] = NARC_NO_RUN;
+        c->moved[c->made] = (uint32_t)c->made;
+        c->bodies[c->made++] = (narc_body){x, y + 0.51 + 1.001 * level, 1, 0, 1, 0};
+    }
+}
+
+/* Columns of so many bodies, on ground without end or on pieces. */
+static struct country make_country(const struct walk *walk, bool endless, const struct outline *outline, size_t count,
+                                   int levels, double pitch) {
     const size_t most = 4 * walk->count + 100;
     struct country c = {0};
     narc_chain_entry *entries = allocate(most, sizeof *entries);
-    const uint32_t shape = 0;
     narc_error error;
     must(narc_create_shapes(NULL, &c.shapes), NULL);
     add_outline(c.shapes, outline);
-    must(narc_add_chain(c.shapes, walk->arcs, walk->count, NULL, entries, most, &c.pieces, &error), &error);
+    entries[0] = (narc_chain_entry){.run = NARC_NO_RUN};
+    c.pieces = 1;
+    if (endless)
+        must(narc_add_half_plane(c.shapes, &entries[0].shape, &error), &error);
+    else
+        must(narc_add_chain(c.shapes, walk->arcs, walk->count, NULL, entries, most, &c.pieces, &error), &error);
     for (size_t way = 0; way < 2; way++)
         must(narc_create_contacts(NULL, &c.contacts[way], NULL), NULL);
     c.bodies = allocate(count + c.pieces, sizeof *c.bodies);
@@ -97,18 +120,16 @@ static struct country make_country(const struct walk *walk, const struct outline
     c.moved = allocate(count, sizeof *c.moved);
     double at = walk->arcs[0].center_x;
     /* A column stands where an arc begins. */
-    for (size_t k = 1; k < walk->count && c.made + (size_t)levels <= count; k++) {
+    for (size_t k = 1; !endless && k < walk->count && c.made + (size_t)levels <= count; k++) {
         const narc_arc *a = &walk->arcs[k];
         const double x = a->center_x + a->radius * cos(a->start), y = a->center_y + a->radius * sin(a->start);
         if (x > at - pitch)
             continue;
         at = x;
-        for (int level = 0; level < levels; level++) {
-            c.runs[c.made] = NARC_NO_RUN;
-            c.moved[c.made] = (uint32_t)c.made;
-            c.bodies[c.made++] = (narc_body){x, y + 0.51 + 1.001 * level, 1, 0, 1, shape};
-        }
+        add_column(&c, x, y, levels);
     }
+    while (endless && c.made + (size_t)levels <= count)
+        add_column(&c, at -= pitch, 0, levels);
     for (size_t k = 0; k < c.pieces; k++) {
         c.bodies[c.made + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
         c.kinds[c.made + k] = NARC_STATIC;
@@ -215,21 +236,24 @@ static void begin_peer(struct row *row, const struct walk *walk, struct outline 
 }
 
 /* 30,000 bodies on 100,000 pieces, each 1.1 long; or so short that the boxes stand on all of them. Each column lies on it.
- * Of few hills a tenth, which single precision has room for. */
+ * Of few hills a tenth, which single precision has room for, and as many on ground without end. */
 static void prepare(struct row *row) {
-    const bool few = strstr(row->bench.name, "/few-hills/") != NULL, balls = strstr(row->bench.name, "/balls/") != NULL;
+    const bool endless = strstr(row->bench.name, "/plane/") != NULL;
+    const bool few = endless || strstr(row->bench.name, "/few-hills/"),
+               balls = strstr(row->bench.name, "/balls/") != NULL;
     const bool is_short = strstr(row->bench.name, "/short-hills/") != NULL;
     const size_t count = scaled(few ? 3000 : 30000), pieces = scaled(few ? 10000 : 100000), levels = few ? 1 : 3;
     const double columns = (double)(count / levels);
     const double length = is_short ? 1.2 * 1.1 * columns / (double)pieces : 1.1;
     const double pitch = fmax(1.1, 0.9 * length * (double)pieces / columns);
-    const struct walk walk = walk_hills(pieces * 4 / 3, length / 0.45);
+    const struct walk walk =
+        endless ? walk_flat(pitch * ((double)count + 1)) : walk_hills(pieces * 4 / 3, length / 0.45);
     struct country *c = row->state = allocate(1, sizeof *c);
     struct outline *outline = allocate(1, sizeof *outline);
     *outline = balls ? circle_with(0.5) : box_with(0.4, 0.4);
     for (size_t k = 0; k <= outline->count && !balls; k++)
         outline->arcs[k].radius = 0.1;
-    *c = make_country(&walk, outline, count, (int)levels, pitch);
+    *c = make_country(&walk, endless, outline, count, (int)levels, pitch);
     row->bench.count = few ? c->made : 1; /* bodies, steps */
     if (row->peer) {
         begin_peer(row, &walk, outline);

@@ -68,7 +68,7 @@ static const struct group groups[] = {
     {"index-good index-fast", "gons8", SCENES, "BEST"},
     {"move-1 move-100 move-2000 move-near-2000", "gons8", SCENES, "BEST box2d"},
     {"ground-none ground-among", "boxes", "hills short-hills", "BEST avx2"},
-    {"ground-among ground-pairs", "balls boxes", "few-hills", "BEST avx2 box2d"},
+    {"ground-among ground-pairs", "balls boxes", "few-hills plane", "BEST avx2 box2d"},
 };
 
 static struct row *rows[MAX_ROWS];

@@ -118,10 +118,11 @@ static const struct table tables[] = {
      "without it = ground-none/boxes/$1/BEST / 2; with it = ground-among/boxes/$1/BEST;"
      "AVX2, without it = ground-none/boxes/$1/avx2 / 4; with it = ground-among/boxes/$1/avx2",
      1000},
-    {"ns a body on ground | what", "balls = balls; boxes = boxes", "pairs that are there = pairs; a step = among",
-     "narc = ground-$2/$1/few-hills/BEST / 3; AVX2 = ground-$2/$1/few-hills/avx2 / 3;"
-     "Box2D = ground-$2/$1/few-hills/box2d",
-     1},
+    {"ns a body on ground | what",
+     "balls = balls/few-hills; boxes = boxes/few-hills; balls, a half-plane = balls/plane;"
+     "boxes, a half-plane = boxes/plane",
+     "pairs that are there = pairs; a step = among",
+     "narc = ground-$2/$1/BEST / 3; AVX2 = ground-$2/$1/avx2 / 3; Box2D = ground-$2/$1/box2d", 1},
 };
 
 /* ------------------------------------------------------------------------------------------------ times */

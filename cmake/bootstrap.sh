@@ -458,6 +458,7 @@ few_trials=0.2
 
 # One build, the one that users have, and what answers in minutes; the gate has the rest. Or another preset's.
 test_build() {
+    export OMP_WAIT_POLICY=passive # several tests run at once: who waits must not keep the processors from others
     slow='slow|bench'
     case $1 in
     ci)
@@ -516,6 +517,7 @@ end_beside() {
 }
 
 gate() {
+    export OMP_WAIT_POLICY=passive
     require_packages $gate_packages
     require_sanitizers # before there are two that install packages
     build ci all

@@ -162,10 +162,10 @@ INLINE uint32_t find_wedge_slots(const struct fan *f, const narc_index_node *nod
     const vf other_x = aslant ? v_set(f->left_x) : right_x, other_y = aslant ? v_set(f->left_y) : right_y;
     uint32_t slots = 0;
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
-        const vf first_x = v_sub(v_load(planes + w->x.first + k), v_set(w->x.first_start));
-        const vf first_y = v_sub(v_load(planes + w->y.first + k), v_set(w->y.first_start));
-        const vf last_x = v_sub(v_load(planes + w->x.last + k), v_set(w->x.last_start));
-        const vf last_y = v_sub(v_load(planes + w->y.last + k), v_set(w->y.last_start));
+        const vf first_x = v_sub(v_load_8(planes + w->x.first + k), v_set(w->x.first_start));
+        const vf first_y = v_sub(v_load_8(planes + w->y.first + k), v_set(w->y.first_start));
+        const vf last_x = v_sub(v_load_8(planes + w->x.last + k), v_set(w->x.last_start));
+        const vf last_y = v_sub(v_load_8(planes + w->y.last + k), v_set(w->y.last_start));
         const vf a = v_sub(v_mul(outer_x, first_y), v_mul(outer_y, last_x));
         const vf c = v_sub(v_mul(other_x, last_y), v_mul(other_y, first_x));
         const vm beside = aslant ? vm_and(v_le(zero, a), v_le(c, zero)) : vm_and(v_le(a, zero), v_le(zero, c));

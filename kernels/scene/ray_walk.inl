@@ -119,10 +119,10 @@ INLINE uint32_t find_slots(const struct walk *w, struct axis_lanes x, struct axi
     const vf limit = v_set(w->limit);
     uint32_t slots = 0;
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
-        const vf near_x = v_mul(v_sub(v_load(planes + w->x.first + k), x.first_start), x.inverse);
-        const vf near_y = v_mul(v_sub(v_load(planes + w->y.first + k), y.first_start), y.inverse);
-        const vf far_x = v_mul(v_sub(v_load(planes + w->x.last + k), x.last_start), x.far_inverse);
-        const vf far_y = v_mul(v_sub(v_load(planes + w->y.last + k), y.last_start), y.far_inverse);
+        const vf near_x = v_mul(v_sub(v_load_8(planes + w->x.first + k), x.first_start), x.inverse);
+        const vf near_y = v_mul(v_sub(v_load_8(planes + w->y.first + k), y.first_start), y.inverse);
+        const vf far_x = v_mul(v_sub(v_load_8(planes + w->x.last + k), x.last_start), x.far_inverse);
+        const vf far_y = v_mul(v_sub(v_load_8(planes + w->y.last + k), y.last_start), y.far_inverse);
         const vf near = v_max(v_max(near_x, near_y), v_set(0));
         v_store(out_near + k, near);
         slots |= vm_bits(v_le(near, v_min(v_min(far_x, far_y), limit))) << k;
@@ -301,7 +301,7 @@ INLINE uint64_t keep_slots(const struct descent *d, uint64_t left, unsigned leve
         const unsigned number = level + at / 8;
         uint32_t far = 0;
         for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH)
-            far |= vm_bits(v_lt(v_set(limit), v_load(d->near[number] + k))) << k;
+            far |= vm_bits(v_lt(v_set(limit), v_load_8(d->near[number] + k))) << k;
         kept &= ~((uint64_t)flipped[d->flips[number]][far & 0xff] << at);
     }
     return kept;

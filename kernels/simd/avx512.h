@@ -21,6 +21,7 @@ typedef __m512i vp;
 
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
+INLINE vf v_load_8(const float *p) { return _mm512_zextps256_ps512(_mm256_loadu_ps(p)); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
 INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const size_t *index) {
     __m512 rows = _mm512_castps128_ps512(v_row(base, stride, index[0]));

@@ -9,6 +9,7 @@
  * multiply-add and no estimate on purpose.
  *
  *   v_set(float)  v_load(float *)  v_store(float *, vf)         any alignment
+ *   v_load_8(float *)                                           no more than eight of them, zeros behind
  *   v_rows(void *base, ptrdiff_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
  *   v_put_rows(char *const *place, int offset, vf in[4])        four floats to byte `offset` of place[lane], lane by lane
@@ -61,5 +62,9 @@ struct double_rows {
 #error "define NARC_SIMD, the file of a vector wrapper: \"simd/scalar.h\""
 #endif
 #include NARC_SIMD
+
+#if V_WIDTH <= 8
+#define v_load_8 v_load
+#endif
 
 #endif
