@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sanitizers.h"
 #include "support.h"
 
 #if defined(_WIN32)
@@ -19,6 +18,10 @@ static bool forbid_pages(void *pages, size_t size) {
     DWORD old;
     return VirtualProtect(pages, size, PAGE_NOACCESS, &old);
 }
+static bool allow_pages(void *pages, size_t size) {
+    DWORD old;
+    return VirtualProtect(pages, size, PAGE_READWRITE, &old);
+}
 static size_t page_size(void) { return 4096; }
 #elif defined(__wasm__)
 /* No page can be forbidden: what is written there is found at the end, what is read is not. */
@@ -26,6 +29,7 @@ static size_t page_size(void) { return 4096; }
 
 static void *map_pages(size_t size) { return malloc(size); }
 static bool forbid_pages(void *pages, size_t size) { return memset(pages, GUARD_JUNK, size) != NULL; }
+static bool allow_pages(void *pages, size_t size) { return pages && size; }
 static size_t page_size(void) { return 256; }
 #else
 #include <sys/mman.h>
@@ -36,6 +40,7 @@ static void *map_pages(size_t size) {
     return pages == MAP_FAILED ? NULL : pages;
 }
 static bool forbid_pages(void *pages, size_t size) { return mprotect(pages, size, PROT_NONE) == 0; }
+static bool allow_pages(void *pages, size_t size) { return mprotect(pages, size, PROT_READ | PROT_WRITE) == 0; }
 static size_t page_size(void) { return (size_t)sysconf(_SC_PAGESIZE); }
 #endif
 
@@ -47,16 +52,9 @@ struct block {
     unsigned char *memory;
 };
 
-/* Those in use, and those that were, by their number of pages: pages are slow to come by. Until they are used again they
-   are junk that must stay, and the address sanitizer forbids them. */
+/* Those in use, and those that were, by their number of pages: new pages are slow to come by. Until they are used again
+ * they are junk, and forbidden. */
 static struct block *blocks, *idle[64];
-
-#if HAS_ADDRESS_SANITIZER
-#include <sanitizer/asan_interface.h>
-#else
-#define ASAN_POISON_MEMORY_REGION(memory, size)
-#define ASAN_UNPOISON_MEMORY_REGION(memory, size)
-#endif
 
 static bool is_junk(const unsigned char *from, const unsigned char *to) {
     bool whole = true;
@@ -88,7 +86,7 @@ void *guard_allocate(size_t size) {
         *link = block->next;
     else
         block = make_block(inside + 2 * page, page);
-    ASAN_UNPOISON_MEMORY_REGION(block->map + page, inside);
+    assert_true(allow_pages(block->map + page, inside));
     assert_true(is_junk(block->map + page, block->map + page + inside));
     block->memory = block->map + page + inside - size;
     block->next = blocks;
@@ -109,7 +107,7 @@ void guard_release(void *memory) {
 #endif
     *link = block->next;
     memset(block->memory, GUARD_JUNK, (size_t)(end - block->page - block->memory));
-    ASAN_POISON_MEMORY_REGION(block->map + block->page, block->map_size - 2 * block->page);
+    assert_true(forbid_pages(block->map + block->page, block->map_size - 2 * block->page));
     link = find_idle(block->map_size, block->page);
     block->next = *link;
     *link = block;

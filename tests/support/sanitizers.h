@@ -6,20 +6,12 @@
 #ifndef NARC_TEST_SANITIZERS_H
 #define NARC_TEST_SANITIZERS_H
 
-#ifdef __SANITIZE_ADDRESS__
-#define HAS_ADDRESS_SANITIZER 1
-#elif defined(__has_feature) /* clang */
-#define HAS_ADDRESS_SANITIZER __has_feature(address_sanitizer)
-#else
-#define HAS_ADDRESS_SANITIZER 0
-#endif
-
-#ifdef __SANITIZE_THREAD__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define IS_SANITIZED 1
-#elif defined(__has_feature)
-#define IS_SANITIZED (HAS_ADDRESS_SANITIZER || __has_feature(thread_sanitizer))
+#elif defined(__has_feature) /* clang */
+#define IS_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
 #else
-#define IS_SANITIZED HAS_ADDRESS_SANITIZER
+#define IS_SANITIZED 0
 #endif
 
 #endif
