@@ -278,7 +278,7 @@ typedef struct narc_motions {
     void *reserved[2]; /* NULL */
 } narc_motions;
 
-/* The motion of one body: by how much it moves and turns in a step. */
+/* How one body moves during a step, as a row of narc_motions: by (x, y), turning by `angle`, in radians. */
 typedef struct narc_motion {
     float x, y;
     float angle;

@@ -52,8 +52,7 @@ INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 di
     do
         below += V_COUNT_EIGHT(records[(uint32_t)first].angles + done, angle);
     while ((done += 8) < all);
-    const int32_t behind = (int32_t)((uint32_t)(all + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES);
-    return vi_set(first + behind + (below > 0 ? below : all) - 1);
+    return vi_set(first + (int32_t)narc_angle_records((size_t)all) + (below > 0 ? below : all) - 1);
 #else
     const vi before = count_junctions(records, first_record, count, angle);
     const vi index = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
