@@ -98,6 +98,11 @@ INLINE vi find_edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
 }
 
+/* The first arcs, as BOX_CODE has them. */
+INLINE vi find_first_arcs(const struct box_form *a, const struct box_form *b) {
+    return vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
+}
+
 /* Are both shapes of that kind? */
 INLINE vm are_forms(const struct box_form *a, const struct box_form *b, uint32_t kind) {
     return vi_lt(vi_set(0), vi_and(vi_and(a->info, b->info), vi_set((int32_t)kind)));
@@ -156,8 +161,6 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi edges =
             vi_add(find_edge_number(a_on_x, negative_a), vi_shift_left(find_edge_number(b_on_x, vm_not(back_b)), 2));
-        const vi first =
-            vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
         const vi tie = vi_select(certain, vi_set(0), vi_set(BOX_TIE));
         vf item[BOX_FIELDS];
         set_vec2(item, BOX_POSITION, t);
@@ -169,7 +172,7 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         item[BOX_RADIUS_A] = radius_a;
         item[BOX_RADIUS_B] = radius_b;
         item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
+        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, find_first_arcs(a, b)), tie));
         item[BOX_PAIR] = v_of_bits(pairs);
         push_boxes(queue, near, item, BOX_FIELDS);
     }
