@@ -11,8 +11,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes; with NARC_TEST_PRESET=ci warnings are errors
   gate       what a change must pass besides: style, long tests, the applications, benchmarks that run, without
-             dependencies, sanitizers, fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded
-             answers on WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
+             dependencies, sanitizers, fuzzing, under qemu NEON and a big-endian processor, and words of 32 bits on
+             WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
