@@ -88,19 +88,6 @@ INLINE void run_boxes(const struct call *call, struct box_queue *queue, bool end
     queue->count = k < queue->count ? queue->count - k : 0;
 }
 
-/* The form of a shape in each lane. */
-struct box_form {
-    vec2 half;
-    vf radius;
-    vi info;
-};
-
-INLINE struct box_form load_box_forms(const narc_box_form *forms, const int32_t *shape) {
-    vf word[4];
-    v_rows(forms, sizeof *forms, shape, word);
-    return (struct box_form){{word[0], word[1]}, word[2], vi_bits(word[3])};
-}
-
 /* Is a box of about this size in range, for certain? The bounding radius is between 0.7 and 1.001 times the sum. */
 INLINE vm is_box_in_range(vf size) {
     return vm_and(v_le(v_set(2 * (float)NARC_MIN_SIZE), size), v_le(size, v_set(0.5f * (float)NARC_MAX_SIZE)));
