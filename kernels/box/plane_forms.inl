@@ -6,7 +6,7 @@
  * What they touch along is the boundary's normal, for certain: the box is wider than four times what the other body and its
  * height are together, so that the gap falls off on both sides of it by more than that, whatever is rounded. Of the other body
  * the edge counts that is nearest to it, or the only point of a circle. Where two edges of a box are equally near, or a side is
- * no longer than rounding, and where a capsule stands upright, the pair is left to the search.
+ * no longer than rounding, and where a capsule stands upright, the pair is left to the search. docs/algorithm.md, section 9.
  */
 #ifndef NARC_BOX_PLANE_FORMS_INL
 #define NARC_BOX_PLANE_FORMS_INL
