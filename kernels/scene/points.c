@@ -416,7 +416,7 @@ NOINLINE void add_thing(struct search *search, uint32_t body, float separation) 
     for (size_t k = 0; k < search->found; k++)
         if (search->rows[k].count && find_owner(&search->chosen, search->rows[k].body) == thing.owner)
             return; /* by another part */
-    if (find_way_out(&thing, &out) && load_body_frame(batch->shapes, batch->bodies, out.body, &frame))
+    if (find_way_out(&thing, body, &out) && load_body_frame(batch->shapes, batch->bodies, out.body, &frame))
         row = (narc_distance){.body = out.body,
                               .feature = (uint16_t)out.feature,
                               .count = 1,

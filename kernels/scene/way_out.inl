@@ -246,30 +246,28 @@ NOINLINE void look_at_crossings(const struct thing *thing, const struct body_fra
     }
 }
 
-/* Looks at the feet on the parts, the nearest first, or where they cross others, as far as the nearest place so far. */
-NOINLINE void look_at_parts(const struct thing *thing, bool crossings, struct way_out *best) {
-    struct near_walk walk;
+/* The nearest place outside of a point that lies in this part of a thing. False if none is found. */
+NOINLINE bool find_way_out(const struct thing *thing, uint32_t part, struct way_out *out) {
     struct body_frame frame;
-    uint32_t body;
-    if (begin_near_walk(&walk, thing->index, thing->chosen, thing->point,
-                        find_limit_key((float)find_least(best->distance, (double)FARTHEST))))
-        while (find_next_near(&walk, &body)) {
-            if (find_owner(thing->chosen, body) != thing->owner || !is_chosen(thing->chosen, body) ||
-                !load_body_frame(thing->shapes, thing->bodies, body, &frame) || narc_is_piece(frame.header))
+    struct near_walk walk;
+    *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
+    if (load_body_frame(thing->shapes, thing->bodies, part, &frame)) /* often its feet lie outside */
+        look_at_feet(thing, &frame, part, out);
+    for (int crossings = 0; crossings < 2; crossings++) { /* all feet first, which bring the limit nearer */
+        if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point,
+                             find_limit_key((float)find_least(out->distance, (double)FARTHEST))))
+            break;
+        while (find_next_near(&walk, &part)) {
+            if (find_owner(thing->chosen, part) != thing->owner || !is_chosen(thing->chosen, part) ||
+                !load_body_frame(thing->shapes, thing->bodies, part, &frame) || narc_is_piece(frame.header))
                 continue;
             if (crossings)
-                look_at_crossings(thing, &frame, body, best);
+                look_at_crossings(thing, &frame, part, out);
             else
-                look_at_feet(thing, &frame, body, best);
-            walk.limit_key = find_limit_key((float)find_least(best->distance, (double)FARTHEST));
+                look_at_feet(thing, &frame, part, out);
+            walk.limit_key = find_limit_key((float)find_least(out->distance, (double)FARTHEST));
         }
-}
-
-/* The nearest place outside of a point in a thing. False if none is found. */
-NOINLINE bool find_way_out(const struct thing *thing, struct way_out *out) {
-    *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
-    look_at_parts(thing, false, out);
-    look_at_parts(thing, true, out);
+    }
     return out->distance < INFINITY;
 }
 
