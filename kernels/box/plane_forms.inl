@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * plane_forms.inl - pairs of a half-plane and a shape that has a form: they wait in the queues of boxes and of circles, where
- * the half-plane is a box of no height, whose edge at +y is the boundary (base/planes.inl).
+ * plane_forms.inl - pairs of a half-plane and a shape that has a form: they wait in the queues of boxes, capsules and
+ * circles, where the half-plane is a box of no height, whose edge at +y is the boundary (base/planes.inl).
  *
  * What they touch along is the boundary's normal, for certain: the box is wider than four times what the other body and its
  * height are together, so that the gap falls off on both sides of it by more than that, whatever is rounded. Of the other body
  * the edge counts that is nearest to it, or the only point of a circle. Where two edges of a box are equally near, or a side is
- * no longer than rounding, the pair is left to the search.
+ * no longer than rounding, and where a capsule stands upright, the pair is left to the search. docs/algorithm.md, section 9.
  */
 #ifndef NARC_BOX_PLANE_FORMS_INL
 #define NARC_BOX_PLANE_FORMS_INL
@@ -20,6 +20,7 @@
 #include "base/question.inl"
 #include "base/vec2.inl"
 #include "box/box_pairs.inl"
+#include "box/capsules.inl"
 #include "box/circles.inl"
 #include "kernels.h"
 #include "simd/simd.h"
@@ -64,23 +65,11 @@ INLINE void take_circles_at_planes(const struct call *call, const struct plane_p
         push_circles(&pair, near, number, ANY_CIRCLES, queue);
 }
 
-/* Returns those that it took of the pairs in the lanes `which`. */
-INLINE vm take_boxes_at_planes(const struct call *call, const struct plane_pairs *p, vm which, int32_t number,
-                               struct box_queue *queue) {
+INLINE void push_at_planes(const struct plane_pairs *p, vm near, vi code, int32_t number, struct box_queue *queue) {
     const struct pose *const pose = &p->placement.pose;
-    const vec2 q = pose->rotation;
-    const vm of_a = p->of_a, crossed = v_lt(v_abs(q.x), v_abs(q.y)),
-             nearer = vm_or(crossed, v_lt(v_abs(q.y), v_abs(q.x)));
-    const vm longer = v_lt(v_add(p->slack, p->slack), v_min(p->half.x, p->half.y));
-    const vm taken = vm_and(which, vm_and(nearer, longer)), near = find_near_planes(call, p, taken, number);
-    if (!vm_any(near))
-        return taken;
-    const vf down_x = v_select(of_a, v_neg(q.y), q.y), down_y = v_neg(q.x); /* the boundary's normal, turned round */
-    const vi boundary = vi_set(1), edge = find_edge_number(crossed, v_lt(v_select(crossed, down_x, down_y), v_set(0)));
-    const vi edges = vi_add(vi_select(of_a, boundary, edge), vi_shift_left(vi_select(of_a, edge, boundary), 2));
     vf item[BOX_FIELDS];
     set_vec2(item, BOX_POSITION, pose->position);
-    set_vec2(item, BOX_ROTATION, q);
+    set_vec2(item, BOX_ROTATION, pose->rotation);
     set_vec2(item, BOX_ROTATION_A, p->placement.rotation_a);
     set_vec2(item, BOX_HALF_A, v2_scale(p->a.half, pose->scale_a));
     set_vec2(item, BOX_HALF_B, p->b.half);
@@ -88,13 +77,52 @@ INLINE vm take_boxes_at_planes(const struct call *call, const struct plane_pairs
     item[BOX_RADIUS_A] = v_mul(p->a.radius, pose->scale_a);
     item[BOX_RADIUS_B] = v_mul(p->b.radius, pose->scale_b);
     item[BOX_SLACK] = p->slack;
-    item[BOX_CODE] = v_of_bits(vi_add(edges, find_first_arcs(&p->a, &p->b)));
+    item[BOX_CODE] = v_of_bits(code);
     item[BOX_PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
     push_boxes(queue, near, item, BOX_FIELDS);
+}
+
+/* Returns those that it took of the pairs in the lanes `which`. */
+INLINE vm take_boxes_at_planes(const struct call *call, const struct plane_pairs *p, vm which, int32_t number,
+                               struct box_queue *queue) {
+    const vec2 q = p->placement.pose.rotation;
+    const vf c = v_abs(q.x), s = v_abs(q.y);
+    const vm of_a = p->of_a, crossed = v_lt(c, s), nearer = vm_or(crossed, v_lt(s, c));
+    const vm longer = v_lt(v_add(p->slack, p->slack), v_min(p->half.x, p->half.y));
+    const vm taken = vm_and(which, vm_and(nearer, longer)), near = find_near_planes(call, p, taken, number);
+    const vf down_x = v_select(of_a, v_neg(q.y), q.y); /* the boundary's normal, turned round */
+    const vf down = v_select(crossed, down_x, v_neg(q.x));
+    const vi boundary = vi_set(1), edge = find_edge_number(crossed, v_lt(down, v_set(0)));
+    const vi edges = vi_add(vi_select(of_a, boundary, edge), vi_shift_left(vi_select(of_a, edge, boundary), 2));
+    if (vm_any(near))
+        push_at_planes(p, near, vi_add(edges, find_first_arcs(&p->a, &p->b)), number, queue);
     return taken;
 }
 
-/* Takes pairs of a half-plane and a circle or a box, in the lanes `which`. Returns those that it took. */
+/* The same of capsules (capsules.inl). The end that counts is that behind both edges' normals, or between them, in their
+ * order as the formula has it. */
+INLINE vm take_capsules_at_planes(const struct call *call, const struct plane_pairs *p, vm which, int32_t number,
+                                  struct box_queue *queue) {
+    const vec2 q = p->placement.pose.rotation;
+    const vf zero = v_set(0), one = v_set(1);
+    const vm of_a = p->of_a, crossed = vm_not(v_lt(v_set(0x1p-7f), v_abs(q.x)));
+    const vm longer = v_lt(v_add(p->slack, p->slack), p->half.x);
+    const vm taken = vm_and_not(vm_and(which, longer), crossed), near = find_near_planes(call, p, taken, number);
+    if (!vm_any(near))
+        return taken;
+    const vm below = v_lt(zero, q.x); /* the edge at -y faces the boundary */
+    const vf sign = v_select(below, v_set(-1), one);
+    const vec2 normal_b = {v_select(of_a, v_mul(p->b.half.y, sign), zero), v_select(of_a, sign, one)};
+    const vm a_first =
+        v_lt(v_select(vm_and_not(below, of_a), v_set(3), one), find_diamond_angle(v2_rotate_opposite(q, normal_b)));
+    const vi first = vi_and(vi_select(of_a, vi_shift_left(p->b.info, 6), vi_shift_left(p->a.info, 4)), vi_set(0x50));
+    vi code = vi_add(first, choose_bit(vm_not(of_a), EDGE_OF_B));
+    code = vi_add(code, choose_bit(vm_not(vm_xor(a_first, below)), EDGE_TILTED));
+    push_at_planes(p, near, code, number, queue);
+    return taken;
+}
+
+/* Takes pairs of a half-plane and a circle, a box or a capsule, in the lanes `which`. Returns those that it took. */
 NOINLINE vm take_planes(const struct call *call, const struct pair_indices *in, int k,
                         const struct placement *placement, vm which, int32_t number) {
     const narc_shapes *const shapes = call->batch->shapes;
@@ -130,11 +158,15 @@ NOINLINE vm take_planes(const struct call *call, const struct pair_indices *in, 
     const vm known = vm_and(asked, vm_and(laid.known, sizes));
     const vm circles = vm_and(known, vi_lt(vi_set((int32_t)NARC_IS_CIRCLE - 1), info));
     const vm boxes = vm_and(known, vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)NARC_IS_BOX))));
+    const vm capsules = vm_and(known, vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)NARC_IS_CAPSULE))));
     if (vm_any(circles))
         take_circles_at_planes(call, &p, circles, number, &call->boxes[WITH_CIRCLE]);
-    if (!vm_any(boxes))
-        return circles;
-    return vm_or(circles, take_boxes_at_planes(call, &p, boxes, number, &call->boxes[OF_BOXES]));
+    vm taken = circles;
+    if (vm_any(boxes))
+        taken = vm_or(taken, take_boxes_at_planes(call, &p, boxes, number, &call->boxes[OF_BOXES]));
+    if (vm_any(capsules))
+        taken = vm_or(taken, take_capsules_at_planes(call, &p, capsules, number, &call->boxes[OF_CAPSULES]));
+    return taken;
 }
 
 #endif
