@@ -47,6 +47,10 @@ struct curve {
 /* What lies on a curve may be so far beyond its ends. */
 #define END_ROOM_OF_CURVES 0x1p-20
 
+/* And rounding takes a place on it nearer by this part of the numbers it is found from: of places as near as each other all
+ * are looked at, whichever comes first. */
+#define ROUNDING_OF_CURVES 0x1p-45
+
 INLINE place see_place(const struct thing *thing, const struct body_frame *frame, place own) {
     const place turned = turn_to_world(frame, own);
     return (place){frame->position.x - thing->point.x + frame->scale * turned.x,
@@ -80,6 +84,7 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
             out->distance =
                 sqrt(find_least(find_dot(first, first), find_dot(last, last))) - 2 * END_ROOM_OF_CURVES * radius;
         }
+        out->distance -= ROUNDING_OF_CURVES * (away + radius);
         return radius > 0;
     }
     if (round || !is_edge_before(frame, k))
@@ -97,6 +102,7 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     *out = (struct curve){from, start, along, INFINITY, length, height, out->feature, false};
     if (beside > 0)
         out->distance = sqrt(height * height + beside * beside);
+    out->distance -= ROUNDING_OF_CURVES * (fabs(before_start) + length + height);
     return length > 0;
 }
 
@@ -220,7 +226,7 @@ NOINLINE void look_at_crossings(const struct thing *thing, const struct body_fra
         around = see_place(thing, frame, (place){(double)frame->header->bound_x, (double)frame->header->bound_y});
     struct part_walk others = begin_part_walk(thing->index, thing->chosen, thing->owner,
                                               (place){thing->point.x + around.x, thing->point.y + around.y},
-                                              find_least(radius, best->distance));
+                                              find_least(radius, best->distance * (1 + 0x1p-20)));
     struct body_frame other;
     uint32_t next;
     while (find_next_part(&others, thing->shapes, thing->bodies, &next, &other)) {

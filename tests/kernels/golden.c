@@ -391,7 +391,7 @@ TEST(test_scenes) {
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
         {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
-        {"points and things", hash_points, 1, {0x9cfc56f9d9095a29u, 0x9219f23e0c618f85u}},
+        {"points and things", hash_points, 1, {0xab1b4323666ba7fbu, 0xf9694a44c4527c2au}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},
