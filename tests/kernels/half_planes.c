@@ -217,7 +217,6 @@ TEST(contacts_are_those_of_a_boundary_without_end) {
     assert_true(touching > 0 && (test_trials(150) < 10 || two_points > test_trials(150)));
 }
 
-/* Deeper than 1e12 there is no answer, and none of broken numbers; two half-planes have no contact. */
 /* Boxes, circles and capsules beside each other and at half-planes, in any order: what a list has of a pair is its answer alone. */
 TEST(lists_of_all_kinds_have_the_answers_of_each_pair) {
     enum { BODIES = 64, LISTED = 300 };
@@ -267,6 +266,7 @@ TEST(lists_of_all_kinds_have_the_answers_of_each_pair) {
     narc_destroy_shapes(shapes);
 }
 
+/* Deeper than 1e12 there is no answer, and none of broken numbers; two half-planes have no contact. */
 TEST(what_has_no_answer) {
     narc_shapes *const shapes = empty_store();
     narc_error error;
