@@ -108,6 +108,33 @@ INLINE vm are_forms(const struct box_form *a, const struct box_form *b, uint32_t
     return vi_lt(vi_set(0), vi_and(vi_and(a->info, b->info), vi_set((int32_t)kind)));
 }
 
+/* Sets the bits of the pairs in the lanes `deep`, which overlap for certain, where nothing else is asked for; returns the
+ * others of `near`. */
+INLINE vm settle_overlaps(const struct call *call, int32_t number, vm near, vm deep) {
+    const vm settled = vm_and(near, deep);
+    call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(settled) << (uint32_t)number % 64;
+    return vm_and_not(near, settled);
+}
+
+/* Puts pairs of two boxes or capsules into the queue: those in the lanes `near`. `half_b` is not scaled. */
+INLINE void push_forms(const struct placement *placement, vec2 half_a, vec2 half_b, vf radius_a, vf radius_b, vf slack,
+                       vi code, vm near, int32_t number, struct box_queue *queue) {
+    const struct pose *const pose = &placement->pose;
+    vf item[BOX_FIELDS];
+    set_vec2(item, BOX_POSITION, pose->position);
+    set_vec2(item, BOX_ROTATION, pose->rotation);
+    set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
+    set_vec2(item, BOX_HALF_A, half_a);
+    set_vec2(item, BOX_HALF_B, half_b);
+    item[BOX_SCALE_B] = pose->scale_b;
+    item[BOX_RADIUS_A] = radius_a;
+    item[BOX_RADIUS_B] = radius_b;
+    item[BOX_SLACK] = slack;
+    item[BOX_CODE] = v_of_bits(code);
+    item[BOX_PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
+    push_boxes(queue, near, item, BOX_FIELDS);
+}
+
 /* Takes pairs of two boxes, in the lanes `which`: puts those that may have a contact into the queue. Returns the lanes
  * that it took. */
 INLINE vm take_boxes(const struct call *call, const struct box_form *a, const struct box_form *b,
@@ -136,11 +163,8 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
     const vm sizes = vm_and(is_box_in_range(size_a), is_box_in_range(size_b));
     const vm taken = vm_and(which, vm_and(sizes, v_lt(two, least)));
     vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
-    if (call->bits) { /* nothing but overlaps is asked for */
-        const vm deep = vm_and(near, v_lt(best, v_neg(slack)));
-        call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
-        near = vm_and_not(near, deep);
-    }
+    if (call->bits)
+        near = settle_overlaps(call, number, near, v_lt(best, v_neg(slack)));
     if (vm_any(near)) {
         /* The edges, and on which side: as the better of the two values has it. */
         const vm a_on_x = v_le(along_y, along_x), b_on_x = vm_xor(a_on_x, crossed);
@@ -158,23 +182,11 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         const vm nearer = vm_or(crossed, v_lt(s, c)); /* or else two edges of B are equally near */
         const vm certain = vm_and(nearer, vm_or(v_lt(two, best), v_lt(two, v_sub(best, others))));
 
-        const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi edges =
             vi_add(find_edge_number(a_on_x, negative_a), vi_shift_left(find_edge_number(b_on_x, vm_not(back_b)), 2));
         const vi tie = vi_select(certain, vi_set(0), vi_set(BOX_TIE));
-        vf item[BOX_FIELDS];
-        set_vec2(item, BOX_POSITION, t);
-        set_vec2(item, BOX_ROTATION, q);
-        set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
-        set_vec2(item, BOX_HALF_A, half_a);
-        set_vec2(item, BOX_HALF_B, b->half);
-        item[BOX_SCALE_B] = pose->scale_b;
-        item[BOX_RADIUS_A] = radius_a;
-        item[BOX_RADIUS_B] = radius_b;
-        item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, find_first_arcs(a, b)), tie));
-        item[BOX_PAIR] = v_of_bits(pairs);
-        push_boxes(queue, near, item, BOX_FIELDS);
+        push_forms(placement, half_a, b->half, radius_a, radius_b, slack,
+                   vi_add(vi_add(edges, find_first_arcs(a, b)), tie), near, number, queue);
     }
     return taken;
 }

@@ -59,9 +59,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
         const vec2 between = v2_add(r, v2_scale(q, along));
         const vf core = v_max(v_sub(radii, two), zero);
         const vm close = v_lt(v2_dot(between, between), v_mul(core, core));
-        const vm deep = vm_and(near, vm_or(v_lt(across, v_neg(slack)), close));
-        call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
-        near = vm_and_not(near, deep);
+        near = settle_overlaps(call, number, near, vm_or(v_lt(across, v_neg(slack)), close));
     }
     if (vm_any(near)) {
         const vm by_b = v_lt(across_a, across_b);
@@ -74,22 +72,10 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
         code = vi_add(code, vi_select(by_b, vi_set(EDGE_OF_B), vi_set(0)));
         code = vi_add(code, vi_select(negative, vi_set(EDGE_NEGATIVE), vi_set(0)));
         code = vi_add(code, vi_select(tilted, vi_set(EDGE_TILTED), vi_set(0)));
-        const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi first =
             vi_add(vi_shift_left(vi_and(a->info, vi_set(1)), 4), vi_shift_left(vi_and(b->info, vi_set(1)), 6));
-        vf item[BOX_FIELDS];
-        set_vec2(item, BOX_POSITION, t);
-        set_vec2(item, BOX_ROTATION, q);
-        set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
-        set_vec2(item, BOX_HALF_A, (vec2){half_a, a->half.y});
-        set_vec2(item, BOX_HALF_B, b->half);
-        item[BOX_SCALE_B] = pose->scale_b;
-        item[BOX_RADIUS_A] = radius_a;
-        item[BOX_RADIUS_B] = radius_b;
-        item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(vi_add(code, first));
-        item[BOX_PAIR] = v_of_bits(pairs);
-        push_boxes(queue, near, item, BOX_FIELDS);
+        push_forms(placement, (vec2){half_a, a->half.y}, b->half, radius_a, radius_b, slack, vi_add(code, first), near,
+                   number, queue);
     }
     return taken;
 }

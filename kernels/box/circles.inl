@@ -86,9 +86,7 @@ INLINE vm settle_deep(const struct call *call, int32_t number, vm near, vf squar
     if (!call->bits)
         return near;
     const vf core = v_max(v_sub(radii, two), v_set(0));
-    const vm deep = vm_and(near, v_lt(square, v_mul(core, core)));
-    call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
-    return vm_and_not(near, deep);
+    return settle_overlaps(call, number, near, v_lt(square, v_mul(core, core)));
 }
 
 /* Two circles; see judge_circles(): the same values. */

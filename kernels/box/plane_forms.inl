@@ -37,11 +37,7 @@ struct plane_pairs {
 /* Those that may have a contact of the pairs that are taken. */
 INLINE vm find_near_planes(const struct call *call, const struct plane_pairs *p, vm taken, int32_t number) {
     const vm near = vm_and_not(taken, v_lt(v_add(p->placement.margin, p->slack), p->gap));
-    if (!call->bits)
-        return near;
-    const vm deep = vm_and(near, v_lt(p->gap, v_neg(p->slack)));
-    call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
-    return vm_and_not(near, deep);
+    return call->bits ? settle_overlaps(call, number, near, v_lt(p->gap, v_neg(p->slack))) : near;
 }
 
 INLINE void take_circles_at_planes(const struct call *call, const struct plane_pairs *p, vm taken, int32_t number,
@@ -67,19 +63,8 @@ INLINE void take_circles_at_planes(const struct call *call, const struct plane_p
 
 INLINE void push_at_planes(const struct plane_pairs *p, vm near, vi code, int32_t number, struct box_queue *queue) {
     const struct pose *const pose = &p->placement.pose;
-    vf item[BOX_FIELDS];
-    set_vec2(item, BOX_POSITION, pose->position);
-    set_vec2(item, BOX_ROTATION, pose->rotation);
-    set_vec2(item, BOX_ROTATION_A, p->placement.rotation_a);
-    set_vec2(item, BOX_HALF_A, v2_scale(p->a.half, pose->scale_a));
-    set_vec2(item, BOX_HALF_B, p->b.half);
-    item[BOX_SCALE_B] = pose->scale_b;
-    item[BOX_RADIUS_A] = v_mul(p->a.radius, pose->scale_a);
-    item[BOX_RADIUS_B] = v_mul(p->b.radius, pose->scale_b);
-    item[BOX_SLACK] = p->slack;
-    item[BOX_CODE] = v_of_bits(code);
-    item[BOX_PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
-    push_boxes(queue, near, item, BOX_FIELDS);
+    push_forms(&p->placement, v2_scale(p->a.half, pose->scale_a), p->b.half, v_mul(p->a.radius, pose->scale_a),
+               v_mul(p->b.radius, pose->scale_b), p->slack, code, near, number, queue);
 }
 
 /* Returns those that it took of the pairs in the lanes `which`. */
