@@ -367,12 +367,12 @@ test_dem_with_sanitizers() {
     ASAN_OPTIONS=detect_stack_use_after_return=1:handle_sigill=2 test_app dem-asan -LE slow
 }
 
-# More ranks than cores are fine for tests.
+# More ranks than cores are fine for tests. Options are ctest's.
 test_lammps() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
         OMP_NUM_THREADS=1
     build_app lammps lammps
-    test_app lammps
+    test_app lammps "$@"
 }
 
 # The largest difference of numbers in two dumps, which is at most 1e-6 of a grain's diameter.
@@ -494,7 +494,7 @@ gate_beside() {
     check_some bare "" "narc narc_static narc_methods narc_methods_static example_world"
     skipped=
     if optional_packages $lammps_packages; then
-        test_lammps
+        test_lammps -LE slow
     else
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
     fi
@@ -522,7 +522,7 @@ gate() {
     trap 'exit 1' INT TERM HUP
     build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
-    test_app dem
+    test_app dem -E '^dem_case_(pile|hopper)$' # `dem cases` has them at full length
     # With so few trials the kernels' are those that the first half has run.
     NARC_TEST_TRIALS="$few_trials" ctest --preset ci -L 'slow|bench' \
         -E '^(package_meson_subproject|(broad_phase|rays|casts|thin_bodies|follow|ground_casts)_all)$' || fail "tests failed in build/ci"

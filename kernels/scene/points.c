@@ -10,7 +10,6 @@
  * u is taken from the middle of the shape's bounding circle, where p is placed in double precision. So it has no error
  * but that in proportion to the body's own size and the distance to it.
  */
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -26,6 +25,7 @@
 #include "kernels.h"
 #include "scene/body_frame.inl"
 #include "scene/concave.inl"
+#include "scene/near_walk.inl"
 #include "scene/piece_places.inl"
 #include "scene/things.inl"
 #include "scene/way_out.inl"
@@ -358,89 +358,18 @@ void NARC_NAMED(inside)(const narc_point_batch *batch, size_t first, size_t end,
 
 /* ------------------------------------------------------------------------------------------------ nearest */
 
-/* Boxes and the values that are compared with them leave room for the rounding of separations, so that the answer
- * does not depend on which boxes lie around a body: a separation is within 6 e d + 600 e R of that of the stored
- * arcs, d the distance to the box, R the radius of the smallest circle around the body. A centre is at most 65 R
- * from its middle, and a radius at most 64 R. R is below 0.6 of the box's width and height together. BOX_ROOM is
- * three times that, KEY_ROOM some 20 times: of a square. */
-#define BOX_ROOM 0x1p-14f
-#define KEY_ROOM 0x1p-16f
-
-/* All separations are less: further away no body has an answer. */
-#define FARTHEST 1.5e17f
-
-enum { KEYS = V_WIDTH > NARC_NODE_SLOTS ? V_WIDTH : NARC_NODE_SLOTS, SLOT_BITS = NARC_NODE_SLOTS - 1 };
-
-/* A node on the way, and the keys of its slots, each with the number of its slot in the lowest bits; infinite where
- * there is nothing to look at, or no more. */
-struct step {
-    float key[KEYS];
-    uint32_t node;
-};
-
 /* A point's search. */
 struct search {
     const narc_point_batch *batch;
     place point;
-    float x, y, room; /* the point in the index' coordinates, in single precision, and what that may be off by */
     struct chosen chosen;
+    struct near_walk walk;
     narc_distance
         *rows; /* the nearest so far, in their order: body and separation; all, with a count, of things that hold it */
     size_t found;
     float limit; /* of a separation that still counts */
-    float reach,
-        limit_key; /* of one that is looked at: a part that holds the point tells of a thing that may be deeper */
+    float reach; /* of one that is looked at: a part that holds the point tells of a thing that may be deeper */
 };
-
-/* Squares keep the order if those of negative values are negative. What is added last is far below any square that a
- * body's size makes, and above what a slot's number makes of 0. */
-INLINE float find_limit_key(float separation) {
-    const float key = separation * fabsf(separation);
-    return key + fabsf(key) * KEY_ROOM + 0x1p-120f;
-}
-
-/* Below the key of any separation, and still finite with a slot's number in its lowest bits. */
-#define LEAST_KEY (-0x1p126f)
-
-/* Lower bounds of the separations in a node's slots, as keys: within a box the distance to its nearest side, negative,
- * outside the distance to the box; infinite, or NaN, for empty slots and those that are too far away. Of a box that a
- * body far away has made large the square may be more than any float. */
-INLINE vf find_keys(const struct search *search, const narc_index_node *node, int k) {
-    const vf zero = v_set(0), at_x = v_set(search->x), at_y = v_set(search->y);
-    const vf min_x = v_load(node->min_x + k), max_x = v_load(node->max_x + k);
-    const vf min_y = v_load(node->min_y + k), max_y = v_load(node->max_y + k);
-    const vf size = v_add(v_sub(max_x, min_x), v_sub(max_y, min_y));
-    const vf room = v_add(v_mul(size, v_set(BOX_ROOM)), v_set(search->room));
-    const vf x = v_sub(v_max(v_sub(min_x, at_x), v_sub(at_x, max_x)), room);
-    const vf y = v_sub(v_max(v_sub(min_y, at_y), v_sub(at_y, max_y)), room);
-    const vf depth = v_max(x, y);
-    const vec2 outside = {v_max(x, zero), v_max(y, zero)};
-    return v_max(v_set(LEAST_KEY), v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth))));
-}
-
-INLINE void enter_node(const struct search *search, unsigned level, uint32_t node, struct step *step) {
-    const narc_index *const index = search->batch->index;
-    const size_t at = index->first_node[level] + (size_t)node;
-    const vf limit = v_set(search->limit_key), none = v_set(INFINITY);
-    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
-        const vf key = find_keys(search, &index->nodes[at], k);
-        const vi slot = vi_add(vi_lanes(), vi_set(k)), front = vi_and(vi_bits(key), vi_set(~SLOT_BITS));
-        v_store(step->key + k, v_select(v_le(key, limit), v_of_bits(vi_add(front, slot)), none));
-    }
-    step->node = node;
-    const uint32_t slots = mask_slots(index, at, UINT8_MAX, &search->chosen);
-    for (unsigned k = 0; k < NARC_NODE_SLOTS && slots != UINT8_MAX; k++)
-        if (!(slots >> k & 1))
-            step->key[k] = INFINITY;
-}
-
-INLINE float find_lower(float a, float b) { return a < b ? a : b; }
-
-/* The least of a node's keys. */
-INLINE float find_least_key(const float *key) {
-    const float low = find_lower(find_lower(key[0], key[1]), find_lower(key[2], key[3]));
-    return find_lower(low, find_lower(find_lower(key[4], key[5]), find_lower(key[6], key[7])));
-}
 
 INLINE bool is_nearer(uint32_t body, float separation, const narc_distance *row) {
     return separation < row->separation || (separation == row->separation && body < row->body);
@@ -449,7 +378,7 @@ INLINE bool is_nearer(uint32_t body, float separation, const narc_distance *row)
 INLINE void set_limit(struct search *search, float limit) {
     search->limit = limit;
     search->reach = search->chosen.owners && limit < 0 ? 0 : limit;
-    search->limit_key = find_limit_key(search->reach);
+    search->walk.limit_key = find_limit_key(search->reach);
 }
 
 /* Puts a body among the nearest ones if it belongs there: of a thing the nearest part alone. `whole`: its row, or NULL. */
@@ -484,8 +413,10 @@ NOINLINE void add_thing(struct search *search, uint32_t body, float separation) 
     struct way_out out;
     struct body_frame frame;
     narc_distance row = {.body = body, .separation = separation};
-    if (find_way_out(&thing, -(double)separation, &out) &&
-        load_body_frame(batch->shapes, batch->bodies, out.body, &frame))
+    for (size_t k = 0; k < search->found; k++)
+        if (search->rows[k].count && find_owner(&search->chosen, search->rows[k].body) == thing.owner)
+            return; /* by another part */
+    if (find_way_out(&thing, body, &out) && load_body_frame(batch->shapes, batch->bodies, out.body, &frame))
         row = (narc_distance){.body = out.body,
                               .feature = (uint16_t)out.feature,
                               .count = 1,
@@ -549,48 +480,23 @@ INLINE void ask_nearest(const struct search *search, size_t point, struct point_
     }
 }
 
-/* Goes through the index, at each node to the nearest slot first. */
-static void find_nearest(struct search *search) {
-    const narc_index *const index = search->batch->index;
-    struct step steps[NARC_INDEX_LEVELS];
-    const unsigned top = index->level_count - 1;
-    enter_node(search, top, 0, &steps[top]);
-    for (unsigned level = top; level <= top;) {
-        struct step *const step = &steps[level];
-        const float least = find_least_key(step->key);
-        if (!(least <= search->limit_key)) {
-            level++;
-            continue;
-        }
-        uint32_t bits;
-        memcpy(&bits, &least, sizeof bits);
-        const uint32_t slot = bits & SLOT_BITS, below = NARC_NODE_SLOTS * step->node + slot;
-        step->key[slot] = INFINITY;
-        if (level == 0) {
-            look_at_body(search, index->body[below]);
-        } else {
-            level--;
-            enter_node(search, level, below, &steps[level]);
-        }
-    }
-}
-
 void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end) {
     const narc_index_query *const query = batch->search;
     struct point_queries waiting;
     waiting.count = 0;
     for (size_t k = first; k < end; k++) {
-        struct search search = {.batch = batch, .point = load_point(batch->points, k), .chosen = read_chosen(query, k)};
-        const narc_point *const origin = &batch->index->origin;
-        const place at = {search.point.x - origin->x, search.point.y - origin->y};
-        search.x = (float)at.x;
-        search.y = (float)at.y;
-        search.room = (float)((fabs(at.x - (double)search.x) + fabs(at.y - (double)search.y)) * 1.001);
+        struct search search;
+        search.batch = batch;
+        search.point = load_point(batch->points, k);
+        search.chosen = read_chosen(query, k);
+        search.found = 0;
         search.rows = batch->out + k * batch->most;
         set_limit(&search, -find_lower(FARTHEST, -find_lower(FARTHEST, batch->distance)));
-        const bool has_answer = fabsf(search.x) <= FLT_MAX && fabsf(search.y) <= FLT_MAX; /* or all boxes are too far */
-        if (batch->index->level_count > 0 && search.chosen.mask != 0 && has_answer)
-            find_nearest(&search);
+        uint32_t body;
+        if (batch->index->level_count > 0 && search.chosen.mask != 0 &&
+            begin_near_walk(&search.walk, batch->index, &search.chosen, search.point, search.walk.limit_key))
+            while (find_next_near(&search.walk, &body))
+                look_at_body(&search, body);
         ask_nearest(&search, k, &waiting);
     }
     answer(batch->shapes, &waiting);

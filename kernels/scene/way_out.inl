@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "scene/body_frame.inl"
+#include "scene/near_walk.inl"
 #include "scene/part_walk.inl"
 
 /* A thing, and the point. */
@@ -46,10 +47,21 @@ struct curve {
 /* What lies on a curve may be so far beyond its ends. */
 #define END_ROOM_OF_CURVES 0x1p-20
 
+/* And rounding takes a place on it nearer by this part of the numbers it is found from: of places as near as each other all
+ * are looked at, whichever comes first. */
+#define ROUNDING_OF_CURVES 0x1p-45
+
 INLINE place see_place(const struct thing *thing, const struct body_frame *frame, place own) {
     const place turned = turn_to_world(frame, own);
     return (place){frame->position.x - thing->point.x + frame->scale * turned.x,
                    frame->position.y - thing->point.y + frame->scale * turned.y};
+}
+
+/* By their crosses an arc of next to nothing holds the opposite of its normals, too; of half a turn the dots add up to 0. */
+INLINE bool is_on_arc(const struct curve *arc, place n) {
+    const double room = END_ROOM_OF_CURVES;
+    return arc->round || (find_cross(arc->start, n) >= -room && find_cross(n, arc->end) >= -room &&
+                          find_dot(arc->start, n) + find_dot(n, arc->end) > -1);
 }
 
 /* Curve 2k of a part is its arc k, and 2k + 1 the edge before that. False if there is none. */
@@ -63,10 +75,16 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     out->feature = find_feature_number(frame->header, k, is_edge);
     out->round = round;
     if (!is_edge) {
-        *out =
-            (struct curve){center,       start, turn_to_world(frame, (place){(double)arc->end_x, (double)arc->end_y}),
-                           radius,       0,     fabs(sqrt(find_dot(center, center)) - radius),
-                           out->feature, round};
+        const place end = turn_to_world(frame, (place){(double)arc->end_x, (double)arc->end_y});
+        const double away = sqrt(find_dot(center, center));
+        *out = (struct curve){center, start, end, radius, 0, fabs(away - radius), out->feature, round};
+        if (!is_on_arc(out, (place){-center.x / away, -center.y / away})) {
+            const place first = {center.x + radius * start.x, center.y + radius * start.y},
+                        last = {center.x + radius * end.x, center.y + radius * end.y};
+            out->distance =
+                sqrt(find_least(find_dot(first, first), find_dot(last, last))) - 2 * END_ROOM_OF_CURVES * radius;
+        }
+        out->distance -= ROUNDING_OF_CURVES * (away + radius);
         return radius > 0;
     }
     if (round || !is_edge_before(frame, k))
@@ -77,17 +95,15 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     const place from = {last.x + last_radius * start.x, last.y + last_radius * start.y},
                 way = {center.x + radius * start.x - from.x, center.y + radius * start.y - from.y};
     const double length = sqrt(find_dot(way, way));
-    *out = (struct curve){from,         start,  {way.x / length, way.y / length},
-                          INFINITY,     length, fabs(find_dot(from, start)),
-                          out->feature, false};
+    const place along = {way.x / length, way.y / length};
+    const double before_start = find_dot(from, along), behind_end = -before_start - length,
+                 beside = find_most(before_start, behind_end) - 2 * END_ROOM_OF_CURVES * length,
+                 height = fabs(find_dot(from, start));
+    *out = (struct curve){from, start, along, INFINITY, length, height, out->feature, false};
+    if (beside > 0)
+        out->distance = sqrt(height * height + beside * beside);
+    out->distance -= ROUNDING_OF_CURVES * (fabs(before_start) + length + height);
     return length > 0;
-}
-
-/* By their crosses an arc of next to nothing holds the opposite of its normals, too; of half a turn the dots add up to 0. */
-INLINE bool is_on_arc(const struct curve *arc, place n) {
-    const double room = END_ROOM_OF_CURVES;
-    return arc->round || (find_cross(arc->start, n) >= -room && find_cross(n, arc->end) >= -room &&
-                          find_dot(arc->start, n) + find_dot(n, arc->end) > -1);
 }
 
 /* Is a place on a curve's line or circle on the curve? */
@@ -120,7 +136,11 @@ NOINLINE bool is_way_out(const struct thing *thing, const struct body_frame *fra
 INLINE void take_way_out(const struct thing *thing, const struct body_frame *frame, uint32_t body, place at, place n,
                          place out, const struct curve *curve, bool is_corner, struct way_out *best) {
     const double distance = sqrt(find_dot(at, at));
-    const bool before = body < best->body || (body == best->body && curve->feature < best->feature);
+    const bool before =
+        body != best->body ? body < best->body
+        : curve->feature != best->feature
+            ? curve->feature < best->feature
+            : is_corner && best->radius == 0 && (at.x < best->at.x || (at.x == best->at.x && at.y < best->at.y));
     if ((distance < best->distance || (distance == best->distance && before)) && is_way_out(thing, frame, at, out))
         *best = (struct way_out){distance, at, n, body, curve->feature, is_corner ? 0 : curve->radius};
 }
@@ -191,54 +211,68 @@ INLINE place lead_out(const struct curve *a, const struct curve *b, place at) {
     return (place){by * sum.x, by * sum.y};
 }
 
-/* Where the outlines of two parts cross. */
-NOINLINE void look_at_crossings(const struct thing *thing, const struct body_frame *a, uint32_t body,
-                                const struct body_frame *b, struct way_out *best) {
-    for (int k = 0; k < 2 * (int)a->header->count; k++) {
-        struct curve one;
-        if (!see_curve(thing, a, k, &one) || one.distance > best->distance)
+/* Where the outline of a part crosses those of others with higher numbers. */
+NOINLINE void look_at_crossings(const struct thing *thing, const struct body_frame *frame, uint32_t body,
+                                struct way_out *best) {
+    struct curve own[2 * NARC_MAX_ARCS];
+    int count = 0;
+    for (int k = 0; k < 2 * (int)frame->header->count; k++)
+        count += see_curve(thing, frame, k, &own[count]) && own[count].distance <= best->distance;
+    if (count == 0)
+        return;
+    const double radius = frame->scale * (double)frame->header->bound_radius * (1 + 0x1p-12);
+    place around = {0, 0};
+    if (radius < best->distance)
+        around = see_place(thing, frame, (place){(double)frame->header->bound_x, (double)frame->header->bound_y});
+    struct part_walk others = begin_part_walk(thing->index, thing->chosen, thing->owner,
+                                              (place){thing->point.x + around.x, thing->point.y + around.y},
+                                              find_least(radius, best->distance * (1 + 0x1p-20)));
+    struct body_frame other;
+    uint32_t next;
+    while (find_next_part(&others, thing->shapes, thing->bodies, &next, &other)) {
+        if (next <= body || narc_is_piece(other.header))
             continue;
-        for (int i = 0; i < 2 * (int)b->header->count; i++) {
-            struct curve other;
-            place at[2];
-            if (!see_curve(thing, b, i, &other) || other.distance > best->distance)
+        for (int i = 0; i < 2 * (int)other.header->count; i++) {
+            struct curve curve;
+            if (!see_curve(thing, &other, i, &curve))
                 continue;
-            for (int found = cross_curves(&one, &other, at) - 1; found >= 0; found--) {
-                const double length = sqrt(find_dot(at[found], at[found]));
-                const place n = length > 0 ? (place){at[found].x / length, at[found].y / length} : one.start;
-                if (length <= best->distance && is_on_curve(&one, at[found]) && is_on_curve(&other, at[found]))
-                    take_way_out(thing, a, body, at[found], n, lead_out(&one, &other, at[found]), &one, true, best);
+            for (int k = 0; k < count && curve.distance <= best->distance; k++) {
+                place at[2];
+                if (own[k].distance > best->distance)
+                    continue;
+                for (int found = cross_curves(&own[k], &curve, at) - 1; found >= 0; found--) {
+                    const double length = sqrt(find_dot(at[found], at[found]));
+                    const place n = length > 0 ? (place){at[found].x / length, at[found].y / length} : own[k].start;
+                    if (length <= best->distance && is_on_curve(&own[k], at[found]) && is_on_curve(&curve, at[found]))
+                        take_way_out(thing, frame, body, at[found], n, lead_out(&own[k], &curve, at[found]), &own[k],
+                                     true, best);
+                }
             }
         }
     }
 }
 
-/* Looks at all parts that come as near as `reach`. */
-NOINLINE void look_for_way_out(const struct thing *thing, double reach, struct way_out *best) {
-    struct body_frame frame, other;
-    uint32_t body, next;
-    struct part_walk parts = begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, reach);
-    while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &frame))
-        if (!narc_is_piece(frame.header))
-            look_at_feet(thing, &frame, body, best);
-    parts = begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, reach);
-    while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &frame)) {
-        struct part_walk others =
-            begin_part_walk(thing->index, thing->chosen, thing->owner, thing->point, find_least(reach, best->distance));
-        while (!narc_is_piece(frame.header) && find_next_part(&others, thing->shapes, thing->bodies, &next, &other))
-            if (next > body && !narc_is_piece(other.header))
-                look_at_crossings(thing, &frame, body, &other, best);
-    }
-}
-
-/* The nearest place outside, of a point that is so deep in one of the parts. False if none is found. */
-NOINLINE bool find_way_out(const struct thing *thing, double depth, struct way_out *out) {
-    enum { DOUBLINGS = 24 };
+/* The nearest place outside of a point that lies in this part of a thing. False if none is found. */
+NOINLINE bool find_way_out(const struct thing *thing, uint32_t part, struct way_out *out) {
+    struct body_frame frame;
+    struct near_walk walk;
     *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
-    double reach = depth * (1 + 0x1p-10);
-    for (int k = 0; k < DOUBLINGS && !(out->distance <= reach); k++) {
-        reach *= k > 0 ? 2 : 1;
-        look_for_way_out(thing, reach, out);
+    if (load_body_frame(thing->shapes, thing->bodies, part, &frame)) /* often its feet lie outside */
+        look_at_feet(thing, &frame, part, out);
+    for (int crossings = 0; crossings < 2; crossings++) { /* all feet first, which bring the limit nearer */
+        if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point,
+                             find_limit_key((float)find_least(out->distance, (double)FARTHEST))))
+            break;
+        while (find_next_near(&walk, &part)) {
+            if (find_owner(thing->chosen, part) != thing->owner || !is_chosen(thing->chosen, part) ||
+                !load_body_frame(thing->shapes, thing->bodies, part, &frame) || narc_is_piece(frame.header))
+                continue;
+            if (crossings)
+                look_at_crossings(thing, &frame, part, out);
+            else
+                look_at_feet(thing, &frame, part, out);
+            walk.limit_key = find_limit_key((float)find_least(out->distance, (double)FARTHEST));
+        }
     }
     return out->distance < INFINITY;
 }

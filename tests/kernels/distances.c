@@ -533,4 +533,37 @@ TEST(test_depth_of_things) {
     assert_true(test_trials(24) < 10 || (deeper > 0 && corners > 0));
 }
 
+/* From a circle's centre all places where others cross it are as near: which one answers is not the tree's choice. */
+TEST(test_ties_of_things) {
+    enum { DISCS = 48, TREES = 2 };
+    struct test_random random = test_random_named("points, ties");
+    for (size_t trial = 0; trial < test_trials(100); trial++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 1, DISCS, 1);
+        const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1};
+        scene_add_shape(&scene, &disc);
+        for (size_t k = 0; k < DISCS; k++) {
+            const double far = k > 0 ? random_between(&random, 0, 1.2) : 0, angle = random_between(&random, -PI, PI);
+            struct body body = turned_body(0, random_between(&random, 0.5, 1.5));
+            body.x = far * cos(angle);
+            body.y = far * sin(angle);
+            scene_add_body(&scene, body);
+        }
+        const narc_bodies bodies = scene_bodies(&scene);
+        const uint32_t owner = 5;
+        const narc_owners owners = {.owner = {&owner, 0}};
+        const narc_nearest_options options = {.search.owners = &owners};
+        narc_distance rows[TREES][DISCS];
+        narc_box boxes[DISCS];
+        const narc_points points = {.count = DISCS, .x = bodies.x, .y = bodies.y};
+        for (uint32_t tree = 0; tree < TREES; tree++) {
+            narc_index *const index = index_bodies(scene.store, &bodies, &(narc_index_options){.fast = tree}, boxes);
+            assert_int_equal(narc_find_nearest(index, scene.store, &bodies, &points, &options, rows[tree], DISCS, NULL),
+                             NARC_OK);
+            narc_destroy_index(index);
+        }
+        assert_memory_equal(rows[0], rows[1], sizeof rows[0]);
+        destroy_scene(&scene);
+    }
+}
+
 TEST_MAIN("distances")
