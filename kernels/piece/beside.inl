@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "base/bodies.inl"
+#include "base/call.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -25,99 +26,72 @@
 
 /* A body with the form of a box, a capsule or a circle, in the frame of a run at world scale. */
 struct plain_body {
-    vec2 center, x_axis;
-    vf half_x, half_y, radius;
-    vm capsule;
+    vec2 center, x_axis; /* that is as long as the half side along it */
+    vec2 y_axis;
+    vf radius;
 };
 
-/* An end of a front: of the arc that turns from it to the closure. n is the normal before the closure, m that behind. */
-struct front_end {
-    vec2 place, n, m;
-};
-
-/* A run and another body in the lanes `which`. */
-struct body_beside {
-    vm is_a, edged, known; /* is the run A? Has the body the form of a box or a capsule; or is it a circle, too? */
-    struct ring ring;
-    vi first, last; /* arcs of the caller's: that which is stored first, and the last one of the front */
-    vi base;        /* the body's first record */
-    vf scale;
-    struct plain_body body;
-    struct front_end begin, end;
-};
-
-/* The record of the caller's arc of a number. */
-INLINE vi find_run_record(struct ring ring, vi first, vi number) {
-    const vi stored = vi_sub(number, first);
-    return vi_add(ring.base, vi_select(vi_lt(stored, vi_set(0)), vi_add(stored, ring.count), stored));
-}
-
-/* Other lanes have the first records of all, of which there are as many as a run has. */
-INLINE struct body_beside load_body_beside(const narc_shapes *shapes, vm which, const vf item[FIELDS]) {
-    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), zero = vi_set(0);
-    const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
-    const vm is_a = has_mark(info_a, NARC_PIECE_RUN);
-    const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
-    const struct ring ring = make_ring(vi_select(is_a, first_a, first_b), info);
-    const vec2 position = {item[POSITION], item[POSITION + 1]}, rotation = {item[ROTATION], item[ROTATION + 1]};
-    const vf other_scale = v_select(is_a, item[SCALE_B], item[SCALE_A]);
-    struct body_beside out = {.is_a = is_a,
-                              .ring = {vi_select(which, ring.base, zero), vi_select(which, ring.count, vi_set(6))},
-                              .first = vi_select(which, get_first_arc(info), zero),
-                              .base = find_first_arc(vi_select(is_a, first_b, first_a), other_info),
-                              .scale = v_select(is_a, item[SCALE_A], item[SCALE_B])};
-    vf form[4], begin[8], end[8];
-    int32_t index[V_WIDTH];
-    vi_store(index, get_item_bits(item, BODY_SHAPE));
-    v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
-    out.last = vi_sub(out.ring.count, vi_set(5));
-    load_records(shapes->records, find_run_record(out.ring, out.first, zero), begin);
-    load_records(shapes->records, find_run_record(out.ring, out.first, out.last), end);
-    const vi kind = vi_bits(form[3]);
-    const vm round = has_flag(other_info, NARC_SHAPE_CIRCLE);
-    out.edged = vi_lt(zero, vi_and(kind, vi_set((int32_t)(NARC_IS_BOX | NARC_IS_CAPSULE))));
-    out.known = vm_or(round, vi_lt(zero, kind));
-    out.body = (struct plain_body){.center = v2_select(is_a, position, v2_unrotate_opposite(rotation, position)),
-                                   .x_axis = {rotation.x, v_select(is_a, rotation.y, v_neg(rotation.y))},
-                                   .capsule = vi_lt(zero, vi_and(kind, vi_set((int32_t)NARC_IS_CAPSULE)))};
-    if (vm_any(round)) {
-        vf circle[4];
-        vi_store(index, out.base);
-        v_rows(shapes->records, sizeof *shapes->records, index, circle);
-        const vec2 offset = v2_scale((vec2){circle[0], circle[1]}, other_scale);
-        out.body.center =
-            v2_select(round, v2_add(out.body.center, v2_rotate(out.body.x_axis, offset)), out.body.center);
-        for (int f = 0; f < 3; f++)
-            form[f] = v_select(round, f < 2 ? v_set(0) : circle[2], form[f]);
-    }
-    out.body.half_x = v_mul(form[0], other_scale);
-    out.body.half_y = v_select(out.body.capsule, v_set(0), v_mul(form[1], other_scale));
-    out.body.radius = v_mul(form[2], other_scale);
-    out.begin =
-        (struct front_end){v2_scale((vec2){begin[0], begin[1]}, out.scale), {begin[6], begin[7]}, {begin[4], begin[5]}};
-    out.end = (struct front_end){v2_scale((vec2){end[0], end[1]}, out.scale), {end[4], end[5]}, {end[6], end[7]}};
-    return out;
-}
-
-INLINE vm is_beyond(const struct plain_body *body, const struct front_end *end, vec2 other_n, bool is_last, vf slack) {
+/* An end of a front: of the arc that turns from it to the closure. */
+INLINE vm is_beyond(const struct plain_body *body, vec2 end, vec2 n, vec2 m, vec2 other_n, bool is_last, vf slack) {
     const vf zero = v_set(0);
-    const vec2 n = end->n, axis = body->x_axis, way = v2_sub(body->center, end->place);
-    const vec2 corner = {v_select(v_lt(zero, v2_dot(axis, n)), v_neg(body->half_x), body->half_x),
-                         v_select(v_lt(zero, v2_cross(axis, n)), v_neg(body->half_y), body->half_y)};
-    const vec2 p = v2_add(way, v2_sub(v2_rotate(axis, corner), v2_scale(n, body->radius)));
+    const vf x_n = v2_dot(body->x_axis, n), y_n = v2_dot(body->y_axis, n);
+    const vf x_m = v_abs(v2_dot(body->x_axis, m)), y_m = v_abs(v2_dot(body->y_axis, m));
+    const vec2 way = v2_sub(body->center, end);
+    const vec2 x = v2_scale(body->x_axis, v_select(v_lt(zero, x_n), v_set(-1), v_set(1)));
+    const vec2 y = v2_scale(body->y_axis, v_select(v_lt(zero, y_n), v_set(-1), v_set(1)));
+    const vec2 p = v2_add(way, v2_sub(v2_add(x, y), v2_scale(n, body->radius)));
     const vf beyond = is_last ? v2_cross(n, p) : v2_cross(p, n);
-    const vf x_m = v_mul(body->half_x, v_abs(v2_dot(axis, end->m))),
-             y_m = v_mul(body->half_y, v_abs(v2_cross(axis, end->m)));
-    const vf along_m = v_sub(v2_dot(way, end->m), v_add(v_add(x_m, y_m), body->radius));
+    const vf along_m = v_sub(v2_dot(way, m), v_add(v_add(x_m, y_m), body->radius));
     const vf most = v_max(v2_dot(p, n), v2_dot(p, other_n));
     return vm_and(v_le(zero, beyond), v_lt(v_add(most, slack), along_m));
 }
 
 /* Of pairs in the lanes `open`, those that are not known to lie beside the front of a run. */
-INLINE vm drop_beside(const struct body_beside *pair, vm open, vf slack) {
-    const vm beyond = vm_or(is_beyond(&pair->body, &pair->begin, pair->end.n, false, slack),
-                            is_beyond(&pair->body, &pair->end, pair->begin.n, true, slack));
-    return vm_and_not(open, vm_and(pair->known, beyond));
+NOINLINE vm drop_beside(const struct call *call, vm open, const vf item[FIELDS]) {
+    const narc_shapes *const shapes = call->batch->shapes;
+    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B);
+    const vm is_a = has_mark(info_a, NARC_PIECE_RUN), run = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
+    if (!vm_any(vm_and(open, run)))
+        return open;
+    const vf zero = v_set(0), scale = v_select(is_a, item[SCALE_A], item[SCALE_B]);
+    const vf other_scale = v_select(is_a, item[SCALE_B], item[SCALE_A]);
+    const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
+    const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
+    const vi base = find_first_arc(vi_select(is_a, first_a, first_b), info), count = get_arc_count(info);
+    const vi other_base = find_first_arc(vi_select(is_a, first_b, first_a), other_info);
+    const vec2 position = {item[POSITION], item[POSITION + 1]}, rotation = {item[ROTATION], item[ROTATION + 1]};
+
+    vf form[4], circle[4], field[2][8];
+    int32_t index[V_WIDTH];
+    vi_store(index, get_item_bits(item, BODY_SHAPE));
+    v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
+    vi_store(index, other_base);
+    v_rows(shapes->records, sizeof *shapes->records, index, circle);
+    for (int last = 0; last < 2; last++) { /* the arcs 0 and count - 5 of the caller's */
+        const vi number = vi_sub(last ? vi_sub(count, vi_set(5)) : vi_set(0), get_first_arc(info));
+        const vi stored = vi_select(vi_lt(number, vi_set(0)), vi_add(number, count), number);
+        load_records(shapes->records, vi_select(run, vi_add(base, stored), base), field[last]);
+    }
+
+    const vm round = has_flag(other_info, NARC_SHAPE_CIRCLE);
+    const vm known = vm_or(round, vi_lt(vi_set(0), vi_bits(form[3])));
+    const vec2 x = {rotation.x, v_select(is_a, rotation.y, v_neg(rotation.y))};
+    const vec2 at = v2_select(is_a, position, v2_unrotate_opposite(rotation, position));
+    const vec2 offset =
+        v2_scale((vec2){v_select(round, circle[0], zero), v_select(round, circle[1], zero)}, other_scale);
+    const vf half_x = v_mul(v_select(round, zero, form[0]), other_scale),
+             half_y = v_mul(v_select(round, zero, form[1]), other_scale);
+    const struct plain_body body = {.center = v2_add(at, v2_rotate(x, offset)),
+                                    .x_axis = v2_scale(x, half_x),
+                                    .y_axis = v2_scale((vec2){v_neg(x.y), x.x}, half_y),
+                                    .radius = v_mul(v_select(round, circle[2], form[2]), other_scale)};
+    const vec2 begin = v2_scale((vec2){field[0][0], field[0][1]}, scale);
+    const vec2 end = v2_scale((vec2){field[1][0], field[1][1]}, scale);
+    const vec2 n_begin = {field[0][6], field[0][7]}, m_begin = {field[0][4], field[0][5]};
+    const vec2 n_end = {field[1][4], field[1][5]}, m_end = {field[1][6], field[1][7]};
+    const vm beyond = vm_or(is_beyond(&body, begin, n_begin, m_begin, n_end, false, item[SLACK]),
+                            is_beyond(&body, end, n_end, m_end, n_begin, true, item[SLACK]));
+    return vm_and_not(open, vm_and(vm_and(run, known), beyond));
 }
 
 #endif

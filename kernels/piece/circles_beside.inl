@@ -25,7 +25,6 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "piece/beside.inl"
 #include "piece/pieces.inl"
 #include "simd/simd.h"
 
@@ -47,6 +46,12 @@ struct run_beside {
     vec2 p;
 };
 
+/* The record of the caller's arc of a number. */
+INLINE vi find_run_record(const struct run_beside *run, vi number) {
+    const vi stored = vi_sub(number, run->first);
+    return vi_add(run->ring.base, vi_select(vi_lt(stored, vi_set(0)), vi_add(stored, run->ring.count), stored));
+}
+
 /* From the centre of an arc to p. */
 INLINE vec2 look_from_arc(const struct run_beside *run, const vf field[8]) {
     return v2_sub(run->p, v2_scale((vec2){field[0], field[1]}, run->scale));
@@ -67,14 +72,14 @@ INLINE vi find_arc_before(const narc_record *records, const struct run_beside *r
         if (!vm_any(open))
             break;
         const vi middle = vi_shift_right(vi_add(low, high), 1);
-        load_records(records, find_run_record(run->ring, run->first, middle), here);
+        load_records(records, find_run_record(run, middle), here);
         const vm behind = is_behind_start(run, here);
         low = vi_select(vm_and(open, behind), middle, low);
         high = vi_select(vm_and_not(open, behind), middle, high);
     }
-    load_records(records, find_run_record(run->ring, run->first, low), here);
+    load_records(records, find_run_record(run, low), here);
     for (;;) {
-        load_records(records, find_run_record(run->ring, run->first, vi_add(low, one)), next);
+        load_records(records, find_run_record(run, vi_add(low, one)), next);
         const vm moves = vm_and(vi_lt(vi_add(low, one), high), is_behind_start(run, next));
         if (!vm_any(moves))
             return low;
@@ -189,9 +194,8 @@ INLINE vm settle_circles_of(const struct call *call, struct queue *queues, enum 
                center_b = place_center_b(center, &pose);
     run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose.rotation, v2_sub(center_a, pose.position)));
 
-    const vi number = find_arc_before(records, &run, last, here, next),
-             record = find_run_record(run.ring, run.first, number),
-             next_record = find_run_record(run.ring, run.first, vi_add(number, one));
+    const vi number = find_arc_before(records, &run, last, here, next), record = find_run_record(&run, number),
+             next_record = find_run_record(&run, vi_add(number, one));
     const vf slack = item[SLACK], two = v_add(slack, slack);
     const vec2 u = look_from_arc(&run, here), start = {here[4], here[5]}, end = {here[6], here[7]};
     const vf radius = v_mul(here[2], run.scale),

@@ -30,7 +30,6 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "piece/beside.inl"
 #include "piece/circles_beside.inl"
 #include "piece/pieces.inl"
 #include "sat/certificates.inl"
@@ -39,6 +38,13 @@
 /* Edges of a front that are looked at. */
 enum { MOST_EDGES = 3 };
 
+/* A body with the form of a box or a capsule, in the frame of a run at world scale. */
+struct edged_body {
+    vec2 center, x_axis;
+    vf half_x, half_y, radius;
+    vm capsule;
+};
+
 /* What a body does above the edge before an arc of the front. */
 struct edge_below {
     vm rests, lies; /* is the gap largest along its normal; along that, or of a side of the body that is parallel? */
@@ -46,11 +52,15 @@ struct edge_below {
     vi corner;      /* of the body: its record, less the first one */
 };
 
+/* The ends of a front: the normals behind them, and how far they are from the middle, squared. */
+struct front_ends {
+    vec2 begin, end;
+    vf square;
+};
+
 /* `from`: where the edge begins; `field`: of the arc where it ends. */
-INLINE struct edge_below look_below(const struct body_beside *pair, vec2 from, const vf field[8], vf limit, vf two) {
-    const struct plain_body *const body = &pair->body;
-    const vec2 begin = pair->begin.m, end = pair->end.m;
-    const vf scale = pair->scale, reach = v2_dot(pair->begin.place, pair->begin.place); /* of the front, squared */
+INLINE struct edge_below look_below(const struct edged_body *body, const struct front_ends *ends, vec2 from,
+                                    const vf field[8], vf scale, vf limit, vf two) {
     const vf zero = v_set(0), turn = v_set(LEAST_ANGLE);
     const vec2 n = {field[4], field[5]}, to = v2_scale((vec2){field[0], field[1]}, scale);
     const vf x_n = v2_dot(body->x_axis, n), y_n = v2_cross(body->x_axis, n);
@@ -65,13 +75,14 @@ INLINE struct edge_below look_below(const struct body_beside *pair, vec2 from, c
     const vf height = v_sub(v_min(v2_dot(v2_sub(p, to), n), v2_dot(v2_sub(q, to), n)), v_mul(field[2], scale));
     const vf next = v_max(v2_cross(n, v2_sub(to, p)), v2_cross(n, v2_sub(to, q)));
     const vf last = v_max(v2_cross(n, v2_sub(p, from)), v2_cross(n, v2_sub(q, from)));
-    const vf cosine_next = v2_dot(n, end), cosine_last = v2_dot(n, begin);
-    const vf falls_next = v_add(v_mul(next, cosine_next), v_mul(height, v2_cross(n, end)));
-    const vf falls_last = v_add(v_mul(last, cosine_last), v_mul(height, v2_cross(begin, n)));
+    const vf cosine_next = v2_dot(n, ends->end), cosine_last = v2_dot(n, ends->begin);
+    const vf falls_next = v_add(v_mul(next, cosine_next), v_mul(height, v2_cross(n, ends->end)));
+    const vf falls_last = v_add(v_mul(last, cosine_last), v_mul(height, v2_cross(ends->begin, n)));
     const vm within = v_lt(two, v_min(v_min(next, last), v_min(falls_next, falls_last)));
     const vm narrow = v_lt(zero, v_min(cosine_next, cosine_last));
     const vf depth = v_max(v_neg(height), zero), square = v_max(v2_dot(p, p), v2_dot(q, q));
-    const vm near = vm_and(v_le(v_mul(v_set(16), v_mul(depth, depth)), reach), v_le(square, v_mul(v_set(4), reach)));
+    const vm near =
+        vm_and(v_le(v_mul(v_set(16), v_mul(depth, depth)), ends->square), v_le(square, v_mul(v_set(4), ends->square)));
     const vm one_maximum = vm_and(vm_and(within, narrow), near);
     struct edge_below edge;
     edge.rests = vm_and_not(one_maximum, vm_or(flat_x, flat_y));
@@ -116,49 +127,75 @@ INLINE void settle_on_edges(const struct call *call, struct queue *queues, vm is
     push(&queues[call->question->kind == MANIFOLD_ROWS ? ANSWER_EDGES : ANSWER], found, own, ROW_FIELDS);
 }
 
-/* Settles pairs with the form of a box or a capsule of those in the lanes `open`; returns the others. */
-INLINE vm settle_above_edges(const struct call *call, struct queue *queues, const struct body_beside *pair, vm open,
-                             vf margin, const vf item[FIELDS]) {
-    const narc_record *const records = call->batch->shapes->records;
-    const vi zero = vi_set(0), one = vi_set(1);
-    const vm tried = vm_and(open, vm_and(pair->edged, vi_lt(pair->last, vi_set(MOST_EDGES + 1))));
+/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others. */
+NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm open, vf margin,
+                               const vf item[FIELDS]) {
+    const narc_shapes *const shapes = call->batch->shapes;
+    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
+    const vm is_a = has_mark(info_a, NARC_PIECE_RUN);
+    const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
+    const vi last = vi_sub(get_arc_count(info), vi_set(5));
+    const vm which = vm_and(open, vi_lt(last, vi_set(MOST_EDGES + 1)));
+    if (!vm_any(which))
+        return open;
+    const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
+    const struct ring ring = make_ring(vi_select(is_a, first_a, first_b), info);
+    const vi body_base = find_first_arc(vi_select(is_a, first_b, first_a), other_info);
+    const vf scale = v_select(is_a, item[SCALE_A], item[SCALE_B]),
+             other_scale = v_select(is_a, item[SCALE_B], item[SCALE_A]);
+    const struct run_beside run = {
+        .ring = {vi_select(which, ring.base, vi_set(0)), vi_select(which, ring.count, vi_set(6))},
+        .first = vi_select(which, get_first_arc(info), vi_set(0))};
+    int32_t index[V_WIDTH];
+    vf form[4], field[8], behind[8], touched[8];
+    vi_store(index, get_item_bits(item, BODY_SHAPE));
+    v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
+    const vi kind = vi_bits(form[3]), zero = vi_set(0);
+    const vm capsule = vi_lt(zero, vi_and(kind, vi_set((int32_t)NARC_IS_CAPSULE)));
+    const vm tried = vm_and(which, vi_lt(zero, vi_and(kind, vi_set((int32_t)(NARC_IS_BOX | NARC_IS_CAPSULE)))));
+    if (!vm_any(tried))
+        return open;
+    const vec2 position = {item[POSITION], item[POSITION + 1]}, rotation = {item[ROTATION], item[ROTATION + 1]};
+    const struct edged_body body = {.center = v2_select(is_a, position, v2_unrotate_opposite(rotation, position)),
+                                    .x_axis = {rotation.x, v_select(is_a, rotation.y, v_neg(rotation.y))},
+                                    .half_x = v_mul(form[0], other_scale),
+                                    .half_y = v_select(capsule, v_set(0), v_mul(form[1], other_scale)),
+                                    .radius = v_mul(form[2], other_scale),
+                                    .capsule = capsule};
+    load_records(shapes->records, find_run_record(&run, zero), field);
+    load_records(shapes->records, find_run_record(&run, vi_select(tried, last, one)), behind);
+    vec2 from = v2_scale((vec2){field[0], field[1]}, scale);
+    const struct front_ends ends = {{field[4], field[5]}, {behind[6], behind[7]}, v2_dot(from, from)};
     const vf slack = item[SLACK], two = v_add(slack, slack), limit = v_add(margin, slack);
     vm rests = vm_front(0), lies = rests, apart = rests;
     vi arc_record = zero, corner_record = zero;
-    vec2 from = pair->begin.place;
-    vf field[8], touched[8];
-    for (int f = 0; f < 8; f++)
-        touched[f] = v_set(0);
+    memcpy(touched, field, sizeof touched);
     for (int i = 1; i <= MOST_EDGES; i++) {
-        const vm here = vm_and_not(vm_and(tried, vi_lt(vi_set(i - 1), pair->last)), vm_or(vm_or(rests, lies), apart));
+        const vm here = vm_and_not(vm_and(tried, vi_lt(vi_set(i - 1), last)), vm_or(vm_or(rests, lies), apart));
         if (!vm_any(here))
             break;
-        const vi record = find_run_record(pair->ring, pair->first, vi_select(here, vi_set(i), one));
-        load_records(records, record, field);
-        const struct edge_below edge = look_below(pair, from, field, limit, two);
+        const vi record = find_run_record(&run, vi_select(here, vi_set(i), one));
+        load_records(shapes->records, record, field);
+        const struct edge_below edge = look_below(&body, &ends, from, field, scale, limit, two);
         const vm at = vm_and(here, vm_or(edge.rests, edge.lies));
         apart = vm_or(apart, vm_and(here, edge.apart));
         rests = vm_or(rests, vm_and(here, edge.rests));
         lies = vm_or(lies, vm_and(here, edge.lies));
         arc_record = vi_select(at, record, arc_record);
-        corner_record = vi_select(at, vi_add(pair->base, edge.corner), corner_record);
+        corner_record = vi_select(at, vi_add(body_base, edge.corner), corner_record);
         for (int f = 0; f < 8; f++)
             touched[f] = v_select(at, field[f], touched[f]);
-        from = v2_scale((vec2){field[0], field[1]}, pair->scale);
+        from = v2_scale((vec2){field[0], field[1]}, scale);
     }
     rests = vm_and_not(rests, apart);
     lies = vm_and_not(lies, apart);
-    const vm found = vm_or(rests, lies);
-    if (!vm_any(found))
-        return vm_and_not(open, apart);
-    const struct pose pose = {
-        {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
-    const struct arcs arc = place_run_arc(touched, &pose, ANY_RUN, pair->is_a);
+    const struct pose pose = {position, rotation, item[SCALE_A], item[SCALE_B]};
+    const struct arcs arc = place_run_arc(touched, &pose, ANY_RUN, is_a);
     if (vm_any(lies))
         pass_to_walk(queues, lies, arc.start, item);
     if (vm_any(rests))
-        settle_on_edges(call, queues, pair->is_a, rests, margin, &pose, &arc, arc_record, corner_record, item);
-    return vm_and_not(open, vm_or(found, apart));
+        settle_on_edges(call, queues, is_a, rests, margin, &pose, &arc, arc_record, corner_record, item);
+    return vm_and_not(open, vm_or(vm_or(rests, lies), apart));
 }
 
 #endif

@@ -62,27 +62,29 @@ static void answer_settled_rows(const struct call *call, struct queue *queues) {
         run_stage(call, call->question->edges, queues, ANSWER_EDGES);
 }
 
-/* To settle pairs by their forms is worth a try if one in four is; to look which can be dropped, if one in eight can: in few
- * lanes a look costs what it saves. */
+/* To settle pairs by their forms is worth a try if one in four is. */
 NOINLINE vm settle_some(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
                         struct pieces_met *met) {
-    const bool settles =
-        call->batch->shapes->box_count > 0 && (met->asked < 2 * BLOCK || 4 * met->settled >= met->asked);
-    const bool drops = V_WIDTH > 4 && (met->tried < 2 * BLOCK || 8 * met->dropped >= met->tried);
-    if (!settles && !drops)
+    if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
         return open;
-    const struct body_beside pair = load_body_beside(call->batch->shapes, open, item);
-    vm left = open;
-    if (settles) {
-        left = settle_above_edges(call, queues, &pair, open, margin, item);
-        met->asked += COUNT_BITS(vm_bits(open));
-        met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
+    const vm left = settle_above_edges(call, queues, open, margin, item);
+    met->asked += COUNT_BITS(vm_bits(open));
+    met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
+    answer_settled_rows(call, queues);
+    if (queues[DECIDE].count >= FLUSH) {
+        run_stage(call, NARC_NAMED(search).stages[DECIDE], queues, DECIDE);
+        answer_settled_rows(call, queues);
     }
-    if (!drops || !vm_any(left))
-        return left;
-    const vm kept = drop_beside(&pair, left, item[SLACK]);
-    met->tried += COUNT_BITS(vm_bits(left));
-    met->dropped += COUNT_BITS(vm_bits(vm_and_not(left, kept)));
+    return left;
+}
+
+/* To look which pairs can be dropped is worth it if one in eight can; in few lanes a look costs what it saves. */
+INLINE vm drop_some(const struct call *call, vm open, const vf item[FIELDS], struct pieces_met *met) {
+    if (V_WIDTH <= 4 || (met->tried >= 2 * BLOCK && 8 * met->dropped < met->tried))
+        return open;
+    const vm kept = drop_beside(call, open, item);
+    met->tried += COUNT_BITS(vm_bits(open));
+    met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
     return kept;
 }
 
@@ -91,15 +93,9 @@ static vm settle_runs(const struct call *call, struct queue *queues, vm open, vf
     open = settle_circles_beside(call, queues, open, margin, item);
     if (queues[ANSWER].count >= FLUSH)
         run_stage(call, answer_rows, queues, ANSWER);
-    if (!vm_any(open))
-        return open;
-    open = settle_some(call, queues, open, margin, item, met);
-    answer_settled_rows(call, queues);
-    if (queues[DECIDE].count >= FLUSH) {
-        run_stage(call, NARC_NAMED(search).stages[DECIDE], queues, DECIDE);
-        answer_settled_rows(call, queues);
-    }
-    return open;
+    if (vm_any(open))
+        open = settle_some(call, queues, open, margin, item, met);
+    return vm_any(open) ? drop_some(call, open, item, met) : open;
 }
 
 static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
