@@ -189,6 +189,8 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm
     }
     rests = vm_and_not(rests, apart);
     lies = vm_and_not(lies, apart);
+    if (!vm_any(vm_or(rests, lies)))
+        return vm_and_not(open, apart);
     const struct pose pose = {position, rotation, item[SCALE_A], item[SCALE_B]};
     const struct arcs arc = place_run_arc(touched, &pose, ANY_RUN, is_a);
     if (vm_any(lies))
