@@ -94,55 +94,48 @@ INLINE struct edge_below look_below(const struct edged_body *body, const struct 
 }
 
 /* Pairs in the lanes `lies` go to the walk past the edge's normal and that of a side of the body. */
-INLINE void pass_to_walk(const struct call *call, struct queue *queues, vm is_a, vm lies, vi arc_record,
-                         const vf item[FIELDS]) {
-    const struct pose pose = {
-        {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
-    vf field[8], own[FIELDS];
-    load_records(call->batch->shapes->records, vi_select(lies, arc_record, vi_set(0)), field);
+INLINE void pass_to_walk(struct queue *queues, vm lies, vec2 normal, const vf item[FIELDS]) {
+    vf own[FIELDS];
     memcpy(own, item, sizeof own);
-    set_vec2(own, DIRECTION, place_run_arc(field, &pose, ANY_RUN, is_a).start);
+    set_vec2(own, DIRECTION, normal);
     own[SLACK] = v_neg(item[SLACK]);
     push(&queues[DECIDE], lies, own, ROW_FIELDS);
 }
 
-/* Tells the last stages that pairs in the lanes `which` touch: the run with the arc in a record, the body with a corner. */
-INLINE void settle_on_edges(const struct call *call, struct queue *queues, vm is_a, vm which, vf margin, vi arc_record,
-                            vi corner_record, const vf item[FIELDS]) {
+/* Tells the last stages that pairs in the lanes `which` touch: the run with an arc and its record, the body with a corner. */
+INLINE void settle_on_edges(const struct call *call, struct queue *queues, vm is_a, vm which, vf margin,
+                            const struct pose *pose, const struct arcs *arc, vi arc_record, vi corner_record,
+                            const vf item[FIELDS]) {
     const narc_record *const records = call->batch->shapes->records;
-    const struct pose pose = {
-        {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
     int32_t index[V_WIDTH];
-    vf field[8], corner[4], own[FIELDS];
-    load_records(records, vi_select(which, arc_record, vi_set(0)), field);
+    vf corner[4], own[FIELDS];
     vi_store(index, vi_select(which, corner_record, vi_set(0)));
     v_rows(records, sizeof *records, index, corner);
-    const struct arcs arc = place_run_arc(field, &pose, ANY_RUN, is_a);
     const vec2 center = {corner[0], corner[1]};
-    const vec2 of_body = v2_select(is_a, place_center_b(center, &pose), v2_scale(center, pose.scale_a));
-    const vf radius = v_mul(corner[2], v_select(is_a, pose.scale_b, pose.scale_a));
-    const vec2 u = v2_sub(v2_select(is_a, of_body, arc.center), v2_select(is_a, arc.center, of_body));
-    const vf separation = v_sub(v2_dot(u, arc.start), v_add(arc.radius, radius));
+    const vec2 of_body = v2_select(is_a, place_center_b(center, pose), v2_scale(center, pose->scale_a));
+    const vf radius = v_mul(corner[2], v_select(is_a, pose->scale_b, pose->scale_a));
+    const vec2 u = v2_sub(v2_select(is_a, of_body, arc->center), v2_select(is_a, arc->center, of_body));
+    const vf separation = v_sub(v2_dot(u, arc->start), v_add(arc->radius, radius));
     const vm found = vm_and(which, is_below(separation, margin));
     if (!vm_any(found))
         return;
     memcpy(own, item, sizeof own);
     own[SEPARATION] = separation;
-    set_vec2(own, NORMAL, arc.start);
+    set_vec2(own, NORMAL, arc->start);
     own[RECORD_A] = v_of_bits(vi_select(is_a, arc_record, corner_record));
     own[RECORD_B] = v_of_bits(vi_select(is_a, corner_record, arc_record));
     push(&queues[call->question->kind == MANIFOLD_ROWS ? ANSWER_EDGES : ANSWER], found, own, ROW_FIELDS);
 }
 
-/* Settles pairs of a run and a body with a form of those in the lanes `open`; returns the others. */
+/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others. */
 NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm open, vf margin,
                                const vf item[FIELDS]) {
     const narc_shapes *const shapes = call->batch->shapes;
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
-    const vm is_a = has_mark(info_a, NARC_PIECE_RUN), is_run = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
+    const vm is_a = has_mark(info_a, NARC_PIECE_RUN);
     const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
     const vi last = vi_sub(get_arc_count(info), vi_set(5));
-    const vm which = vm_and(open, vm_and(is_run, vi_lt(last, vi_set(MOST_EDGES + 1))));
+    const vm which = vm_and(open, vi_lt(last, vi_set(MOST_EDGES + 1)));
     if (!vm_any(which))
         return open;
     const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
@@ -154,7 +147,7 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm
         .ring = {vi_select(which, ring.base, vi_set(0)), vi_select(which, ring.count, vi_set(6))},
         .first = vi_select(which, get_first_arc(info), vi_set(0))};
     int32_t index[V_WIDTH];
-    vf form[4], field[8], behind[8];
+    vf form[4], field[8], behind[8], touched[8];
     vi_store(index, get_item_bits(item, BODY_SHAPE));
     v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
     const vi kind = vi_bits(form[3]), zero = vi_set(0);
@@ -176,6 +169,7 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm
     const vf slack = item[SLACK], two = v_add(slack, slack), limit = v_add(margin, slack);
     vm rests = vm_front(0), lies = rests, apart = rests;
     vi arc_record = zero, corner_record = zero;
+    memcpy(touched, field, sizeof touched);
     for (int i = 1; i <= MOST_EDGES; i++) {
         const vm here = vm_and_not(vm_and(tried, vi_lt(vi_set(i - 1), last)), vm_or(vm_or(rests, lies), apart));
         if (!vm_any(here))
@@ -189,14 +183,20 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm
         lies = vm_or(lies, vm_and(here, edge.lies));
         arc_record = vi_select(at, record, arc_record);
         corner_record = vi_select(at, vi_add(body_base, edge.corner), corner_record);
+        for (int f = 0; f < 8; f++)
+            touched[f] = v_select(at, field[f], touched[f]);
         from = v2_scale((vec2){field[0], field[1]}, scale);
     }
     rests = vm_and_not(rests, apart);
     lies = vm_and_not(lies, apart);
+    if (!vm_any(vm_or(rests, lies)))
+        return vm_and_not(open, apart);
+    const struct pose pose = {position, rotation, item[SCALE_A], item[SCALE_B]};
+    const struct arcs arc = place_run_arc(touched, &pose, ANY_RUN, is_a);
     if (vm_any(lies))
-        pass_to_walk(call, queues, is_a, lies, arc_record, item);
+        pass_to_walk(queues, lies, arc.start, item);
     if (vm_any(rests))
-        settle_on_edges(call, queues, is_a, rests, margin, arc_record, corner_record, item);
+        settle_on_edges(call, queues, is_a, rests, margin, &pose, &arc, arc_record, corner_record, item);
     return vm_and_not(open, vm_or(vm_or(rests, lies), apart));
 }
 
