@@ -11,8 +11,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes; with NARC_TEST_PRESET=ci warnings are errors
   gate       what a change must pass besides: style, long tests, the applications, benchmarks that run, without
-             dependencies, sanitizers, fuzzing, and under qemu NEON, 32-bit x86 and a big-endian processor; recorded
-             answers on WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
+             dependencies, sanitizers, fuzzing, under qemu NEON and a big-endian processor, and words of 32 bits on
+             WebAssembly. It goes on in the build of NARC_TEST_PRESET=ci
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
@@ -158,15 +158,16 @@ check() {
     ${2:-} ctest --preset "$1" || fail "tests failed in build/$1"
 }
 
-# The same, where the preset's tests are few: their programs alone are built. CMake's lists of tests know them.
+# The same, where the preset's tests, or those that options of ctest choose, are few: their programs alone are built. CMake's
+# lists of tests know them.
 check_some() {
     say "build/$1"
     cmake --preset "$1" || fail "configuring build/$1 failed"
-    cmake --build --preset "$1" --target $({ ctest --preset "$1" -N | sed -n 's/^ *Test *#[0-9]*: \([^ ]*\).*/\1/p'
+    cmake --build --preset "$1" --target $({ ctest --preset "$1" ${4:-} -N | sed -n 's/^ *Test *#[0-9]*: \([^ ]*\).*/\1/p'
         find "build/$1" -name CTestTestfile.cmake -exec \
-            sed -n 's|^add_test(\[=\[\(.*\)\]=\].*/\(test_[a-z0-9_]*\)".*|\1 \2|p' {} +
+            sed -n 's|^add_test(\[=\[\(.*\)\]=\].*/\(test_[a-z0-9_]*\)[.wasm]*".*|\1 \2|p' {} +
     } | awk 'NF == 1 { named[$1] } NF == 2 && $1 in named { print $2 }' | sort -u) ${3:-} || fail "building build/$1 failed"
-    ${2:-} ctest --preset "$1" || fail "tests failed in build/$1"
+    ${2:-} ctest --preset "$1" ${4:-} || fail "tests failed in build/$1"
 }
 
 # Tests on another processor: the preset, the compiler's package, Debian's name of the processor, libraries. Where they
@@ -181,27 +182,19 @@ check_foreign() {
     fi
 }
 
-# All processors that Debian has libraries for.
+# NEON, and the other order of bytes.
 check_processors() {
     case $(uname -m) in
     aarch64 | arm64) ;; # NEON is what all other tests ran
     *) check_foreign aarch64 gcc-aarch64-linux-gnu arm64 libsleef-dev libsleef3 libcmocka-dev libcmocka0 ;;
     esac
-    check_foreign i686 gcc-i686-linux-gnu i386 libcmocka-dev libcmocka0
     check_foreign s390x gcc-s390x-linux-gnu s390x libcmocka-dev libcmocka0
 }
 
-# The recorded answers alone.
-check_golden() {
-    build "$1" test_golden test_method_golden test_stored_bits
-    ctest --preset "$1" -R '^((method_)?golden_.*|stored_bits)$' || fail "tests failed in build/$1"
-}
-
-# What of bindings/web needs no npm: its modules, and the page's engine, whose bits are those of build/bare.
+# What has words of 32 bits, and what of bindings/web needs no npm: its modules, and the page's engine, whose bits are those of
+# build/bare.
 check_modules() {
-    check_golden "$1"
-    build "$1" narc_module narc_threads narc_small narc_page
-    ctest --preset "$1" -R '^narc_(module|threads)$' || fail "tests failed in build/$1"
+    check_some "$1" "" "narc_module narc_threads narc_small narc_page" "-L portable"
     node bindings/web/tests/engine.mjs "build/$1/page.wasm" build/bare/tests/examples/example_world || fail "the page's engine is not as it should be"
 }
 
@@ -246,6 +239,7 @@ platforms() {
     ctest --preset release -R '^package_meson' || fail "tests failed in build/release"
     skipped=
     check_processors
+    check_foreign i686 gcc-i686-linux-gnu i386 libcmocka-dev libcmocka0
     check_foreign riscv64 gcc-riscv64-linux-gnu riscv64
     check_foreign ppc64le gcc-powerpc64le-linux-gnu ppc64el
     check_foreign armhf gcc-arm-linux-gnueabihf armhf

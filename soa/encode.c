@@ -318,6 +318,8 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     const bool circle = header->flags & NARC_SHAPE_CIRCLE, capsule = header->count == 2 && !circle;
     const bool smooth = header->flags & NARC_SHAPE_SMOOTH;
     const uint32_t other = has_equal_corners(shape) ? NARC_IS_POLYGON : 0;
+    if (narc_is_plane(header))
+        return (narc_box_form){1, 0, 0, NARC_IS_PLANE | NARC_IS_POLYGON | (header->first_arc & NARC_FIRST_ARC)};
     if ((header->count != 4 && header->count != 2) || header->extent_ratio == UINT8_MAX || smooth != circle)
         return (narc_box_form){.info = other};
     const float x = fabsf(arcs[0].arc.center_x), radius = arcs[0].arc.radius;

@@ -150,7 +150,8 @@ typedef union narc_record {
  *                         normal at -y is the opposite one.
  *   info   0: the shape is none of these; else NARC_IS_..., and in its lowest bits, but for a circle, the first_arc of
  *          its header. NARC_IS_POLYGON alone, which makes it less than 0: none of these either, but a polygon of 3 to
- *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by.
+ *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by. NARC_IS_PLANE beside it
+ *          is a half-plane's, of which half_x is 1, and all else 0.
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -162,6 +163,7 @@ typedef struct narc_box_form {
 #define NARC_IS_CAPSULE 8u
 #define NARC_IS_CIRCLE  16u
 #define NARC_IS_POLYGON 0x80000000u
+#define NARC_IS_PLANE   0x40000000u
 enum { NARC_FORM_CORNERS = 8 };
 
 static inline bool narc_has_form(const narc_box_form *box) { return (box->info & ~NARC_IS_POLYGON) != 0; }
@@ -211,7 +213,7 @@ struct narc_shapes {
     uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    size_t box_count;                     /* shapes with a form of a box, a capsule or a circle */
+    size_t box_count;                     /* shapes with a form but for polygons */
     size_t piece_count, plane_count;      /* shapes that are pieces of chains or half-planes, and the latter */
     uint8_t largest_ratio;                /* the largest extent_ratio that a shape has had */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */

@@ -25,6 +25,7 @@ struct call {
     const struct question *question; /* theirs */
     struct box_queue *boxes;         /* pairs of forms that wait (box/box_detour.inl), or NULL */
     bool pieces, planes;             /* are there pieces of chains; half-planes? */
+    bool *planes_first;              /* rows: set where a pair has one for A; or NULL */
     struct queue *concave, *runs;    /* rows, with pieces: where pairs with a concave arc, with a run wait; or NULL */
 };
 

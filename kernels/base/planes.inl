@@ -22,12 +22,78 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "broken.h"
 #include "kernels.h"
+#include "simd/doubles.h"
 #include "simd/simd.h"
 #include "store.h"
 
 /* Deeper than that nothing has an answer: the box would be larger than what numbers are kept in range for. */
 #define PLANE_DEPTH 1e12
+
+/* From A's position to B's, of pairs k ... of a block. */
+INLINE void load_ways(const struct call *call, const struct pair_indices *in, int k, bool plain, double x[V_WIDTH],
+                      double y[V_WIDTH]) {
+    const narc_bodies a = *call->batch->a, b = *call->batch->b;
+    const narc_float_column shift_x = call->batch->pairs->shift_x, shift_y = call->batch->pairs->shift_y;
+    UNROLL_FEW
+    for (int l = 0; l < V_WIDTH; l++) {
+        const size_t number = (uint32_t)in->number[k + l], from = (uint32_t)in->a[k + l], to = (uint32_t)in->b[k + l];
+        x[l] = find_way(a.x, b.x, from, to, shift_x, number, plain);
+        y[l] = find_way(a.y, b.y, from, to, shift_y, number, plain);
+    }
+}
+
+INLINE bool are_double(const narc_bodies *bodies) {
+    return bodies->x.precision == NARC_FLOAT64 && bodies->y.precision == NARC_FLOAT64;
+}
+
+/* How high the other body's position is above the boundary: in lanes `of_a` A is the half-plane, in others B. */
+INLINE vf find_heights(const struct call *call, const struct pair_indices *in, int k, vm of_a) {
+    const narc_bodies *const a = call->batch->a, *const b = call->batch->b;
+    const narc_pairs *const pairs = call->batch->pairs;
+    double x[V_WIDTH], y[V_WIDTH];
+    float cosine[V_WIDTH], sine[V_WIDTH], height[V_WIDTH];
+    if (LIKELY(are_double(a) && are_double(b) && !pairs->shift_x.base && !pairs->shift_y.base))
+        load_ways(call, in, k, true, x, y);
+    else
+        load_ways(call, in, k, false, x, y);
+    vec2 rotation = {load_column(b->cosine, in->b + k), load_column(b->sine, in->b + k)};
+    if (vm_any(of_a)) {
+        const vec2 of = {load_column(a->cosine, in->a + k), load_column(a->sine, in->a + k)};
+        rotation = v2_select(of_a, of, rotation);
+        if (call->planes_first)
+            *call->planes_first = true;
+    }
+    v_store(cosine, rotation.x);
+    v_store(sine, rotation.y);
+    for (int l = 0; l < V_WIDTH; l += D_WIDTH) {
+        const vd c = d_of_floats(cosine + l), s = d_of_floats(sine + l), error = c * c + s * s - 1.0;
+        const vd factor = NARC_INVERSE_LENGTH(error);
+        d_put_floats(height + l, c * factor * d_load(y + l) - s * factor * d_load(x + l));
+    }
+    const vf above = v_load(height);
+    return v_select(of_a, above, v_neg(above));
+}
+
+/* A half-plane that is laid to the other body: B's position in A's frame, how high the other body's is above the boundary, and
+ * the box's scale. */
+struct laid_plane {
+    vec2 position;
+    vf height, size;
+    vm known; /* it is not too deep */
+};
+
+/* `rotation`: of B. The circle is that around the other body, with its scale. */
+INLINE struct laid_plane lay_plane(const struct call *call, const struct pair_indices *in, int k, vm of_a,
+                                   vec2 rotation, vec2 center, vf radius, vf scale) {
+    const vf zero = v_set(0), most = v_set((float)PLANE_DEPTH), h = find_heights(call, in, k, of_a);
+    const vf reach = v_mul(v_add(v_add(v_abs(center.x), v_abs(center.y)), radius), scale);
+    const vec2 seen = v2_scale((vec2){rotation.y, v_neg(rotation.x)}, h); /* B's normal, to the other side */
+    return (struct laid_plane){v2_select(of_a, (vec2){zero, h}, seen), h,
+                               v_mul(v_set(4), v_add(reach, v_min(v_abs(h), most))),
+                               vm_not(v_lt(most, v_max(v_neg(h), zero)))};
+}
 
 /* Lays the half-planes of the pairs k ... of a block to the bodies. The item has the pose, and gets the infos. Returns
  * which pairs have none, or an answer; of others the pose, and the infos, are then those of the boxes. */
@@ -36,38 +102,23 @@ NOINLINE vm lay_planes(const struct call *call, const struct pair_indices *in, i
     const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k),
                          b = load_headers(batch->shapes->headers, in->shape_b + k);
     const vm of_a = is_plane(a.info), of_b = is_plane(b.info), any = vm_or(of_a, of_b);
-    const vm none = vm_front(0);
-    float height[V_WIDTH];
     *out_ground = vm_and(any, vm_and(vi_lt(vi_set(0), get_marks(a.info)), vi_lt(vi_set(0), get_marks(b.info))));
     item[INFO_A] = v_of_bits(a.info);
     item[INFO_B] = v_of_bits(b.info);
     if (!vm_any(any))
-        return vm_not(none);
-    const uint32_t plane_is_a = vm_bits(of_a);
-    v_store(height, v_set(0));
-    for (uint32_t lanes = vm_bits(any); lanes; lanes &= lanes - 1) {
-        const int l = FIND_LOWEST(lanes), side = plane_is_a >> l & 1 ? 0 : 1;
-        struct plane_pair pair;
-        load_plane_pair(batch->a, batch->b, batch->pairs, (uint32_t)in->number[k + l], (uint32_t)in->a[k + l],
-                        (uint32_t)in->b[k + l], &pair);
-        const double above = pair.cosine[side] * pair.y - pair.sine[side] * pair.x;
-        height[l] = (float)(side == 0 ? above : -above);
-    }
-    const vf zero = v_set(0), h = v_load(height), depth = v_max(v_neg(h), zero);
-    const vec2 of_other = v2_select(of_a, b.bound_center, a.bound_center);
-    const vf own = v_add(v_add(v_abs(of_other.x), v_abs(of_other.y)), v_select(of_a, b.bound_radius, a.bound_radius));
-    const vf reach = v_mul(own, v_select(of_a, item[SCALE_B], item[SCALE_A]));
-    const vf size = v_mul(v_set(4), v_add(reach, v_min(v_abs(h), v_set((float)PLANE_DEPTH))));
+        return vm_not(any);
+    const vec2 rotation = {item[ROTATION], item[ROTATION + 1]};
+    const struct laid_plane laid =
+        lay_plane(call, in, k, of_a, rotation, v2_select(of_a, b.bound_center, a.bound_center),
+                  v_select(of_a, b.bound_radius, a.bound_radius), v_select(of_a, item[SCALE_B], item[SCALE_A]));
     const vec2 position = {item[POSITION], item[POSITION + 1]};
-    const vec2 seen =
-        v2_scale((vec2){item[ROTATION + 1], v_neg(item[ROTATION])}, h); /* B's normal, to the other side */
-    set_vec2(item, POSITION, v2_select(of_a, (vec2){zero, h}, v2_select(of_b, seen, position)));
-    item[SCALE_A] = v_select(of_a, size, item[SCALE_A]);
-    item[SCALE_B] = v_select(of_b, size, item[SCALE_B]);
     const vi plain = vi_set((int32_t) ~(NARC_PIECE_MARKS << 8));
+    set_vec2(item, POSITION, v2_select(any, laid.position, position));
+    item[SCALE_A] = v_select(of_a, laid.size, item[SCALE_A]);
+    item[SCALE_B] = v_select(of_b, laid.size, item[SCALE_B]);
     item[INFO_A] = v_of_bits(vi_select(of_a, vi_and(a.info, plain), a.info));
     item[INFO_B] = v_of_bits(vi_select(of_b, vi_and(b.info, plain), b.info));
-    return vm_not(vm_and(any, v_lt(v_set((float)PLANE_DEPTH), depth)));
+    return vm_or(laid.known, vm_not(any));
 }
 
 #endif

@@ -28,6 +28,7 @@ struct rows {
     narc_rows out;
     bool dense;
     int done, listed;
+    bool planes_first;                              /* has a pair a half-plane for A? */
     int without;                                    /* rows of pairs without an answer */
     uint8_t known[NARC_ROW_GROUP + 1];              /* 1: a pair from there on that has a row; and one to spare */
     _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */
@@ -38,6 +39,7 @@ INLINE void start_rows(struct rows *rows, size_t count, const narc_rows *out, bo
     rows->dense = dense;
     rows->done = rows->listed = 0;
     rows->without = 0;
+    rows->planes_first = false;
     memset(rows->known, 0, (count + 63) / 64 * 64);
 }
 
@@ -52,6 +54,7 @@ static inline struct call begin_rows(const struct question *question, const narc
                          .margins = batch->query->margins,
                          .question = question,
                          .rows = rows,
+                         .planes_first = &rows->planes_first,
                          .pieces = has_pieces(batch),
                          .planes = has_planes(batch)};
 }
@@ -291,7 +294,7 @@ NOINLINE void move_plane_points(const narc_batch *batch, size_t first, size_t co
 /* Ends a call. The size is a constant, so that a row is copied by a few instructions. */
 INLINE size_t end_rows(const struct call *call, size_t size) {
     const size_t count = call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
-    if (NARC_PIECES && !LIKELY(!call->planes) && call->question->kind != SEPARATION_ROWS)
+    if (NARC_PIECES && !LIKELY(!call->rows->planes_first) && call->question->kind != SEPARATION_ROWS)
         move_plane_points(call->batch, call->first, call->count, &call->rows->out, count,
                           call->question->kind == MANIFOLD_ROWS);
     return count;

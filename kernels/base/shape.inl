@@ -30,6 +30,19 @@ INLINE struct headers load_headers(const narc_shape_header *headers, const int32
                             word[4],          {word[5], word[6]}, word[7]};
 }
 
+/* The form of a shape in each lane. */
+struct box_form {
+    vec2 half;
+    vf radius;
+    vi info;
+};
+
+INLINE struct box_form load_box_forms(const narc_box_form *forms, const int32_t *shape) {
+    vf word[4];
+    v_rows(forms, sizeof *forms, shape, word);
+    return (struct box_form){{word[0], word[1]}, word[2], vi_bits(word[3])};
+}
+
 INLINE vi get_arc_count(vi info) { return vi_and(info, vi_set(0xff)); }
 
 INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(NARC_FIRST_ARC)); }

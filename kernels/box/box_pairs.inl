@@ -88,19 +88,6 @@ INLINE void run_boxes(const struct call *call, struct box_queue *queue, bool end
     queue->count = k < queue->count ? queue->count - k : 0;
 }
 
-/* The form of a shape in each lane. */
-struct box_form {
-    vec2 half;
-    vf radius;
-    vi info;
-};
-
-INLINE struct box_form load_box_forms(const narc_box_form *forms, const int32_t *shape) {
-    vf word[4];
-    v_rows(forms, sizeof *forms, shape, word);
-    return (struct box_form){{word[0], word[1]}, word[2], vi_bits(word[3])};
-}
-
 /* Is a box of about this size in range, for certain? The bounding radius is between 0.7 and 1.001 times the sum. */
 INLINE vm is_box_in_range(vf size) {
     return vm_and(v_le(v_set(2 * (float)NARC_MIN_SIZE), size), v_le(size, v_set(0.5f * (float)NARC_MAX_SIZE)));
@@ -109,6 +96,11 @@ INLINE vm is_box_in_range(vf size) {
 /* The number of an edge: on the x axis or on the y axis, at its negative end or not. */
 INLINE vi find_edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
+}
+
+/* The first arcs, as BOX_CODE has them. */
+INLINE vi find_first_arcs(const struct box_form *a, const struct box_form *b) {
+    return vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
 }
 
 /* Are both shapes of that kind? */
@@ -169,8 +161,6 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi edges =
             vi_add(find_edge_number(a_on_x, negative_a), vi_shift_left(find_edge_number(b_on_x, vm_not(back_b)), 2));
-        const vi first =
-            vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
         const vi tie = vi_select(certain, vi_set(0), vi_set(BOX_TIE));
         vf item[BOX_FIELDS];
         set_vec2(item, BOX_POSITION, t);
@@ -182,7 +172,7 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         item[BOX_RADIUS_A] = radius_a;
         item[BOX_RADIUS_B] = radius_b;
         item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
+        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, find_first_arcs(a, b)), tie));
         item[BOX_PAIR] = v_of_bits(pairs);
         push_boxes(queue, near, item, BOX_FIELDS);
     }

@@ -287,7 +287,7 @@ INLINE struct circle_contact find_circle_contact(const struct circle_pair *pair,
         c.start = place_form_normal(pair, of, pair->number);
         u = v2_sub(choose_side_vec2(of, pair->is_a, c.corner, c.center),
                    choose_side_vec2(of, pair->is_a, c.center, c.corner));
-        if (BLOCK == 1 && vm_any(pair->edge)) { /* no root, and no quotient */
+        if (!vm_any(vm_not(pair->edge))) { /* no root, and no quotient */
             c.separation = v_sub(v2_dot(u, c.start), radii);
             c.normal = c.start;
             return c;
@@ -351,7 +351,7 @@ INLINE void write_circles(const struct call *call, const struct circle_pair *pai
     }
     if (of != TWO_CIRCLES && call->question->kind == MANIFOLD_ROWS) {
         vi reach = vi_set(0); /* of an edge */
-        if (BLOCK > 1 || !vm_any(pair->edge))
+        if (vm_any(vm_not(pair->edge)))
             reach = find_form_reach(pair, of, c);
         if (of == ANY_CIRCLES)
             reach = vi_select(pair->sides, reach, all_round);

@@ -219,6 +219,8 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
         return find_of_capsules(asked);
+    if ((form_a | form_b) & NARC_IS_PLANE)
+        return UNANSWERED;
     if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
         return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * cast_start.inl - where casts begin: the first times at which bounding circles touch, and what each cast is measured by.
+ * cast_start.inl - where casts begin: the first times at which bounding circles touch, or boxes along the axes of both,
+ * and what each cast is measured by.
  */
 #ifndef NARC_SCENE_CAST_START_INL
 #define NARC_SCENE_CAST_START_INL
@@ -60,20 +61,39 @@ INLINE void load_outline(const narc_shapes *shapes, const int32_t *shape, bool t
     v_store(out->round, v_select(round, v_set(1), v_set(0)));
 }
 
+/* What is still to be added up of casts that are loaded: shifts, and motions of A and B. */
+struct loaded {
+    float shift_x[V_WIDTH], shift_y[V_WIDTH], motion_x[2][V_WIDTH], motion_y[2][V_WIDTH];
+    struct outline outline[2];
+    struct box {
+        float half_x[V_WIDTH], half_y[V_WIDTH], radius[V_WIDTH];
+    } box[2];
+    vm boxes;  /* have both a form (store.h, narc_box_form), and is one no circle? */
+    bool turn; /* does one of them turn? */
+    vm fine;
+};
+
+/* Forms of shapes, where both have one. */
+INLINE void load_forms(const narc_shapes *shapes, const int32_t *shape_a, const int32_t *shape_b, struct loaded *out) {
+    const struct box_form form[] = {load_box_forms(shapes->boxes, shape_a), load_box_forms(shapes->boxes, shape_b)};
+    const vi any = vi_set(NARC_IS_BOX | NARC_IS_CAPSULE | NARC_IS_CIRCLE), flat = vi_set(NARC_IS_BOX | NARC_IS_CAPSULE);
+    const vm formed = vm_and(vi_lt(vi_set(0), vi_and(form[0].info, any)), vi_lt(vi_set(0), vi_and(form[1].info, any)));
+    out->boxes = vm_and(
+        formed, vm_or(vi_lt(vi_set(0), vi_and(form[0].info, flat)), vi_lt(vi_set(0), vi_and(form[1].info, flat))));
+    UNROLL
+    for (int side = 0; side < 2; side++) {
+        v_store(out->box[side].half_x, v_abs(form[side].half.x)); /* a zero of a capsule may have a sign */
+        v_store(out->box[side].half_y, v_abs(form[side].half.y));
+        v_store(out->box[side].radius, form[side].radius);
+    }
+}
+
 /* Which bodies have no broken numbers? */
 INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct outline *outline) {
     const vm turned = is_rotation((vec2){v_load(side->cosine + k), v_load(side->sine + k)});
     const vm sized = is_size_in_range(v_mul(v_load(side->scale + k), v_load(outline->bound)));
     return vm_and(vm_and(sized, turned), v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
 }
-
-/* What is still to be added up of casts that are loaded: shifts, and motions of A and B. */
-struct loaded {
-    float shift_x[V_WIDTH], shift_y[V_WIDTH], motion_x[2][V_WIDTH], motion_y[2][V_WIDTH];
-    struct outline outline[2];
-    bool turn; /* does one of them turn? */
-    vm fine;
-};
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape
  * turns by a radian. A point p of the outline is no further from the centre q of a circle in the shape than R, and
@@ -137,6 +157,49 @@ INLINE vl meet_circles(dvec2 apart, dvec2 motion, vd reach, vd *out_start, vd *o
     return (rests & touch) | (~rests & meet);
 }
 
+/* When boxes are as near as the target along all axes so far; and when they may be within `enough` of that. */
+struct passage {
+    vd first, least, last;
+};
+
+/* Along an axis of one, on which the positions are `reach` from each other then. */
+INLINE void pass_axis(vd way, vd motion, vd reach, vd enough, struct passage *passage) {
+    const vd zero = d_set(0), speed = d_abs(motion), rest = d_set(1e-300);
+    const vd inverse = d_set(1) / d_select(d_lt(rest, speed), speed, rest), room = enough * inverse;
+    const vd behind = d_select(d_lt(motion, zero), -way, way), first = (-reach - behind) * inverse,
+             last = (reach - behind) * inverse, least = first - room;
+    passage->first = d_select(d_lt(passage->first, first), first, passage->first);
+    passage->least = d_select(d_lt(passage->least, least), least, passage->least);
+    passage->last = d_min(passage->last, last + room);
+}
+
+/* Boxes that do not turn are no nearer than they are along each of their four axes; sharp ones become as near as the target
+ * along the last of these. */
+INLINE struct passage pass_boxes(const narc_casts *casts, size_t k, const struct loaded *loaded, int h, dvec2 way,
+                                 dvec2 motion, vd target, vd enough) {
+    dvec2 axis[2], half[2];
+    vd reach = target;
+    struct passage passage = {d_set(0), d_set(0), d_set(INFINITY)};
+    UNROLL
+    for (int side = 0; side < 2; side++) {
+        const struct narc_cast_side *const its = &casts->side[side];
+        const struct box *const box = &loaded->box[side];
+        const vd scale = d_of_floats(its->scale + k);
+        axis[side] = find_rotation(its->cosine + k, its->sine + k);
+        half[side] = (dvec2){scale * d_of_floats(box->half_x + h), scale * d_of_floats(box->half_y + h)};
+        reach += scale * d_of_floats(box->radius + h);
+    }
+    const vd c = d_abs(find_dot(axis[0], axis[1])), s = d_abs(find_cross(axis[0], axis[1]));
+    UNROLL
+    for (int side = 0; side < 2; side++) {
+        const dvec2 own = half[side], other = half[1 - side];
+        const dvec2 from = turn_back(axis[side], way), by = turn_back(axis[side], motion);
+        pass_axis(from.x, by.x, reach + own.x + (c * other.x + s * other.y), enough, &passage);
+        pass_axis(from.y, by.y, reach + own.y + (s * other.x + c * other.y), enough, &passage);
+    }
+    return passage;
+}
+
 /* Casts k ..., of which half a vector is taken, h ... of it. `out_outcome`: goes on, misses or is broken. */
 INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, const struct loaded *loaded,
                        float *out_outcome) {
@@ -152,7 +215,7 @@ INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, cons
              radius_b = find_circle(&casts->side[1], k, &outline[1], h, loaded->turn, &center_b, &moved_b),
              reach = radius_a + radius_b + target, moved = moved_a + moved_b;
     const dvec2 apart = {from.x + center_b.x - center_a.x, from.y + center_b.y - center_a.y};
-    const vl meet = d_le(zero, reach) & meet_circles(apart, motion, reach, &start, &end);
+    vl meet = d_le(zero, reach) & meet_circles(apart, motion, reach, &start, &end);
     const vl turns = d_lt(zero, moved);
     vd enough = d_set(ROUNDING) * (radius_a + radius_b + d_abs(target));
     if (loaded->turn) {
@@ -161,6 +224,13 @@ INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, cons
                                find_tolerance(&casts->side[1], k, &outline[1], h)),
                  part = d_min(d_set(MOVED_PART) * moved, sizes), usual = d_select(d_lt(enough, part), part, enough);
         enough = d_select(turns, d_select(d_lt(zero, given), given, usual), enough);
+    }
+    const vl boxes = meet & ~turns & d_of_lanes(loaded->boxes, h);
+    if (d_any(boxes)) {
+        const struct passage near = pass_boxes(casts, k, loaded, h, from, motion, target, enough);
+        const vl later = boxes & d_lt(start, near.least) & d_le(near.first, end);
+        meet &= ~boxes | (d_le(near.least, near.last) & d_le(near.least, end));
+        start = d_select(later, near.first, start);
     }
     d_store(casts->x + k, from.x);
     d_store(casts->y + k, from.y);

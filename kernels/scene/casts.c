@@ -235,6 +235,7 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
         load_outline(call->shapes, shape[side], out->turn, to, &casts->side[side], &out->outline[side]);
         out->fine = vm_and(out->fine, are_fine(&casts->side[side], to, &out->outline[side]));
     }
+    load_forms(call->shapes, shape[0], shape[1], out);
     load_ways(from, item[0], item[1], casts->x + to, casts->y + to);
     v_store(out->shift_x, load_column_or(from->pairs.shift_x, number, 0));
     v_store(out->shift_y, load_column_or(from->pairs.shift_y, number, 0));

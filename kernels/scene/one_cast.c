@@ -54,6 +54,7 @@ INLINE int begin(const narc_one_cast *asked, narc_casts *casts, bool turns) {
         load_outline(asked->shapes, (const int32_t *)its->shape, turns, 0, its, &loaded.outline[side]);
         loaded.fine = vm_and(loaded.fine, are_fine(its, 0, &loaded.outline[side]));
     }
+    load_forms(asked->shapes, (const int32_t *)casts->side[0].shape, (const int32_t *)casts->side[1].shape, &loaded);
     casts->x[0] = asked->bodies[1]->x - asked->bodies[0]->x;
     casts->y[0] = asked->bodies[1]->y - asked->bodies[0]->y;
     casts->target[0] = asked->target;

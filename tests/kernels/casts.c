@@ -627,6 +627,50 @@ TEST(test_along_tiles) {
     destroy_moving(&m);
 }
 
+/* Boxes of 2 by 1 on a lattice, one of them by a quarter turn, whose times are exact: also where they meet at the very end,
+ * slide along each other, or pass corner to corner, which counts. */
+TEST(test_boxes_on_a_lattice) {
+    enum { PAIRS = 1000 };
+    static const float steps[] = {0, 0.5f, 1, 2, 4, -0.5f, -1, -2, -4};
+    struct test_random random = test_random_named("boxes on a lattice");
+    struct scene scene = create_scene(NARC_FLOAT64, 1, 2 * PAIRS, PAIRS);
+    const struct shape box = box_of(2, 1, 0);
+    struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+    size_t last = 0, along = 0;
+    scene_add_shape(&m.scene, &box);
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        const struct body a = {.cosine = 1, .scale = 1};
+        const struct body b = {.x = (double)random_below(&random, 17) / 2 - 4,
+                               .y = (double)random_below(&random, 17) / 2 - 4,
+                               .sine = 1,
+                               .scale = 1};
+        m.motion[2 * pair + 1] = (narc_motion){steps[random_below(&random, 9)], steps[random_below(&random, 9)], 0};
+        scene_add_two(&m.scene, a, b);
+    }
+    narc_impact *const rows = cast_all(&m, NULL);
+    for (size_t pair = 0; pair < PAIRS; pair++) {
+        const struct body *const b = &m.scene.bodies[2 * pair + 1];
+        const narc_motion *const motion = &m.motion[2 * pair + 1];
+        const double way[] = {b->x, b->y}, by[] = {(double)motion->x, (double)motion->y};
+        double from = 0, to = 1;
+        for (int k = 0; k < 2; k++) {
+            if (by[k] == 0 && fabs(way[k]) > 1.5)
+                to = -1;
+            if (by[k] != 0) {
+                from = fmax(from, (-1.5 - copysign(way[k], way[k] * by[k])) / fabs(by[k]));
+                to = fmin(to, (1.5 - copysign(way[k], way[k] * by[k])) / fabs(by[k]));
+            }
+        }
+        assert_int_equal(rows[pair].count, from <= to ? NARC_CAST_HIT : NARC_CAST_MISS);
+        assert_true(from > to || (double)rows[pair].fraction == from);
+        last += from <= to && from == 1;
+        along += from <= to && (from == to || fabs(way[0]) == 1.5 || fabs(way[1]) == 1.5);
+    }
+    assert_true(last > 0 && along > 0);
+    guard_release(rows);
+    destroy_moving(&m);
+}
+
 /* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
  * beside its position turns with it. */
 TEST(test_circles_that_turn) {

@@ -218,6 +218,55 @@ TEST(contacts_are_those_of_a_boundary_without_end) {
 }
 
 /* Deeper than 1e12 there is no answer, and none of broken numbers; two half-planes have no contact. */
+/* Boxes, circles and capsules beside each other and at half-planes, in any order: what a list has of a pair is its answer alone. */
+TEST(lists_of_all_kinds_have_the_answers_of_each_pair) {
+    enum { BODIES = 64, LISTED = 300 };
+    struct test_random random = test_random_named("half-planes among others");
+    narc_shapes *const shapes = empty_store();
+    narc_error error;
+    uint32_t shape[4];
+    expect_ok(narc_add_half_plane(shapes, &shape[0], &error), &error);
+    shape[1] = store_shape(shapes, box_of(2, 1, 0.1));
+    shape[2] = store_shape(shapes, circle_of(1));
+    shape[3] = store_shape(shapes, capsule_of(2, 0.5));
+    assert_int_equal(shapes->boxes[shape[0]].info & (NARC_IS_PLANE | NARC_IS_BOX | NARC_IS_CIRCLE), NARC_IS_PLANE);
+    for (size_t trial = 0; trial < test_trials(20); trial++) {
+        const size_t kinds = 2 + trial % 3;
+        narc_body bodies[BODIES];
+        uint32_t a[LISTED], b[LISTED];
+        narc_manifold rows[LISTED];
+        size_t count, kept = 0;
+        narc_bodies view;
+        for (size_t k = 0; k < BODIES; k++) {
+            const double angle = random_between(&random, -PI, PI);
+            bodies[k] = (narc_body){random_between(&random, -2, 2),
+                                    random_between(&random, -2, 2),
+                                    (float)cos(angle),
+                                    (float)sin(angle),
+                                    1,
+                                    shape[random_below(&random, kinds)]};
+        }
+        for (size_t k = 0; k < LISTED; k++) {
+            a[k] = (uint32_t)random_below(&random, BODIES);
+            b[k] = (uint32_t)random_below(&random, BODIES);
+        }
+        narc_view_bodies(bodies, BODIES, &view);
+        const narc_pairs pairs = {.count = LISTED, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+        expect_ok(narc_find_manifolds(shapes, &view, &pairs, &(narc_query){.margin = 1}, rows, LISTED, &count, &error),
+                  &error);
+        for (uint32_t k = 0; k < LISTED; k++) {
+            const narc_query one = {.margin = 1, .selection = {&k, sizeof k}, .selection_count = 1};
+            narc_manifold row;
+            size_t found;
+            expect_ok(narc_find_manifolds(shapes, &view, &pairs, &one, &row, 1, &found, &error), &error);
+            if (found)
+                assert_memory_equal(&row, &rows[kept++], sizeof row);
+        }
+        assert_int_equal(count, kept);
+    }
+    narc_destroy_shapes(shapes);
+}
+
 TEST(what_has_no_answer) {
     narc_shapes *const shapes = empty_store();
     narc_error error;
