@@ -26,7 +26,7 @@
 #include "simd/doubles.h"
 #include "simd/simd.h"
 
-enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH, ON_EDGE = 256 };
+enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH };
 
 /* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
 #if defined(__wasm__)
@@ -279,8 +279,7 @@ INLINE uint32_t cast_lanes(struct fan *f, const struct body_frame *frame, uint32
         nearest->waiting |= vm_bits(hits) << k;
         select_floats(hits, nearest->fraction + k, fraction);
         select_ints(hits, nearest->body + k, number);
-        select_ints(hits, nearest->feature + k,
-                    vi_add(vi_load(entries.arc), vi_select(entries.on_edge, vi_set(ON_EDGE), vi_set(0))));
+        select_ints(hits, nearest->feature + k, entries.feature);
         select_floats(hits, nearest->normal_x + k, v_load(normal_x));
         select_floats(hits, nearest->normal_y + k, v_load(normal_y));
         select_floats(hits, nearest->point_x + k, v_load(point_x));

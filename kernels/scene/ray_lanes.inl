@@ -37,10 +37,18 @@ struct half_met {
     vd ahead, distance;
 };
 
-/* The features by which lines enter: the first one of each (struct entries). */
+/* The features by which lines enter: the first one of each (struct entries), an arc or ON_EDGE and the arc behind it. */
+enum { ON_EDGE = 256 };
+
 struct entry_lanes {
     vm found, on_edge, near;
+    vi feature; /* -1: none */
     int32_t arc[V_WIDTH];
+};
+
+/* Lines in the shape's coordinates. */
+struct lines {
+    float foot_x[V_WIDTH], foot_y[V_WIDTH], direction_x[V_WIDTH], direction_y[V_WIDTH];
 };
 
 /* s of an arc's centre. */
@@ -51,46 +59,48 @@ INLINE vf find_height(const narc_stored_arc *arc, vec2 o, vec2 v) {
 /* v x n of the normal at a junction. */
 INLINE vf find_turn(vec2 v, const float *normal) { return v2_cross(v, (vec2){v_set(normal[0]), v_set(normal[1])}); }
 
-INLINE void find_entry_lanes(const struct body_frame *frame, vec2 o, vec2 v, float near, struct entry_lanes *out) {
-    const int count = frame->header->count;
-    const narc_stored_arc *arc = &frame->arcs[count - 1].arc;
-    const vf zero = v_set(0),
-             last = v_add(find_height(arc, o, v), v_mul(v_set(arc->radius), find_turn(v, &arc->end_x)));
-    vm start_faces, end_faces = v_lt(v2_dot(v, (vec2){v_set(arc->end_x), v_set(arc->end_y)}), zero);
-    vm left = v_le(zero, last);
+/* From the last arc to the first: what is found later is before what was found. An edge is known when the arc before it is. */
+NOINLINE void find_entry_lanes(const narc_record *arcs, int count, const struct lines *lines, float near,
+                               struct entry_lanes *out) {
+    const vec2 o = {v_load(lines->foot_x), v_load(lines->foot_y)};
+    const vec2 v = {v_load(lines->direction_x), v_load(lines->direction_y)};
+    const vf zero = v_set(0);
     vf nearest = v_set(INFINITY);
-    vi first = vi_set(0);
-    out->found = out->on_edge = v_lt(zero, zero);
-    for (int k = 0; k < count; k++) {
-        arc = &frame->arcs[k].arc;
-        start_faces = end_faces;
-        end_faces = v_lt(v2_dot(v, (vec2){v_set(arc->end_x), v_set(arc->end_y)}), zero);
+    vi first = vi_set(-1);
+    vm falls = v_lt(zero, zero), left = falls, last = falls; /* behind: faces the ray and starts to the right */
+    for (int k = count - 1; k >= 0; k--) {
+        const narc_stored_arc *const arc = &arcs[k].arc;
+        const vm start_faces = v_lt(v2_dot(v, (vec2){v_set(arc->start_x), v_set(arc->start_y)}), zero);
         const vf h = find_height(arc, o, v), radius = v_set(arc->radius);
-        vf start = h, end = h; /* of a corner */
-        vm enters = v_lt(zero, zero);
         if (arc->radius > 0) {
+            const vm end_faces = v_lt(v2_dot(v, (vec2){v_set(arc->end_x), v_set(arc->end_y)}), zero);
             const vf turn = find_turn(v, &arc->start_x);
             const bool is_wide = arc->start_x * arc->end_x + arc->start_y * arc->end_y < 0;
             const vm faces =
                 is_wide ? vm_or(vm_xor(start_faces, end_faces), v_lt(zero, turn)) : vm_or(start_faces, end_faces);
-            start = v_add(h, v_mul(radius, turn));
-            end = v_add(h, v_mul(radius, find_turn(v, &arc->end_x)));
+            const vf start = v_add(h, v_mul(radius, turn)), end = v_add(h, v_mul(radius, find_turn(v, &arc->end_x)));
             const vf from = v_select(start_faces, start, v_add(h, radius));
             const vf to = v_select(end_faces, end, v_sub(h, radius));
             nearest = v_min(nearest, v_min(v_abs(from), v_abs(to)));
-            enters = vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero)));
+            left = v_le(zero, end);
+            first = vi_select(vm_and(falls, left), vi_set(k + 1 + ON_EDGE), first);
+            first = vi_select(vm_and(faces, vm_and(v_le(zero, from), v_lt(to, zero))), vi_set(k), first);
+            falls = vm_and_not(start_faces, v_le(zero, start));
         } else {
             nearest = v_min(nearest, v_abs(h));
+            left = v_le(zero, h);
+            first = vi_select(vm_and(falls, left), vi_set(k + 1 + ON_EDGE), first);
+            falls = vm_and_not(start_faces, left);
         }
-        const vm edge = vm_and_not(vm_and(start_faces, left), v_le(zero, start));
-        out->on_edge = vm_or(out->on_edge, vm_and_not(edge, out->found));
-        enters = vm_or(enters, edge);
-        first = vi_select(vm_and_not(enters, out->found), vi_set(k), first);
-        out->found = vm_or(out->found, enters);
-        left = v_le(zero, end);
+        last = k == count - 1 ? left : last;
     }
+    first = vi_select(vm_and(falls, last), vi_set(ON_EDGE), first);
+    out->found = vi_lt(vi_set(-1), first);
+    out->on_edge = vi_lt(vi_set(ON_EDGE - 1), first);
     out->near = v_le(nearest, v_set(near));
-    vi_store(out->arc, first);
+    out->feature = first;
+    vi_store(out->arc,
+             vi_select(out->found, vi_sub(first, vi_select(out->on_edge, vi_set(ON_EDGE), vi_set(0))), vi_set(0)));
 }
 
 /* The arcs by which they enter, and those before them. */
@@ -166,7 +176,7 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
         d_set2((place){turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y});
     const vec2d rotation = d_set2(frame->rotation);
     const vd radius = d_set((double)header->bound_radius), nan = d_set((double)NAN);
-    float foot_x[V_WIDTH], foot_y[V_WIDTH], direction_x[V_WIDTH], direction_y[V_WIDTH];
+    struct lines lines;
     UNROLL
     for (int h = 0; h < LANE_HALVES; h++) {
         const int l = h * D_WIDTH;
@@ -178,13 +188,12 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
         met[h].foot = (vec2d){d_set(middle.x) + beside * v.y, d_set(middle.y) - beside * v.x};
         met[h].normal = v; /* of those that find none */
         met[h].ahead = met[h].distance = ahead;
-        d_put_floats(foot_x + l, d_select(meets, met[h].foot.x, nan));
-        d_put_floats(foot_y + l, met[h].foot.y);
-        d_put_floats(direction_x + l, v.x);
-        d_put_floats(direction_y + l, v.y);
+        d_put_floats(lines.foot_x + l, d_select(meets, met[h].foot.x, nan));
+        d_put_floats(lines.foot_y + l, met[h].foot.y);
+        d_put_floats(lines.direction_x + l, v.x);
+        d_put_floats(lines.direction_y + l, v.y);
     }
-    find_entry_lanes(frame, (vec2){v_load(foot_x), v_load(foot_y)}, (vec2){v_load(direction_x), v_load(direction_y)},
-                     (float)(2 * find_touch(header)), entries);
+    find_entry_lanes(frame->arcs, header->count, &lines, (float)(2 * find_touch(header)), entries);
     v_store(out_fraction, v_select(entries->near, v_set(-1), v_set(NAN)));
     if (!vm_any(entries->found))
         return vm_any(entries->near);
