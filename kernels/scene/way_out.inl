@@ -47,9 +47,10 @@ struct curve {
 /* What lies on a curve may be so far beyond its ends. */
 #define END_ROOM_OF_CURVES 0x1p-20
 
-/* And rounding takes a place on it nearer by this part of the numbers it is found from: of places as near as each other all
- * are looked at, whichever comes first. */
-#define ROUNDING_OF_CURVES 0x1p-45
+/* And it may be nearer than that by this part of the numbers it is found from: normals are stored in single precision, and
+ * circles that hardly miss each other count as crossing. So of places as near as each other all are looked at, whichever
+ * comes first. */
+#define ROOM_OF_CURVES 0x1p-20
 
 INLINE place see_place(const struct thing *thing, const struct body_frame *frame, place own) {
     const place turned = turn_to_world(frame, own);
@@ -84,7 +85,7 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
             out->distance =
                 sqrt(find_least(find_dot(first, first), find_dot(last, last))) - 2 * END_ROOM_OF_CURVES * radius;
         }
-        out->distance -= ROUNDING_OF_CURVES * (away + radius);
+        out->distance -= ROOM_OF_CURVES * (away + radius);
         return radius > 0;
     }
     if (round || !is_edge_before(frame, k))
@@ -102,7 +103,7 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     *out = (struct curve){from, start, along, INFINITY, length, height, out->feature, false};
     if (beside > 0)
         out->distance = sqrt(height * height + beside * beside);
-    out->distance -= ROUNDING_OF_CURVES * (fabs(before_start) + length + height);
+    out->distance -= ROOM_OF_CURVES * (fabs(before_start) + length + height);
     return length > 0;
 }
 
@@ -161,7 +162,7 @@ INLINE void look_at_feet(const struct thing *thing, const struct body_frame *fra
             to = curve.radius - length;
         }
         const place at = {to * n.x, to * n.y};
-        if (to >= 0 && (curve.radius < INFINITY ? is_on_arc(&curve, n) : is_on_curve(&curve, at)))
+        if (to >= -find_seam(frame) && (curve.radius < INFINITY ? is_on_arc(&curve, n) : is_on_curve(&curve, at)))
             take_way_out(thing, frame, body, at, n, n, &curve, false, best);
     }
 }

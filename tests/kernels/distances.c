@@ -538,14 +538,20 @@ TEST(test_ties_of_things) {
     enum { DISCS = 48, TREES = 2 };
     struct test_random random = test_random_named("points, ties");
     for (size_t trial = 0; trial < test_trials(100); trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 1, DISCS, 1);
-        const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1};
+        struct scene scene = create_scene(NARC_FLOAT64, 2, DISCS, 1);
+        const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1},
+                           wedge = {{{0.6, 0, 0, -1.2, 1.2},
+                                     {-0.6, 1.2 / tan(1.2), 0, 1.2, PI},
+                                     {-0.6, -1.2 / tan(1.2), 0, PI, 2 * PI - 1.2}},
+                                    3};
         scene_add_shape(&scene, &disc);
+        scene_add_shape(&scene, &wedge);
         for (size_t k = 0; k < DISCS; k++) {
             const double far = k > 0 ? random_between(&random, 0, 1.2) : 0, angle = random_between(&random, -PI, PI);
-            struct body body = turned_body(0, random_between(&random, 0.5, 1.5));
+            struct body body = turned_body(angle, random_between(&random, 0.5, 1.5));
             body.x = far * cos(angle);
             body.y = far * sin(angle);
+            body.shape = k % 3 > 0;
             scene_add_body(&scene, body);
         }
         const narc_bodies bodies = scene_bodies(&scene);
@@ -564,6 +570,58 @@ TEST(test_ties_of_things) {
         assert_memory_equal(rows[0], rows[1], sizeof rows[0]);
         destroy_scene(&scene);
     }
+}
+
+/* A point on the outline of a thing is as deep as rounding, however far that is from another place of the outline: also
+ * where rounding takes the point for one within. */
+TEST(test_outlines_of_things) {
+    enum { TRIALS = 300, POINTS = 40, TWO = 2 };
+    struct test_random random = test_random_named("points, outlines");
+    size_t within = 0;
+    for (size_t trial = 0; trial < test_trials(TRIALS); trial++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 2, TWO, 1);
+        const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1}, box = box_of(1, 0.8, 0);
+        scene_add_shape(&scene, &disc);
+        scene_add_shape(&scene, &box);
+        struct body body = turned_body(random_between(&random, -PI, PI), 1);
+        body.x = random_between(&random, -20, 20);
+        body.y = random_between(&random, -20, 20);
+        body.shape = trial % 2;
+        scene_add_body(&scene, body);
+        struct body beside = turned_body(random_between(&random, -PI, PI), random_between(&random, 0.5, 1.5));
+        beside.x = body.x + random_between(&random, 0.3, 0.7);
+        beside.y = body.y + random_between(&random, -0.3, 0.3);
+        scene_add_body(&scene, beside);
+        const struct reference_body others = scene_reference(&scene, 1);
+        double x[POINTS], y[POINTS];
+        size_t count = 0;
+        for (size_t k = 0; k < POINTS; k++) {
+            const double angle = random_between(&random, -PI, PI), c = (double)body.cosine, s = (double)body.sine;
+            const double along = random_between(&random, -0.4, 0.4), p = body.shape ? -0.5 : 0.5 * cos(angle),
+                         q = body.shape ? along : 0.5 * sin(angle), length = hypot(c, s);
+            x[count] = body.x + (c * p - s * q) / length;
+            y[count] = body.y + (s * p + c * q) / length;
+            count += reference_point_distance(&others, x[count] - others.x, y[count] - others.y) > 1e-4;
+        }
+        const narc_bodies bodies = scene_bodies(&scene);
+        const uint32_t owner = 5;
+        const narc_owners owners = {.owner = {&owner, 0}};
+        const narc_nearest_options options = {.search.owners = &owners};
+        const narc_points points = {
+            .count = count, .x = {x, sizeof *x, NARC_FLOAT64}, .y = {y, sizeof *y, NARC_FLOAT64}};
+        narc_box boxes[TWO];
+        narc_distance rows[POINTS];
+        narc_index *const index = index_bodies(scene.store, &bodies, NULL, boxes);
+        assert_int_equal(narc_find_nearest(index, scene.store, &bodies, &points, &options, rows, POINTS, NULL),
+                         NARC_OK);
+        for (size_t k = 0; k < count; k++) {
+            assert_true(fabsf(rows[k].separation) < 1e-5f);
+            within += rows[k].separation < 0;
+        }
+        narc_destroy_index(index);
+        destroy_scene(&scene);
+    }
+    assert_true(within > 0);
 }
 
 TEST_MAIN("distances")
