@@ -43,6 +43,10 @@ INLINE struct box_form load_box_forms(const narc_box_form *forms, const int32_t 
     return (struct box_form){{word[0], word[1]}, word[2], vi_bits(word[3])};
 }
 
+INLINE vm is_form(const struct box_form *form, uint32_t kind) {
+    return vi_lt(vi_set(0), vi_and(form->info, vi_set((int32_t)kind)));
+}
+
 INLINE vi get_arc_count(vi info) { return vi_and(info, vi_set(0xff)); }
 
 INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(NARC_FIRST_ARC)); }

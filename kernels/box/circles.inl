@@ -69,10 +69,6 @@ INLINE vec2 choose_side_vec2(enum circle_pairs of, vm is_a, vec2 first, vec2 oth
 
 INLINE vi choose_bit(vm m, int bit) { return vi_select(m, vi_set(bit), vi_set(0)); }
 
-INLINE vm is_form(const struct box_form *form, uint32_t kind) {
-    return vi_lt(vi_set(0), vi_and(form->info, vi_set((int32_t)kind)));
-}
-
 /* Pairs of a circle and any shape that has a form. */
 INLINE vm are_with_circle(const struct box_form *a, const struct box_form *b) {
     const vi circle = vi_set((int32_t)NARC_IS_CIRCLE - 1), zero = vi_set(0); /* circles have the largest number */

@@ -76,10 +76,9 @@ struct loaded {
 /* Forms of shapes, where both have one. */
 INLINE void load_forms(const narc_shapes *shapes, const int32_t *shape_a, const int32_t *shape_b, struct loaded *out) {
     const struct box_form form[] = {load_box_forms(shapes->boxes, shape_a), load_box_forms(shapes->boxes, shape_b)};
-    const vi any = vi_set(NARC_IS_BOX | NARC_IS_CAPSULE | NARC_IS_CIRCLE), flat = vi_set(NARC_IS_BOX | NARC_IS_CAPSULE);
-    const vm formed = vm_and(vi_lt(vi_set(0), vi_and(form[0].info, any)), vi_lt(vi_set(0), vi_and(form[1].info, any)));
-    out->boxes = vm_and(
-        formed, vm_or(vi_lt(vi_set(0), vi_and(form[0].info, flat)), vi_lt(vi_set(0), vi_and(form[1].info, flat))));
+    const vm formed = vm_and(vi_lt(vi_set(0), form[0].info), vi_lt(vi_set(0), form[1].info));
+    const uint32_t flat = NARC_IS_BOX | NARC_IS_CAPSULE;
+    out->boxes = vm_and(formed, vm_or(is_form(&form[0], flat), is_form(&form[1], flat)));
     UNROLL
     for (int side = 0; side < 2; side++) {
         v_store(out->box[side].half_x, v_abs(form[side].half.x)); /* a zero of a capsule may have a sign */
