@@ -79,7 +79,7 @@ NOINLINE bool find_next_part(struct part_walk *w, const narc_shapes *shapes, con
     return false;
 }
 
-/* How far a point, in a shape's coordinates, is from a shape; negative within it. As points.c has it, in double
+/* How far a point, in a shape's coordinates, is from a shape; negative within it. As point_rows.inl has it, in double
  * precision. */
 INLINE double find_depth_in(const struct body_frame *frame, place point) {
     double most = -INFINITY;

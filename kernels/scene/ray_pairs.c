@@ -2,6 +2,8 @@
  *
  * ray_pairs.c - the kernel of rays that ask of one body each: no way to it, and the rows of rays.c.
  */
+#define NARC_EIGHT_LANES
+
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
