@@ -257,7 +257,8 @@ static uint64_t hash_boxes(const struct scene *scene, int way) {
  * three bodies. */
 static uint64_t hash_points(const struct scene *scene, int things) {
     const narc_bodies bodies = scene_bodies(scene);
-    const narc_points points = {.count = BODIES, .x = bodies.x, .y = bodies.y};
+    const size_t count = things ? BODIES / 8 : BODIES; /* the way out of a thing is long */
+    const narc_points points = {.count = count, .x = bodies.x, .y = bodies.y};
     uint32_t own[BODIES], other[BODIES], owner[BODIES];
     narc_distance rows[3 * BODIES];
     narc_box boxes[BODIES];
@@ -273,11 +274,10 @@ static uint64_t hash_points(const struct scene *scene, int things) {
     narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
     assert_int_equal(narc_find_distances(scene->store, &bodies, &points, &NARC_ARRAY(other), NULL, rows, NULL),
                      NARC_OK);
-    assert_int_equal(
-        narc_find_nearest(index, scene->store, &bodies, &points, &options, rows + BODIES, (size_t)2 * BODIES, NULL),
-        NARC_OK);
+    assert_int_equal(narc_find_nearest(index, scene->store, &bodies, &points, &options, rows + count, 2 * count, NULL),
+                     NARC_OK);
     uint64_t hash = TEST_HASH_START;
-    for (size_t k = 0; k < (size_t)3 * BODIES; k++) {
+    for (size_t k = 0; k < 3 * count; k++) {
         hash = test_hash_items(hash, &rows[k].point, 2, sizeof rows[k].point);
         hash = test_hash_items(hash, &rows[k].feature, 2, sizeof rows[k].feature);
         hash = test_hash_items(hash, &rows[k].separation, 6, sizeof rows[k].separation);
@@ -391,7 +391,7 @@ TEST(test_scenes) {
         {"boxes", hash_boxes, 0, {0x82c50e42c4824bc1u, 0xf33d99eef204246fu}},
         {"points", hash_points, 0, {0x57ecde8c73d6312eu, 0x57ecde8c73d6312eu}},
         {"worlds", hash_worlds, 0, {0xc98564332c7d076cu, 0xf20f34fe4959a5b1u}},
-        {"points and things", hash_points, 1, {0xab1b4323666ba7fbu, 0xf9694a44c4527c2au}},
+        {"points and things", hash_points, 1, {0x573dc0eaa30d7485u, 0xa51d05ecbd8aa077u}},
         {"rays stop", hash_rays, NARC_INSIDE_STOPS, {0x3d921d721e7f6ffbu, 0x3d921d721e7f6ffbu}},
         {"rays leave", hash_rays, NARC_INSIDE_LEAVES, {0x93bc1e29f9ee300fu, 0x93bc1e29f9ee300fu}},
         {"rays ignore", hash_rays, NARC_INSIDE_IGNORES, {0xebbd7d8a4e9a67f1u, 0xebbd7d8a4e9a67f1u}},
