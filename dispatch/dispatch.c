@@ -29,7 +29,14 @@ static const char isa_names[] =
 
 _Atomic(const narc_kernel_table *) narc_active_kernels;
 
-static bool is_supported(const struct isa *isa) { return isa->table && (narc_detect_cpu() & isa->needs) == isa->needs; }
+/* The processor is asked once: on a virtual machine each question leaves it, and all take as long as thousands of pairs. */
+static bool is_supported(const struct isa *isa) {
+    static _Atomic(unsigned) found;
+    unsigned has = atomic_load_explicit(&found, memory_order_relaxed);
+    if (!has)
+        atomic_store_explicit(&found, has = narc_detect_cpu(), memory_order_relaxed);
+    return isa->table && (has & isa->needs) == isa->needs;
+}
 
 static const struct isa *find_isa(const char *name) {
     for (int k = 0; name && k < ISA_COUNT; k++)
