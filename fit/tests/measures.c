@@ -90,8 +90,10 @@ struct reference_hull reference_wrap(const narc_point *points, size_t count, nar
 real reference_hull_support(const struct reference_hull *hull, real angle) {
     const point u = unit_at(angle);
     real most = -INFINITY;
-    for (size_t k = 0; k < hull->count; k++)
-        most = fmaxl(most, dot(hull->corners[k], u));
+    for (size_t k = 0; k < hull->count; k++) {
+        const real here = dot(hull->corners[k], u);
+        most = here > most ? here : most; /* fmaxl() is a call, twice as long as the rest */
+    }
     return most;
 }
 
