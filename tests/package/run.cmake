@@ -219,7 +219,7 @@ elseif(STEP STREQUAL "documented_shapes")
 
 elseif(STEP STREQUAL "subproject")
   build_and_test("${SOURCE}/tests/package/consumer" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}"
-    ${one_set} -DCMAKE_BUILD_TYPE=Debug)
+    ${one_set} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1)
   file(GLOB_RECURSE extra "${folder}/narc/files/*" "${folder}/narc/fit/*" "${folder}/narc/methods/*"
     "${folder}/narc/tests/*" "${folder}/narc/tools/*")
   if(extra)
