@@ -260,7 +260,7 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
     for (size_t k = 0; k < COUNT; k++)
         world[k] = (uint32_t)random_below(&random, 300);
     for (uint32_t trial = 0; trial < 4; trial++)
-        for (unsigned workers = 1; workers <= 17; workers += workers < 3 ? 1 : 7) {
+        for (unsigned workers = 1; workers <= 17; workers += workers < 3 ? 2 : 14) {
             const size_t count = COUNT - 17 * trial;
             narc_workers some;
             narc_openmp_workers(workers, &some);

@@ -33,15 +33,15 @@ enum builder {
 static const char *const names[BUILDERS] = {
     "circle", "capsule",           "box",  "polygon", "regular polygon", "four-arc",
     "points", "points and radius", "ring", "ellipse", "segment",         "skin"};
-static const uint64_t golden[BUILDERS] = {0x19d216eacbbdc8e8u, 0xbc49f8946e15cd80u, 0x281bfae381ac007fu,
-                                          0xade32b2c6f131b14u, 0x3294aeac499b4ddcu, 0xffd05cbd707cf129u,
-                                          0xc2f482952a4c9808u, 0x1e27dd554ac4b776u, 0xb94ba0f8df1204c1u,
-                                          0x391432fe6bacf207u, 0x7b3c7433ae6c50cdu, 0xe20c6f6929ad63cfu};
+static const uint64_t golden[BUILDERS] = {0x32d0c1d12682ffe7u, 0xf4aed7aa5f4410f0u, 0xbfb41d8dd9361945u,
+                                          0xef160edd6bca8261u, 0x1dff18254f1a94afu, 0xadbbe1add4299e8bu,
+                                          0xd0f1731352af5e2au, 0x5690721c9ea0ac2du, 0x5bac51c76593e09fu,
+                                          0xe97510eea0c5314bu, 0x9ac4c379d5d78aa0u, 0xfd08ff1c66c383c0u};
 
-static const uint64_t golden_unions = 0xa19967682e62241cu, golden_chains = 0x591518080ecb7a54u;
+static const uint64_t golden_unions = 0x07e27e56f1e0d697u, golden_chains = 0x591518080ecb7a54u;
 
 /* Of each builder. An ellipse takes much longer than the others. */
-static size_t shapes_of(enum builder builder) { return builder == ELLIPSE ? 24 : 300; }
+static size_t shapes_of(enum builder builder) { return builder == ELLIPSE ? 8 : 100; }
 
 /* Corners of a convex polygon: on the unit circle, at ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)) turned by quarter turns,
  * then stretched and moved. */
@@ -168,7 +168,7 @@ TEST(test_builders) {
 TEST(test_unions) {
     struct test_random random = {10};
     uint64_t hash = TEST_HASH_START;
-    for (size_t k = 0; k < 200; k++) {
+    for (size_t k = 0; k < 60; k++) {
         narc_arc arcs[4 * NARC_MAX_ARCS];
         size_t counts[4], used = 0, parts = 0;
         narc_mass mass;
