@@ -41,7 +41,7 @@ if(TARGET narc_fit)
 endif()
 if(TARGET narc_tool)
   install(TARGETS narc_tool RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT narc_tools)
-  install(FILES docs/narc.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT narc_tools)
+  install(FILES "${PROJECT_BINARY_DIR}/tools/narc.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT narc_tools)
 endif()
 
 configure_package_config_file(cmake/narcConfig.cmake.in narcConfig.cmake INSTALL_DESTINATION "${package_directory}")

@@ -22,31 +22,6 @@
 #include "table.h"
 #include "text.h"
 
-static const char HELP[] =
-    "usage: narc cast --shapes shapes.json --bodies bodies.csv --rays rays.csv [--out hits.csv]\n"
-    "                 [--inside NAME] [--most N] [--picture FILE] [--isa NAME] [--threads N]\n"
-    "\n"
-    "Finds what each ray hits first, exactly, and prints a short report. One of the input files may\n"
-    "be -: standard input.\n"
-    "\n"
-    "  --shapes FILE   the shapes file\n"
-    "  --bodies FILE   CSV, columns shape,x,y,angle and perhaps scale, as narc collide takes it\n"
-    "  --rays FILE     CSV, columns x,y,motion_x,motion_y: where a ray begins, and from there to its end\n"
-    "  --out FILE      the hits: CSV, header\n"
-    "                  ray,body,fraction,normal_x,normal_y,point_x,point_y,arc\n"
-    "                  rays and bodies by their indices from 0; the fraction is of the ray's length;\n"
-    "                  points are in world coordinates, normals point out of the body\n"
-    "                  -: standard output, and the report goes to standard error\n"
-    "  --inside NAME   a ray that begins within a body: stops there (the default; fraction 0, normal 0),\n"
-    "                  leaves (is hit from inside where it leaves), or ignores that body;\n"
-    "                  a body of several parts is one body\n"
-    "  --most N        so many hits of each ray, one of each body, the nearest first; default 1\n"
-    "  --picture FILE  a .png or .svg picture of bodies, rays, hits and normals\n"
-    "  --isa NAME      the instruction set, one of those that narc info lists\n"
-    "  --threads N     1 to 1024; left out: one for each processor\n"
-    "\n"
-    "The manual, narc(1), describes the files.\n";
-
 enum { LARGEST_MOST = 1000000 };
 
 typedef struct settings {
@@ -269,4 +244,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(work.store);
 }
 
-const command cast_command = {"cast", "rays against bodies: hits, report, picture", HELP, run, NULL};
+const command cast_command = {"cast", "rays against bodies: hits, report, picture", run};

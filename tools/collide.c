@@ -20,51 +20,6 @@
 #include "progress.h"
 #include "text.h"
 
-static const char HELP[] =
-    "usage: narc collide --shapes shapes.json --bodies bodies.csv [--pairs pairs.csv|--max-pairs N]\n"
-    "                    [--out contacts.csv] [--all] [--margin M] [--picture FILE]\n"
-    "                    [--method NAME] [--tolerance T] [--iterations N] [--isa NAME] [--threads N]\n"
-    "\n"
-    "Tests bodies for collision, exactly unless another method is asked for, and prints a short\n"
-    "report. One of the input files may be -: standard input.\n"
-    "\n"
-    "  --shapes FILE   the shapes file\n"
-    "  --bodies FILE   CSV, columns shape,x,y,angle and perhaps scale, in any order; a shape is given\n"
-    "                  by its name or its index from 0, an angle in radians\n"
-    "  --pairs FILE    CSV, columns a,b: the pairs to test, body indices from 0; left out: all\n"
-    "                  pairs whose bounding boxes overlap (or come closer than the margin)\n"
-    "  --max-pairs N   without --pairs: more candidates than that are an error; default 100000000\n"
-    "  --out FILE      the contacts: CSV, header\n"
-    "                  a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n"
-    "                  normals point from a to b; points are in world coordinates\n"
-    "                  -: standard output, and the report goes to standard error\n"
-    "                  With circle, aabb and obb: the pairs that pass, header a,b, as --pairs takes\n"
-    "  --margin M      report pairs whose separation is less than M; default 0, those that collide\n"
-    "  --all           report every pair, whatever its separation: those of --pairs, and without\n"
-    "                  it every candidate; then --margin only widens the search for candidates\n"
-    "  --picture FILE  a .png or .svg picture of bodies, contact points and normals\n"
-    "  --method NAME   how pairs are tested:\n"
-    "                  sat          exact, the default\n"
-    "                  sat-first    the first pair of arcs that passes decides; can be wrong\n"
-    "                  polygon-sat  edge normals against vertices; polygons without rounding only\n"
-    "                  gjk          GJK, and EPA where bodies collide; exact within the tolerance\n"
-    "                  circle, aabb, obb\n"
-    "                               filters: do bounding circles, axis-aligned boxes or oriented\n"
-    "                               boxes overlap? No contacts, and neither --margin nor --all\n"
-    "                  With any but sat the report also tells how many answers differ from sat's.\n"
-    "  --tolerance T   gjk: the largest error of a separation, as a part of the sum of both bounding\n"
-    "                  radii; 1e-9 to 1, default 0.0001\n"
-    "  --iterations N  gjk: most steps of GJK, and of EPA; 1 to 128, the default\n"
-    "  --isa NAME      the instruction set, one of those that narc info lists\n"
-    "  --threads N     1 to 1024; left out: one for each processor\n"
-    "\n"
-    "Skipped pairs have no answer, because their bodies are more than 1e17 apart.\n"
-    "\n"
-    "The narrow phase's time is that of the batch call alone, which the report names; it is repeated\n"
-    "and the median taken where one call is too short to measure.\n"
-    "\n"
-    "The manual, narc(1), describes the files.\n";
-
 enum { DEFAULT_MOST_PAIRS = 100000000 };
 
 /* Far below what single precision can reach, and far above what it rounds to 0, which would mean the default. */
@@ -363,4 +318,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(work.store);
 }
 
-const command collide_command = {"collide", "bodies against each other: contacts, report, picture", HELP, run, NULL};
+const command collide_command = {"collide", "bodies against each other: contacts, report, picture", run};

@@ -8,9 +8,7 @@
 typedef struct command {
     const char *name;
     const char *summary; /* one line */
-    const char *help;
     void (*run)(int argc, char **argv);
-    const char *more; /* of the help; NULL: that is all */
 } command;
 
 extern const command fit_command, export_command, view_command, scene_command, collide_command, cast_command,

@@ -23,36 +23,6 @@
 #include "text.h"
 #include "turn.h"
 
-static const char HELP[] =
-    "usage: narc export SHAPES --to FORMAT [--tolerance T] [--scale S] [--y-down] [--origin NAME]\n"
-    "                   [--image FILE] [--grid WxH] [--out FILE] [--dry-run] [--report json]\n"
-    "\n"
-    "Writes shapes as the files of editors and engines. Shapes NAME/1, NAME/2 ... are one body NAME.\n"
-    "\n"
-    "  SHAPES          a shapes file\n"
-    "  --to FORMAT     tmx, tmj      a map of Tiled, with a layer of collision objects for each body\n"
-    "                  tsj           a tileset of Tiled, each body the collision of its tile\n"
-    "                  godot, godot3 a scene (.tscn) of Godot 4 or 3, with a StaticBody2D for each\n"
-    "                  tres, tres3   a shape as a resource of its own, with {name} in --out\n"
-    "                  phaser        PhysicsEditor's JSON, as Phaser 3 gives it to matter-js\n"
-    "                  box2d         R.U.B.E.'s JSON; polygons have at most 8 corners\n"
-    "                  libgdx        Physics Body Editor's JSON; the same\n"
-    "                  svg           a drawing, with true arcs and a group for each body\n"
-    "                  dxf           DXF R12: polylines with bulges, and a layer for each body\n";
-static const char MORE_HELP[] =
-    "  --tolerance T   where the format has no arcs: how far the polygons, which bound the shapes, may be\n"
-    "                  from them, in units of the output\n"
-    "  --scale S       all lengths are multiplied by this, default 1\n"
-    "  --y-down        y points down in box2d, libgdx and dxf too, as it does in the others\n"
-    "  --origin NAME   where each body's origin is: input (the default, in the coordinates of what was\n"
-    "                  fitted), center or bottom (the middle of its bounding box, or of its lower side)\n"
-    "  --image FILE    of tsj: the sheet, with --grid; or with {name} in it the image of each body; from the\n"
-    "                  folder of the output\n"
-    "  --grid WxH      of tsj: the sheet's cells, in pixels; body NAME-3 is that of cell 3\n"
-    "  --out FILE      the file to write; left out or -: standard output; with {name} in it one for each body\n"
-    "  --dry-run       nothing is written but the table of bodies, pieces and corners\n"
-    "  --report json   instead of the table JSON\n";
-
 enum { TO, TOLERANCE, SCALE, Y_DOWN, ORIGIN, OUT, DRY_RUN, REPORT, IMAGE, GRID, OPTIONS };
 typedef enum origin { INPUT, CENTER, BOTTOM, ORIGINS } origin;
 static const char *const origin_names[ORIGINS] = {"input", "center", "bottom"};
@@ -664,4 +634,4 @@ static void run(int argc, char **argv) {
     free(files);
 }
 
-const command export_command = {"export", "shapes for editors and engines", HELP, run, MORE_HELP};
+const command export_command = {"export", "shapes for editors and engines", run};

@@ -26,85 +26,6 @@
 #include <omp.h>
 #endif
 
-static const char HELP[] =
-    "usage: narc fit INPUT... --arcs N|--tolerance T|--parts N [--bound|--approximate]\n"
-    "                [--objective NAME] [--edges|--no-edges|--polygon|--paper] [--flatness F]\n"
-    "                [--min-radius R] [--quick|--starts N] [--jobs N] [--keep-origin] [--keep-going]\n"
-    "                [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
-    "                [--out shapes.json] [--picture FILE] [--report json]\n"
-    "       narc fit INPUT... --chain --tolerance T [--open] [--smooth] [--keep-going] [--characters TEXT]\n"
-    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--trace] [--grid WxH]\n"
-    "                [--out shapes.json] [--picture FILE] [--report json]\n"
-    "\n"
-    "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
-    "those that come close to it. Of an outline only the convex hull counts, without --parts or --chain.\n"
-    "\n"
-    "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
-    "                  fonts         with --characters: each of these is one shape; lengths in em\n"
-    "                  SVG           what is drawn, as one shape: plain drawings exactly, others traced\n"
-    "                  PNG           the silhouette; lengths in pixels\n"
-    "                  DXF           what is drawn in model space, exactly; ASCII, R12 to 2018\n"
-    "                  CSV           points, one x,y a line; a blank line begins another contour\n"
-    "                  JSON          points, [[x, y], ...], or a list of such lists; or the frames of\n"
-    "                                TexturePacker or Aseprite, whose image is beside it\n"
-    "                  Tiled, R.U.B.E., PhysicsEditor: the collision objects in their files\n"
-    "                  folders       the SVG and PNG files in them\n"
-    "  --arcs N        at most N arcs a shape, 1 to 32\n"
-    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull; circles,\n"
-    "                  capsules, boxes and regular polygons within T become just that\n"
-    "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
-    "                  that overlap at cuts, 1 to 256: few that stay within --tolerance of the\n"
-    "                  outline, or with --arcs, which is for each, the nearest; with neither:\n"
-    "                  exactly the outline, of lines and convex arcs, without overlap\n"
-    "  --bound         the shape contains the outline; the default\n"
-    "  --approximate   it may also lie inside\n"
-    "  --objective NAME\n"
-    "                  with --arcs: what is least\n"
-    "                  area          with --bound, where it is the default: the shape's area;\n"
-    "                                with --approximate: the area between shape and hull\n"
-    "                  perimeter     with --bound only: the shape's perimeter\n"
-    "                  distance      the largest distance of shape and hull; the default with\n"
-    "                                --approximate\n"
-    "  --edges         straight edges may stand between arcs; the default of --parts\n"
-    "  --no-edges      not in parts either, nor plain shapes with a tolerance\n"
-    "  --polygon       to compare: a bounding polygon of least area\n"
-    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n";
-static const char MORE_HELP[] =
-    "  --characters TEXT\n"
-    "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
-    "  --ids A,B|'*'   of SVG: a shape for each element with one of these ids, or each layer; of DXF:\n"
-    "                  for each layer of that name, or all that have something\n"
-    "  --silhouette NAME\n"
-    "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
-    "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
-    "  --trace         plain SVG drawings too are drawn and traced\n"
-    "  --grid WxH      PNG images are sheets of cells of W x H pixels, each cell with ink a shape NAME-k,\n"
-    "                  k from 0, row by row\n"
-    "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
-    "                  1e-9 to 0.1, default 2e-5\n"
-    "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
-    "  --quick         a short search: areas are mostly within 1 % of the usual ones\n"
-    "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
-    "  --jobs N        how many outlines are fitted at a time, each as it would be alone; default:\n"
-    "                  one for each core. Ctrl-C leaves what is done\n"
-    "  --keep-origin   the shapes keep the input's coordinates\n"
-    "  --chain         instead of convex shapes: the outline itself as closed chains, within\n"
-    "                  --tolerance, of the fewest arcs and edges; --smooth: they join without\n"
-    "                  corners, for ground; --open: contours are strokes, left open\n"
-    "  --keep-going    what cannot be read or fitted is left out; the exit status is 1\n"
-    "  --out FILE      the shapes file to write; left out or -: standard output; with {name} in it one for each\n"
-    "                  shape, with its parts\n"
-    "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
-    "  --report json   instead of the table JSON, with warnings, and with --keep-going errors, of each input\n"
-    "\n"
-    "A shape is named by its file without the suffix (shape-0 for 0.csv), a glyph by its ASCII letter or\n"
-    "its code point (U+1F47B); names that are taken get -2, -3 and so on. A shape's centroid is its\n"
-    "origin; \"origin\" in the shapes file tells where that is in the input's coordinates.\n"
-    "\n"
-    "The table has areas of shape and hull (of parts: of their union and the outline), distances, and\n"
-    "the origin.\n";
-
 enum {
     ARCS,
     TOLERANCE,
@@ -781,4 +702,4 @@ static void run(int argc, char **argv) {
     free(files);
 }
 
-const command fit_command = {"fit", "outlines of glyphs, drawings, images or points to shapes", HELP, run, MORE_HELP};
+const command fit_command = {"fit", "outlines of glyphs, drawings, images or points to shapes", run};

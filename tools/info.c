@@ -11,12 +11,6 @@
 #include "narc.h"
 #include "options.h"
 
-static const char HELP[] = "usage: narc info\n"
-                           "\n"
-                           "Prints the version, the processor's features as far as narc uses them, the instruction\n"
-                           "sets, the kernels, and the number of threads. The environment variable NARC_ISA\n"
-                           "chooses another instruction set.\n";
-
 static void run(int argc, char **argv) {
     parse_options(argc, argv, NULL, 0, NULL, NULL);
     const char *chosen = narc_get_isa();
@@ -43,4 +37,4 @@ static void run(int argc, char **argv) {
     printf("%-20s %u\n", "threads", workers.count);
 }
 
-const command info_command = {"info", "version, processor features, instruction sets, threads", HELP, run, NULL};
+const command info_command = {"info", "version, processor features, instruction sets, threads", run};

@@ -14,15 +14,22 @@
 #include "system.h"
 #include "text.h"
 
-static const command *const commands[] = {&fit_command,     &export_command, &view_command, &scene_command,
-                                          &collide_command, &cast_command,   &info_command};
+/* The text that --help prints for each command, help/NAME.txt, as NAME_help. */
+#include "help.inc"
+
+static const struct {
+    const command *command;
+    const char *help;
+} commands[] = {{&fit_command, fit_help},     {&export_command, export_help},   {&view_command, view_help},
+                {&scene_command, scene_help}, {&collide_command, collide_help}, {&cast_command, cast_help},
+                {&info_command, info_help}};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_help(void) {
     printf("usage: narc COMMAND [ARGUMENTS]\n\n"
            "Batched collision of 2D convex shapes made of circular arcs.\n\n");
     for (size_t i = 0; i < COMMAND_COUNT; i++)
-        printf("  narc %-8s %s\n", commands[i]->name, commands[i]->summary);
+        printf("  narc %-8s %s\n", commands[i].command->name, commands[i].command->summary);
     printf("\n"
            "  --help      this text; behind a command, the command's\n"
            "  --version   the version\n"
@@ -33,20 +40,20 @@ static void print_help(void) {
 
 static bool is_help(const char *argument) { return strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0; }
 
-static void run_command(const command *chosen, int argc, char **argv) {
+static void run_command(size_t chosen, int argc, char **argv) {
     for (int i = 0; i < argc && strcmp(argv[i], "--") != 0; i++) {
         if (is_help(argv[i])) {
-            printf("%s%s", chosen->help, chosen->more ? chosen->more : "");
+            fputs(commands[chosen].help, stdout);
             return;
         }
     }
-    chosen->run(argc, argv);
+    commands[chosen].command->run(argc, argv);
 }
 
-static const command *find_command(const char *name) {
+static size_t find_command(const char *name) {
     for (size_t i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(name, commands[i]->name) == 0)
-            return commands[i];
+        if (strcmp(name, commands[i].command->name) == 0)
+            return i;
     fail("%s '%s'; see narc --help", name[0] == '-' ? "unknown option" : "unknown command",
          narc_make_excerpt(name).text);
 }

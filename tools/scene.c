@@ -15,18 +15,6 @@
 #include "text.h"
 #include "turn.h"
 
-static const char HELP[] =
-    "usage: narc scene --shapes shapes.json --bodies N --density D --seed S [--out bodies.csv]\n"
-    "\n"
-    "Strews N bodies over a square around the origin: shapes, positions and angles are uniform,\n"
-    "and the square is so large that the areas of all shapes together are D times its own.\n"
-    "\n"
-    "  --shapes FILE   the shapes file\n"
-    "  --bodies N      how many bodies, 1 to 4294967295\n"
-    "  --density D     more than 0, at most 10; bodies overlap more the denser they lie\n"
-    "  --seed S        a whole number; the same seed gives the same file\n"
-    "  --out FILE      the bodies file to write; left out or -: standard output\n";
-
 /* SplitMix64: a counter in steps of the golden ratio, its bits mixed by two multiplications. */
 static uint64_t next_random(uint64_t *state) {
     uint64_t bits = *state += UINT64_C(0x9e3779b97f4a7c15);
@@ -98,4 +86,4 @@ static void run(int argc, char **argv) {
     narc_destroy_shapes(store);
 }
 
-const command scene_command = {"scene", "bodies at random places", HELP, run, NULL};
+const command scene_command = {"scene", "bodies at random places", run};

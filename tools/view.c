@@ -13,18 +13,6 @@
 #include "output.h"
 #include "text.h"
 
-static const char HELP[] =
-    "usage: narc view SHAPES [DRAWING...] [--out FILE] [--characters TEXT] [--ids A,B,...] [--silhouette NAME]\n"
-    "                 [--threshold X] [--trace] [--grid WxH]\n"
-    "\n"
-    "Writes an HTML page that stands alone: shapes, parts and chains by name, with their arcs and areas, to\n"
-    "move and zoom by mouse, fingers and keys.\n"
-    "\n"
-    "  SHAPES          a shapes file\n"
-    "  DRAWING         what the shapes were fitted to, as for narc fit, with the same options: outlines and\n"
-    "                  images lie beneath the shapes of the same names\n"
-    "  --out FILE      the page to write; left out or -: standard output\n";
-
 enum { READING, OUT = READING + READING_OPTIONS, OPTIONS };
 
 /* view.html, up to where its data begins. */
@@ -164,4 +152,4 @@ static void run(int argc, char **argv) {
     free(files);
 }
 
-const command view_command = {"view", "shapes over their drawings, as a page", HELP, run, NULL};
+const command view_command = {"view", "shapes over their drawings, as a page", run};
