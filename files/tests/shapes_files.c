@@ -18,6 +18,8 @@
 #include "support.h"
 #include "turtle.h"
 
+RELEASE_AT(narc_destroy_shape_list)
+
 static const char every_form[] =
     "\xef\xbb\xbf{\"shapes\": [\n"
     "  {\"name\": \"disc\", \"origin\": [-0.0, 1e-310], \"circle\": 1.5},\n"
@@ -35,12 +37,10 @@ enum { FORMS = 7 };
 /* Reads from a block of exactly that size, so that reading behind its end shows. */
 static narc_status read_exactly(const char *text, size_t size, const narc_allocator *allocator, narc_shapes *store,
                                 narc_shape_list **out_list, narc_error *error) {
-    char *data = malloc(size ? size : 1);
+    AUTO(free_at) char *data = malloc(size ? size : 1);
     assert_non_null(data);
     memcpy(data, text, size);
-    const narc_status status = narc_read_shapes(data, size, allocator, store, out_list, error);
-    free(data);
-    return status;
+    return narc_read_shapes(data, size, allocator, store, out_list, error);
 }
 
 static narc_shape_list *read_text(const char *text, narc_shapes *store) {
@@ -58,9 +58,9 @@ static void expect_arcs(const narc_named_shape *shape, const char *name, const n
 
 TEST(reads_every_form) {
     const narc_arc circle = {0, 0, 1, 0, 6.283185307179586};
-    narc_shapes *store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
     assert_int_equal(narc_add_shape(store, &circle, 1, NULL, NULL), NARC_OK);
-    narc_shape_list *list = read_text(every_form, store);
+    AUTO(narc_destroy_shape_list_at) narc_shape_list *list = read_text(every_form, store);
     assert_int_equal(list->count, FORMS);
     assert_int_equal(narc_count_shapes(store), FORMS + 1);
     narc_arc arcs[NARC_MAX_ARCS];
@@ -88,9 +88,7 @@ TEST(reads_every_form) {
     }
     assert_int_equal(narc_find_named_shape(list, ""), FORMS);
     assert_int_equal(narc_find_named_shape(list, "discs"), FORMS);
-    narc_destroy_shape_list(list);
     narc_destroy_shape_list(NULL);
-    narc_destroy_shapes(store);
 }
 
 /* ---------------------------------------------------------------------------- there and back */
@@ -101,7 +99,7 @@ static void expect_same(const narc_named_shape *a, const narc_named_shape *b) {
 }
 
 TEST(half_planes_are_shapes_without_arcs) {
-    narc_shapes *store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
     const narc_arc disc = {0, 0, 1, 0, 6.283185307179586};
     const narc_named_shape shapes[] = {{"floor", NULL, 0, {0, 0}, 0, NARC_FORM_HALF_PLANE},
                                        {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE}};
@@ -125,26 +123,22 @@ TEST(half_planes_are_shapes_without_arcs) {
     for (size_t k = 0; k < 2; k++)
         assert_int_equal(read_exactly(wrong[k], strlen(wrong[k]), NULL, store, &list, &error), NARC_ERROR_FORMAT);
     assert_int_equal(narc_count_shapes(store), before);
-    narc_destroy_shapes(store);
 }
 
 /* Written and read they have the same bits; written again the file has the same bytes. */
 static void expect_round_trip(const narc_named_shape *shapes, size_t count) {
-    char *text = NULL, *again = NULL;
+    AUTO(free_at) char *text = NULL, *again = NULL;
     size_t size = 0, again_size = 0;
     narc_error error;
     expect_ok(narc_write_shapes(shapes, count, NULL, &text, &size, &error), &error);
     assert_int_equal(strlen(text), size);
-    narc_shape_list *list = read_text(text, NULL);
+    AUTO(narc_destroy_shape_list_at) narc_shape_list *list = read_text(text, NULL);
     assert_int_equal(list->count, count);
     for (size_t k = 0; k < count; k++)
         expect_same(&list->items[k], &shapes[k]);
     expect_ok(narc_write_shapes(list->items, count, NULL, &again, &again_size, &error), &error);
     assert_int_equal(again_size, size);
     assert_memory_equal(again, text, size);
-    free(text);
-    free(again);
-    narc_destroy_shape_list(list);
 }
 
 static double random_finite(struct test_random *random) {
@@ -161,7 +155,7 @@ TEST(keeps_bits) {
     enum { SHAPES = 60 };
     struct test_random random = test_random_named("shapes there and back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
-        struct shape *made = malloc(SHAPES * sizeof *made);
+        AUTO(free_at) struct shape *made = malloc(SHAPES * sizeof *made);
         narc_named_shape shapes[SHAPES];
         char names[SHAPES][40];
         for (size_t k = 0; k < SHAPES; k++) {
@@ -173,7 +167,6 @@ TEST(keeps_bits) {
         }
         shapes[7].name = "7";
         expect_round_trip(shapes, SHAPES);
-        free(made);
     }
 }
 
@@ -182,6 +175,7 @@ TEST(keeps_chains) {
     struct test_random random = test_random_named("chains there and back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         const narc_arc disc = {0, 0, 1, 0, 6.283185307179586};
+        AUTO(free_at)
         struct turtle open = walk_ground(&random, 200, 1.2), closed = walk_gear(3 + random_below(&random, 20), 1);
         for (size_t k = 0; k < closed.count; k++) {
             const double round = 6.283185307179586 * (double)random_below(&random, 2);
@@ -192,32 +186,28 @@ TEST(keeps_chains) {
                                            {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE},
                                            {"closed", closed.arcs, closed.count, {0, 0}, 0, NARC_FORM_CLOSED_CHAIN}};
         expect_round_trip(shapes, 3);
-        free(open.arcs);
-        free(closed.arcs);
     }
     static const char text[] =
         "{\"shapes\": [{\"name\": \"g\", \"chain\": {\"arcs\": [{\"center\": [1, 2], \"radius\": 0.0, "
         "\"start\": 1, \"end\": 1}, {\"center\": [0.15852901519210347, 2.5403023058681398], \"radius\": -0, \"start\": "
         "1, "
         "\"end\": 0.5}]}}, {\"name\": \"c\", \"circle\": 1}]}";
-    narc_shapes *store = empty_store();
-    narc_shape_list *list;
+    AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
+    AUTO(narc_destroy_shape_list_at) narc_shape_list *list;
     assert_int_equal(narc_read_shapes(text, strlen(text), NULL, store, &list, NULL), NARC_OK);
     assert_int_equal(narc_count_shapes(store), 1);
     assert_int_equal(list->items[0].form, NARC_FORM_OPEN_CHAIN);
     assert_true(signbit(list->items[0].arcs[1].radius));
     assert_int_equal(list->items[1].form, NARC_FORM_SHAPE);
-    narc_destroy_shape_list(list);
-    narc_destroy_shapes(store);
 }
 
 /* A valley's radius is written as a number that keeps its sign in other programs, and is one without it. */
 TEST(keeps_valleys) {
-    struct turtle t = create_turtle(0, 0, PI / 2);
-    narc_shapes *store = empty_store();
+    AUTO(free_at) struct turtle t = create_turtle(0, 0, PI / 2);
+    AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
     narc_chain_entry entries[2][8];
     size_t counts[2], size;
-    char *text;
+    AUTO(free_at) char *text;
     narc_error error;
     walk_arc(&t, 0, 0);
     walk_line(&t, 2);
@@ -232,7 +222,7 @@ TEST(keeps_valleys) {
     assert_null(strstr(text, "\"radius\": -0,"));
     char *const valley = strstr(text, "-0.0"); /* " 0  " */
     valley[0] = valley[2] = valley[3] = ' ';
-    narc_shape_list *list = read_text(text, store);
+    AUTO(narc_destroy_shape_list_at) narc_shape_list *list = read_text(text, store);
     assert_false(signbit(list->items[0].arcs[1].radius));
     for (int k = 0; k < 2; k++)
         expect_ok(
@@ -240,10 +230,6 @@ TEST(keeps_valleys) {
             &error);
     assert_int_equal(counts[0], counts[1]);
     assert_memory_equal(entries[0], entries[1], counts[0] * sizeof **entries);
-    narc_destroy_shape_list(list);
-    narc_destroy_shapes(store);
-    free(t.arcs);
-    free(text);
 }
 
 /* Where the decimal point is a comma, files are the same. Skipped without such a locale. */
@@ -349,7 +335,7 @@ TEST(names_lines) {
         const void *before = list;
         narc_error error = {.message = "?"};
         uint32_t index = 99;
-        narc_shapes *store = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
         const narc_status status = read_exactly(wrong[k].text, strlen(wrong[k].text), NULL, store, &list, &error);
         expect_error(status, wrong[k].status, &error, wrong[k].message);
         assert_int_equal(error.index, wrong[k].line);
@@ -359,7 +345,6 @@ TEST(names_lines) {
         /* The store is as it was. */
         assert_int_equal(narc_add_shape(store, &(narc_arc){0, 0, 1, 0, 6.283185307179586}, 1, &index, NULL), NARC_OK);
         assert_int_equal(index, 0);
-        narc_destroy_shapes(store);
     }
 }
 
@@ -419,7 +404,7 @@ TEST(survives_damage) {
         const size_t size = random_damage(&random, text, sizeof every_form - 1);
         narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
-        narc_shapes *store = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
         const narc_status status = read_exactly(text, size, NULL, store, &list, &error);
         size_t lines = 1;
         for (size_t i = 0; i < size; i++)
@@ -436,7 +421,6 @@ TEST(survives_damage) {
             narc_destroy_shape_list(list);
             read++;
         }
-        narc_destroy_shapes(store);
     }
     assert_true(read > trials / 20 && read < trials - trials / 4); /* both sorts are really met */
 }
@@ -470,7 +454,7 @@ TEST(tells_missing_memory) {
         }
         assert_true(failures > (of_store ? 1 : FORMS + 1));
     }
-    narc_shape_list *list = read_text(every_form, NULL);
+    AUTO(narc_destroy_shape_list_at) narc_shape_list *list = read_text(every_form, NULL);
     size_t failures = 0;
     for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
         struct ledger ledger = {.limited = true, .left = failures};
@@ -487,7 +471,6 @@ TEST(tells_missing_memory) {
         assert_int_equal(ledger.live, 0);
     }
     assert_true(failures > 2); /* a store, names, a text */
-    narc_destroy_shape_list(list);
 }
 
 #ifndef _WIN32 /* where the library has a cJSON of its own */
@@ -506,13 +489,12 @@ TEST(tells_missing_memory_of_json) {
     size_t failures = 0;
     cJSON_InitHooks(&(cJSON_Hooks){take_for_json, free});
     for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
-        narc_shape_list *list = NULL;
+        AUTO(narc_destroy_shape_list_at) narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
         json_left = failures;
         status = read_exactly(every_form, sizeof every_form - 1, NULL, NULL, &list, &error);
         if (status)
             expect_error(status, NARC_ERROR_MEMORY, &error, "not enough memory for JSON");
-        narc_destroy_shape_list(list);
     }
     cJSON_InitHooks(NULL);
     assert_true(failures > 50);

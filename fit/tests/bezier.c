@@ -643,7 +643,7 @@ TEST(test_chains) {
     size_t count;
     double told;
     assert_int_equal(narc_fit_bezier(bend, 3, 1e-3, NULL, 0, &count, &told, NULL), NARC_OK);
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     narc_arc_chains chains;
     assert_int_equal(narc_fit_chains(path, 1e-3, false, &chains, &error), NARC_ERROR_COUNT);
@@ -671,7 +671,6 @@ TEST(test_chains) {
     assert_int_equal(narc_fit_chains(path, 0, false, &chains, &error), NARC_ERROR_SIZE);
     assert_int_equal(narc_fit_chains(path, NAN, false, &chains, &error), NARC_ERROR_NOT_FINITE);
     assert_int_equal(narc_fit_chains(NULL, 1, false, &chains, &error), NARC_ERROR_ARGUMENT);
-    narc_destroy_path(path);
 }
 
 TEST_MAIN("bezier")

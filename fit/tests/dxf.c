@@ -32,8 +32,8 @@ static void read(const char *text, const char *layer, narc_path **out) {
 }
 
 static void expect_area(const char *text, const char *layer, size_t contours, double area) {
-    narc_path *path;
-    narc_contours flat;
+    AUTO(narc_destroy_path_at) narc_path *path;
+    AUTO(narc_release_contours) narc_contours flat;
     double sum = 0;
     read(text, layer, &path);
     assert_int_equal(narc_flatten_path(path, 2e-8, &flat, NULL), NARC_OK);
@@ -42,8 +42,6 @@ static void expect_area(const char *text, const char *layer, size_t contours, do
         sum += fabs(measure_area(&flat, k));
     if (!(fabs(sum - area) <= 1e-5))
         fail_msg("area %.9g, expected %.9g", sum, area);
-    narc_release_contours(&flat);
-    narc_destroy_path(path);
 }
 
 static const double PI_ = 3.14159265358979323846;
@@ -82,10 +80,10 @@ TEST(blocks_and_units) {
     static const char text[] =
         BLOCKS BEGIN "0\nINSERT\n8\nholes\n2\nhole\n10\n20\n20\n20\n41\n2\n42\n2\n70\n2\n71\n3\n44\n60\n45\n20\n"
                      "0\nINSERT\n8\nflat\n2\nhole\n10\n20\n20\n20\n41\n2\n42\n1\n50\n30\n" END;
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     double unit = 7;
     size_t open = 7;
-    char *names;
+    AUTO(free_at) char *names;
     narc_error error;
     expect_area(text, "holes", 6, 6 * 16 * PI_);
     expect_area(text, "flat", 1, 8 * PI_);
@@ -95,8 +93,6 @@ TEST(blocks_and_units) {
     assert_true(unit == 0.001 && open == 0);
     expect_ok(narc_list_dxf_layers(text, strlen(text), &names, &error), &error);
     assert_string_equal(names, "holes\nflat\n");
-    free(names);
-    narc_destroy_path(path);
 }
 
 TEST(curves) {
@@ -147,11 +143,10 @@ TEST(any_bytes) {
         char text[sizeof whole + 3];
         memcpy(text, whole, sizeof whole);
         const size_t size = random_damage(&random, text, sizeof whole - 1);
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         narc_error error;
         const narc_status status = narc_read_dxf(text, size, NULL, path, &error);
         assert_true(status == NARC_OK || (status != NARC_ERROR_MEMORY && error.message[0]));
-        narc_destroy_path(path);
     }
 }
 

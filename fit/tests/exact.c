@@ -46,7 +46,7 @@ static double find_depth(const narc_fit_result *part, narc_point p) {
 /* The area, and at random points: in one part inside, in none outside, but near lines. */
 static void check_cuts(const cuts *of, const narc_path *path, double area, double size) {
     struct test_random random = test_random_named("points");
-    narc_contours flat;
+    AUTO(narc_release_contours) narc_contours flat;
     narc_error error;
     narc_shapes *store = NULL;
     double sum = 0;
@@ -73,11 +73,10 @@ static void check_cuts(const cuts *of, const narc_path *path, double area, doubl
         if (near == 0)
             assert_int_equal(inside, is_inside(&flat, p));
     }
-    narc_release_contours(&flat);
 }
 
 static double measure_path(const narc_path *path, double size) {
-    narc_contours flat;
+    AUTO(narc_release_contours) narc_contours flat;
     double area = 0;
     assert_int_equal(narc_flatten_path(path, 1e-8 * size, &flat, NULL), NARC_OK);
     for (size_t k = 0; k < flat.count; k++) {
@@ -91,22 +90,19 @@ static double measure_path(const narc_path *path, double size) {
         }
         area += around % 2 ? -fabs(measure_area(&flat, k)) : fabs(measure_area(&flat, k));
     }
-    narc_release_contours(&flat);
     return area;
 }
 
 static void expect_cuts(const narc_path *path, size_t count, double size) {
-    cuts *of = cut(path);
+    AUTO(free_at) cuts *of = cut(path);
     assert_int_equal(of->count, count);
     check_cuts(of, path, measure_path(path, size), size);
-    free(of);
 }
 
 static void expect_polygon(const narc_point *points, size_t count, size_t parts) {
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     draw_polygon(path, points, count);
     expect_cuts(path, parts, 10);
-    narc_destroy_path(path);
 }
 
 TEST(an_l_is_two_boxes) {
@@ -142,20 +138,19 @@ TEST(cuts_serve_two_corners) {
 TEST(holes) {
     const narc_point outer[] = {{0, 0}, {6, 0}, {6, 6}, {0, 6}}, inner[] = {{2, 2}, {4, 2}, {4, 4}, {2, 4}};
     const narc_point island[] = {{2.5, 2.5}, {2.5, 3.5}, {3.5, 3.5}, {3.5, 2.5}}, far[] = {{7, 7}, {8, 7}, {7, 8}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     draw_polygon(path, outer, 4);
     draw_polygon(path, inner, 4);
     expect_cuts(path, 4, 10);
     draw_polygon(path, island, 4);
     draw_polygon(path, far, 3);
     expect_cuts(path, 6, 10);
-    narc_destroy_path(path);
 }
 
 /* A half disc with a slot, drawn either way round, and one with a square hole. */
 TEST(arcs_stay) {
     for (int way = 0; way < 2; way++) {
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         const narc_point left = {-4, 0}, top = {0, 4}, right = {4, 0};
         const narc_point slot[] = {{1, 0}, {1, 3}, {-1, 3}, {-1, 0}}, square[] = {{-3, 1}, {-2, 1}, {-2, 2}, {-3, 2}};
         assert_int_equal(narc_move_to(path, way ? &left : &right, NULL), NARC_OK);
@@ -177,7 +172,6 @@ TEST(arcs_stay) {
         check_cuts(of, path, measure_path(path, 5), 5);
         assert_true(of->count <= 6);
         free(of);
-        narc_destroy_path(path);
     }
 }
 
@@ -187,7 +181,7 @@ TEST(random_stars) {
     for (size_t trial = 0, trials = test_trials(200); trial < trials; trial++) {
         const size_t corners = 3 + random_below(&random, 40), holes = random_below(&random, 3);
         narc_point points[64];
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         size_t inwards = 0;
         for (size_t k = 0; k < corners; k++) {
             const double angle = 2 * PI_ * ((double)k + random_between(&random, 0, 0.9)) / (double)corners;
@@ -210,26 +204,23 @@ TEST(random_stars) {
         const bool inside = is_inside(&flat, (narc_point){0, 0});
         narc_release_contours(&flat);
         if (inside && corners > 7) { /* holes are within */
-            cuts *of = cut(path);
+            AUTO(free_at) cuts *of = cut(path);
             if (of->count > inwards + 1 - holes)
                 fail_msg("%zu parts of %zu corners that turn inwards, %zu holes", of->count, inwards, holes);
             assert_true(2 * (of->count + holes) >= inwards + 2);
             check_cuts(of, path, measure_path(path, 5), 5);
-            free(of);
         }
-        narc_destroy_path(path);
     }
 }
 
 /* A part with more corners than a shape has becomes two. */
 TEST(many_corners) {
     narc_point points[200];
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     for (int k = 0; k < 200; k++)
         points[k] = (narc_point){4 * cos(PI_ * k / 100), 4 * sin(PI_ * k / 100)};
     draw_polygon(path, points, 200);
     expect_cuts(path, 4, 5);
-    narc_destroy_path(path);
 }
 
 static void expect_refused(narc_path *path, narc_status status, size_t index, double value, const char *words) {
@@ -245,7 +236,7 @@ static void expect_refused(narc_path *path, narc_status status, size_t index, do
 TEST(what_is_refused) {
     const narc_point square[] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}}, middle = {2, 1},
                      bow[] = {{0, 0}, {4, 4}, {4, 0}, {0, 4}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     expect_refused(path, NARC_ERROR_COUNT, 0, 0, "no points");
     path = make_path();
     draw_polygon(path, square, 4);
@@ -269,7 +260,6 @@ TEST(what_is_refused) {
     narc_error error;
     expect_error(narc_cut_exactly(path, &part, 1, &count, &error), NARC_ERROR_CAPACITY, &error, "2 convex parts");
     assert_int_equal(count, 2);
-    narc_destroy_path(path);
 }
 
 TEST_MAIN("exact cuts")

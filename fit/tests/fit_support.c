@@ -63,12 +63,11 @@ narc_path *make_occupied_path(void) {
 }
 
 void expect_unchanged(const narc_path *occupied) {
-    narc_contours contours = flatten(occupied);
+    AUTO(narc_release_contours) narc_contours contours = flatten(occupied);
     assert_int_equal(contours.count, 1);
     assert_int_equal(contours.ends[0], 3);
     assert_int_equal(contours.point_count, 3);
     assert_memory_equal(contours.points, triangle, sizeof triangle);
-    narc_release_contours(&contours);
 }
 
 bool finish_any_bytes(narc_status status, const narc_error *error, unsigned allowed, size_t most, narc_path *occupied) {
@@ -78,26 +77,23 @@ bool finish_any_bytes(narc_status status, const narc_error *error, unsigned allo
             fail_msg("%s is none of the errors of damaged data: %s", narc_status_name(status), error->message);
         expect_unchanged(occupied);
     } else {
-        narc_contours contours = flatten(occupied);
+        AUTO(narc_release_contours) narc_contours contours = flatten(occupied);
         assert_true(contours.count > 1 && contours.count <= most);
-        narc_release_contours(&contours);
     }
     narc_destroy_path(occupied);
     return status == NARC_OK;
 }
 
 narc_status read_exactly(reader *read, const char *text, size_t size, narc_path *path, narc_error *error) {
-    char *data = malloc(size ? size : 1);
+    AUTO(free_at) char *data = malloc(size ? size : 1);
     assert_non_null(data);
     memcpy(data, text, size);
-    const narc_status status = read(data, size, path, error);
-    free(data);
-    return status;
+    return read(data, size, path, error);
 }
 
 void expect_wrong_text(reader *read, const char *text, size_t size, narc_status status, size_t line,
                        const char *words) {
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_error error = {.message = "?"};
     char beginning[32];
     expect_error(read_exactly(read, text, size, path, &error), status, &error, words);
@@ -109,7 +105,6 @@ void expect_wrong_text(reader *read, const char *text, size_t size, narc_status 
     expect_unchanged(path);
     assert_int_equal(read_exactly(read, text, size, path, NULL), status);
     expect_unchanged(path);
-    narc_destroy_path(path);
 }
 
 double measure_area(const narc_contours *contours, size_t k) {

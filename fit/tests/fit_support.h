@@ -22,6 +22,8 @@ unsigned char *read_file(const char *name, size_t *out_size);
 unsigned read_big_endian(const unsigned char *at, int size);
 
 narc_path *make_path(void);
+RELEASE_AT(narc_destroy_path)
+RELEASE_AT(narc_close_font)
 
 /* Closed contours of straight lines. */
 void draw_polygon(narc_path *path, const narc_point *points, size_t count);

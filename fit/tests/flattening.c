@@ -156,13 +156,13 @@ TEST(stays_within_flatness) {
     const size_t trials = test_trials(400);
     for (size_t trial = 0; trial < trials; trial++) {
         const struct curve c = make_curve(&random, trial % KINDS);
-        narc_path *path = draw_curve(&c);
+        AUTO(narc_destroy_path_at) narc_path *path = draw_curve(&c);
         narc_point samples[SAMPLES + 1];
         sample_curve(&c, samples);
         for (int round = 0; round < 2; round++) {
             const double asked =
                 round ? fmax(random_log_between(&random, 1e-6, 0.1) * find_speed(&c), 1e-12 * find_largest(&c)) : 0;
-            narc_contours flat;
+            AUTO(narc_release_contours) narc_contours flat;
             narc_error error;
             expect_ok(narc_flatten_path(path, asked, &flat, &error), &error);
             assert_true(round ? flat.flatness == asked : flat.flatness > 0);
@@ -171,9 +171,7 @@ TEST(stays_within_flatness) {
             check_distance(&c, &flat, samples);
             check_ends(&c, &flat, samples);
             check_thrift(&c, &flat);
-            narc_release_contours(&flat);
         }
-        narc_destroy_path(path);
     }
 }
 
@@ -183,7 +181,7 @@ TEST(measures_the_extent) {
     struct test_random random = test_random_named("extent");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
         const struct curve c = make_curve(&random, 2 + trial % (KINDS - 2));
-        narc_path *path = draw_curve(&c);
+        AUTO(narc_destroy_path_at) narc_path *path = draw_curve(&c);
         narc_point samples[SAMPLES + 1], low = c.controls[0], high = c.controls[0];
         sample_curve(&c, samples);
         for (size_t k = 0; k <= SAMPLES; k++) {
@@ -192,12 +190,10 @@ TEST(measures_the_extent) {
         }
         const double sampled = fmax(high.x - low.x, high.y - low.y);
         const double slack = 2 * find_acceleration(&c) / (8.0 * SAMPLES * SAMPLES), rounding = 12 * find_largest(&c);
-        narc_contours flat = flatten(path);
+        AUTO(narc_release_contours) narc_contours flat = flatten(path);
         const double extent = flat.flatness / NARC_FLATNESS;
         if (!(extent >= sampled - rounding * DBL_EPSILON && extent <= sampled + slack + rounding * DBL_EPSILON))
             fail_msg("extent %.17g, of samples %.17g", extent, sampled);
-        narc_release_contours(&flat);
-        narc_destroy_path(path);
     }
 }
 
@@ -205,19 +201,17 @@ TEST(measures_the_extent) {
 TEST(flattens_specks_far_out) {
     const double far = 9e8;
     struct curve c = {{{far, far}, {far + 1e-6, far}, {far + 1e-6, far + 1e-6}, {far, far + 1e-6}}, 3};
-    narc_path *path = draw_curve(&c);
+    AUTO(narc_destroy_path_at) narc_path *path = draw_curve(&c);
     narc_point samples[SAMPLES + 1];
     sample_curve(&c, samples);
-    narc_contours flat = flatten(path);
+    AUTO(narc_release_contours) narc_contours flat = flatten(path);
     assert_true(flat.flatness > 1e-6 * NARC_FLATNESS && flat.flatness < 1e-14 * far);
     check_distance(&c, &flat, samples);
-    narc_release_contours(&flat);
-    narc_destroy_path(path);
 }
 
 TEST(refuses_wrong_flatness) {
     static const double wrong[] = {-1, -1e-300, NAN, INFINITY, -INFINITY};
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_contours out, untouched;
     narc_error error;
     memset(&out, 0x5a, sizeof out);
@@ -227,7 +221,6 @@ TEST(refuses_wrong_flatness) {
     expect_error(narc_flatten_path(NULL, 0, &out, &error), NARC_ERROR_ARGUMENT, &error, "path");
     expect_error(narc_flatten_path(path, 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_contours");
     assert_memory_equal(&out, &untouched, sizeof out);
-    narc_destroy_path(path);
 }
 
 /* A tiny flatness is refused; the one that the message names is fine, a little less is not. */
@@ -235,7 +228,7 @@ TEST(names_the_least_flatness) {
     struct test_random random = test_random_named("least flatness");
     for (size_t trial = 0; trial < test_trials(40); trial++) {
         const struct curve c = make_curve(&random, trial % 2 ? 7 : trial / 2 % 3);
-        narc_path *path = draw_curve(&c);
+        AUTO(narc_destroy_path_at) narc_path *path = draw_curve(&c);
         narc_contours out, untouched;
         narc_error error;
         memset(&out, 0x5a, sizeof out);
@@ -248,19 +241,18 @@ TEST(names_the_least_flatness) {
         expect_ok(narc_flatten_path(path, least, &out, &error), &error);
         assert_in_range(out.point_count, 2, 20001);
         narc_release_contours(&out);
-        narc_destroy_path(path);
     }
 }
 
 /* Lines and curves, several contours: each has the points of its own curves. */
 TEST(flattens_mixed_contours) {
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     draw_polygon(path, (narc_point[]){{10, 0}, {10, 5}}, 2);
     expect_ok(narc_cubic_to(path, &(narc_point){10, 8}, &(narc_point){7, 9}, &(narc_point){5, 9}, &error), &error);
     expect_ok(narc_quadratic_to(path, &(narc_point){0, 9}, &(narc_point){10, 0}, &error), &error);
     draw_polygon(path, (narc_point[]){{1, 1}, {2, 1}, {1, 2}}, 3);
-    narc_contours flat = flatten(path);
+    AUTO(narc_release_contours) narc_contours flat = flatten(path);
     assert_int_equal(flat.count, 2);
     assert_int_equal(flat.ends[1], flat.point_count);
     assert_int_equal(flat.ends[1] - flat.ends[0], 3);
@@ -272,6 +264,4 @@ TEST(flattens_mixed_contours) {
     }
     assert_true(has_joint);
     assert_true(flat.points[flat.ends[0]].x == 1 && flat.points[flat.ends[0]].y == 1);
-    narc_release_contours(&flat);
-    narc_destroy_path(path);
 }

@@ -67,36 +67,30 @@ static narc_path *draw_type1_glyph(void) {
 
 /* Nothing but the order of two operations may differ: an epsilon, of numbers up to 1. */
 static void expect_same_contours(const narc_path *path, const narc_path *expected) {
-    narc_contours a = flatten(path), b = flatten(expected);
+    AUTO(narc_release_contours) narc_contours a = flatten(path), b = flatten(expected);
     assert_int_equal(a.count, b.count);
     assert_memory_equal(a.ends, b.ends, a.count * sizeof *a.ends);
     for (size_t i = 0; i < a.point_count; i++)
         assert_true(hypot(a.points[i].x - b.points[i].x, a.points[i].y - b.points[i].y) <= 4 * DBL_EPSILON);
-    narc_release_contours(&a);
-    narc_release_contours(&b);
 }
 
 TEST(reads_cubic_curves) {
     size_t size;
-    char *data = make_type1_font(operators, steps, &size);
-    narc_font *font = open_bytes(data, size);
-    narc_path *path = make_path(), *expected = draw_type1_glyph();
+    AUTO(free_at) char *data = make_type1_font(operators, steps, &size);
+    AUTO(narc_close_font_at) narc_font *font = open_bytes(data, size);
+    AUTO(narc_destroy_path_at) narc_path *path = make_path(), *expected = draw_type1_glyph();
     narc_error error;
     expect_ok(narc_read_glyph(font, 'A', path, &error), &error);
     expect_same_contours(path, expected);
     assert_int_equal(narc_next_character(font, 0), ' ');
     assert_int_equal(narc_next_character(font, ' '), 'A');
-    narc_destroy_path(path);
-    narc_destroy_path(expected);
-    narc_close_font(font);
-    free(data);
 }
 
 TEST(names_what_is_wrong_with_a_glyph) {
     size_t size;
-    char *data = make_type1_font("mlz", (int[]){10, 10, 0, 0}, &size);
-    narc_font *font = open_bytes(data, size);
-    narc_path *path = make_occupied_path();
+    AUTO(free_at) char *data = make_type1_font("mlz", (int[]){10, 10, 0, 0}, &size);
+    AUTO(narc_close_font_at) narc_font *font = open_bytes(data, size);
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_error error;
     expect_error(narc_read_glyph(font, ' ', path, &error), NARC_ERROR_FORMAT, &error, "no outline: U+0020 is blank");
     expect_error(narc_read_glyph(font, 'A', path, &error), NARC_ERROR_FORMAT, &error, "no outline: U+0041 is blank");
@@ -107,10 +101,7 @@ TEST(names_what_is_wrong_with_a_glyph) {
     expect_unchanged(path);
     assert_int_equal(narc_next_character(NULL, 0), 0);
     assert_int_equal(narc_next_character(font, UINT32_MAX), 0);
-    narc_destroy_path(path);
-    narc_close_font(font);
     narc_close_font(NULL);
-    free(data);
 }
 
 /* A glyph bitmap in a font of the Glyph Bitmap Distribution Format. */
@@ -230,25 +221,22 @@ TEST(agrees_with_the_points) {
     FT_Library library;
     assert_int_equal(FT_Init_FreeType(&library), 0);
     for (int k = 0; k < file_count; k++) {
-        narc_font *font = open_bytes(files[k].data, files[k].size);
+        AUTO(narc_close_font_at) narc_font *font = open_bytes(files[k].data, files[k].size);
         FT_Face face;
         assert_int_equal(FT_New_Memory_Face(library, files[k].data, (FT_Long)files[k].size, 0, &face), 0);
         size_t compared = 0;
         for (uint32_t c = narc_next_character(font, 0); c; c = narc_next_character(font, c)) {
-            narc_path *path = make_path(), *expected = make_path();
+            AUTO(narc_destroy_path_at) narc_path *path = make_path(), *expected = make_path();
             if (draw_points(face, c, expected)) {
                 narc_error error;
                 expect_ok(narc_read_glyph(font, c, path, &error), &error);
                 expect_same_contours(path, expected);
                 compared++;
             }
-            narc_destroy_path(path);
-            narc_destroy_path(expected);
         }
         printf("%s: %zu glyphs compared\n", files[k].name, compared);
         assert_true(compared > 1000);
         assert_int_equal(FT_Done_Face(face), 0);
-        narc_close_font(font);
     }
     assert_int_equal(FT_Done_FreeType(library), 0);
 }
@@ -264,7 +252,7 @@ TEST(survives_damage) {
     char *data = make_type1_font(operators, steps, &size);
     for (size_t trial = 0; trial < trials; trial++) {
         const size_t kept = trial % 2 ? size : random_below(&random, size) + 1;
-        unsigned char *copy = malloc(kept);
+        AUTO(free_at) unsigned char *copy = malloc(kept);
         assert_non_null(copy);
         memcpy(copy, data, kept);
         for (size_t changes = random_below(&random, 4); changes > 0; changes--)
@@ -281,7 +269,6 @@ TEST(survives_damage) {
             opened += finish_any_bytes(result, &error, allowed, SIZE_MAX, path);
             narc_close_font(font);
         }
-        free(copy);
     }
     free(data);
     assert_true(opened > 0 && opened < trials);

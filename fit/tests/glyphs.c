@@ -32,14 +32,13 @@ static bool read_glyph(narc_font *font, uint32_t character, struct outline *out)
         free_outline(out);
         return false;
     }
-    narc_contours contours;
+    AUTO(narc_release_contours) narc_contours contours;
     expect_ok(narc_flatten_path(out->path, 1e-4, &contours, &error), &error);
     out->count = out->capacity = contours.point_count;
     out->points = malloc(out->count * sizeof *out->points);
     assert_non_null(out->points);
     for (size_t k = 0; k < out->count; k++)
         out->points[k] = contours.points[k];
-    narc_release_contours(&contours);
     return true;
 }
 
@@ -80,8 +79,8 @@ TEST(test_glyphs) {
     enum { ARCS = 8, USUAL = 12 };
     for (int k = 0; k < file_count; k++) {
         size_t size;
-        unsigned char *data = read_file(files[k], &size);
-        narc_font *font = NULL;
+        AUTO(free_at) unsigned char *data = read_file(files[k], &size);
+        AUTO(narc_close_font_at) narc_font *font = NULL;
         narc_error error;
         expect_ok(narc_open_font(data, size, &font, &error), &error);
         const size_t all = count_characters(font), some = test_trials(USUAL);
@@ -98,8 +97,6 @@ TEST(test_glyphs) {
         for (int class = 0; class <= CLASSES; class ++)
             printf(" %zu", tally.count[class]);
         printf("\n");
-        narc_close_font(font);
-        free(data);
     }
 }
 
@@ -110,8 +107,8 @@ TEST(test_hot_beverage) {
         if (!strstr(files[k], "Symbola"))
             continue;
         size_t size;
-        unsigned char *data = read_file(files[k], &size);
-        narc_font *font = NULL;
+        AUTO(free_at) unsigned char *data = read_file(files[k], &size);
+        AUTO(narc_close_font_at) narc_font *font = NULL;
         narc_error error;
         expect_ok(narc_open_font(data, size, &font, &error), &error);
         struct outline of;
@@ -119,8 +116,6 @@ TEST(test_hot_beverage) {
         const narc_fit_result fit = fit_outline(&of, (narc_fit_request){.arc_count = 8});
         assert_true(fit.area <= known * 1.003 * fit.hull_area);
         free_outline(&of);
-        narc_close_font(font);
-        free(data);
     }
 }
 

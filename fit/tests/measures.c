@@ -127,10 +127,8 @@ static real find_support(const struct seen *arcs, size_t count, real angle) {
 }
 
 real reference_arcs_support(const narc_arc *arcs, size_t count, real angle) {
-    struct seen *seen = see_arcs(arcs, count);
-    const real most = find_support(seen, count, angle);
-    free(seen);
-    return most;
+    AUTO(free_at) struct seen *seen = see_arcs(arcs, count);
+    return find_support(seen, count, angle);
 }
 
 struct comparison {
@@ -173,10 +171,10 @@ static int compare_angles(const void *a, const void *b) {
 
 struct reference_range reference_compare(const narc_arc *arcs, size_t count, const struct reference_hull *hull) {
     enum { EVEN = 128 };
-    struct seen *seen = see_arcs(arcs, count);
+    AUTO(free_at) struct seen *seen = see_arcs(arcs, count);
     const struct comparison c = {seen, count, hull};
     const size_t total = EVEN + count + hull->count;
-    real *angles = claim((total + 1) * sizeof *angles), *values = claim((total + 1) * sizeof *values);
+    AUTO(free_at) real *angles = claim((total + 1) * sizeof *angles), *values = claim((total + 1) * sizeof *values);
     for (size_t k = 0; k < EVEN; k++)
         angles[k] = 2 * LONG_PI * (real)k / EVEN;
     for (size_t k = 0; k < count; k++)
@@ -205,9 +203,6 @@ struct reference_range reference_compare(const narc_arc *arcs, size_t count, con
         if (fmaxl(values[k], values[k + 1]) + room > range.largest)
             range.largest = fmaxl(range.largest, refine(&c, 1, angles[k], angles[k + 1]));
     }
-    free(seen);
-    free(angles);
-    free(values);
     return range;
 }
 
@@ -337,7 +332,7 @@ static real radius_around(point center, const struct reference_hull *hull) {
 }
 
 double reference_smallest_circle(const narc_point *points, size_t count) {
-    struct reference_hull hull = reference_wrap(points, count, (narc_point){0, 0});
+    AUTO(free_at) struct reference_hull hull = reference_wrap(points, count, (narc_point){0, 0});
     real best = INFINITY;
     for (size_t i = 0; i < hull.count; i++) {
         for (size_t j = 0; j < i; j++) {
@@ -352,6 +347,5 @@ double reference_smallest_circle(const narc_point *points, size_t count) {
             }
         }
     }
-    free(hull.corners);
     return (double)best;
 }

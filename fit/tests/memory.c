@@ -51,11 +51,9 @@ static void expect_same(const struct outcome *usual, struct outcome *other) {
         assert_memory_equal(usual->chains.arcs, other->chains.arcs,
                             usual->chains.arc_count * sizeof *usual->chains.arcs);
     if (usual->path) {
-        narc_contours one = flatten(usual->path), two = flatten(other->path);
+        AUTO(narc_release_contours) narc_contours one = flatten(usual->path), two = flatten(other->path);
         assert_int_equal(one.point_count, two.point_count);
         assert_memory_equal(one.points, two.points, one.point_count * sizeof *one.points);
-        narc_release_contours(&one);
-        narc_release_contours(&two);
     }
 }
 
@@ -121,14 +119,13 @@ static narc_status read_alpha(const void *data, size_t size, narc_path *path, na
 static void read_image(const void *input, struct outcome *out) { read_with(read_alpha, input, out); }
 
 static narc_status read_letter(const void *data, size_t size, narc_path *path, narc_error *error) {
-    narc_font *font = NULL;
+    AUTO(narc_close_font_at) narc_font *font = NULL;
     const narc_status status = narc_open_font(data, size, &font, error);
     if (status) {
         assert_null(font);
         return status;
     }
     const narc_status drawn = narc_read_glyph(font, 0xe4, path, error); /* a letter of two parts */
-    narc_close_font(font);
     return drawn;
 }
 
@@ -151,9 +148,8 @@ TEST(test_readers) {
     fail_all("JSON", read_json, &(struct bytes){json, sizeof json - 1});
     const struct png_format formats[] = {{8, PNG_COLOR_TYPE_RGB_ALPHA, false}, {16, PNG_COLOR_TYPE_GRAY, true}};
     for (size_t k = 0; k < sizeof formats / sizeof formats[0]; k++) {
-        const struct png_file file = write_png(formats[k], WIDTH, HEIGHT, gray, alpha);
+        AUTO(free_at) const struct png_file file = write_png(formats[k], WIDTH, HEIGHT, gray, alpha);
         fail_all("PNG", read_image, &(struct bytes){file.bytes, file.size});
-        free(file.bytes);
     }
 }
 
@@ -163,9 +159,8 @@ TEST(test_fonts) {
     if (!CAN_FAIL || !font_name)
         skip();
     size_t size;
-    unsigned char *data = read_file(font_name, &size);
+    AUTO(free_at) unsigned char *data = read_file(font_name, &size);
     fail_all("font", read_glyph, &(struct bytes){data, size});
-    free(data);
 }
 
 /* ------------------------------------------------------------------------------------------------ paths, fits */
@@ -189,7 +184,7 @@ static void draw_path(const void *input, struct outcome *out) {
 
 static void compute_hull(const void *input, struct outcome *out) {
     const struct outline *of = input;
-    narc_point *corners = malloc(of->count * sizeof *corners);
+    AUTO(free_at) narc_point *corners = malloc(of->count * sizeof *corners);
     size_t count = SIZE_MAX;
     assert_non_null(corners);
     corners[0] = (narc_point){7, 7};
@@ -197,7 +192,6 @@ static void compute_hull(const void *input, struct outcome *out) {
     out->status = narc_compute_hull(of->points, of->count, corners, &count, &out->error);
     watch_all(false);
     out->untouched = out->status == NARC_OK || (count == SIZE_MAX && corners[0].x == 7 && corners[0].y == 7);
-    free(corners);
 }
 
 static void flatten_path(const void *input, struct outcome *out) {

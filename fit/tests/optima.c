@@ -168,7 +168,7 @@ static double find_four_arcs(const struct reference_hull *hull, int what) {
 
 TEST(test_four_arcs) {
     struct outline of = make_regular("ellipse", 48, PI / 48, 0.5);
-    struct reference_hull hull = reference_wrap(of.points, of.count, (narc_point){0, 0});
+    AUTO(free_at) struct reference_hull hull = reference_wrap(of.points, of.count, (narc_point){0, 0});
     const double best[3] = {find_four_arcs(&hull, AREA), find_four_arcs(&hull, PERIMETER),
                             find_four_arcs(&hull, DISTANCE)};
     expect_least("ellipse by 4 arcs, area", fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 4).area, best[0]);
@@ -176,7 +176,6 @@ TEST(test_four_arcs) {
                  best[1]);
     expect_within("ellipse by 4 arcs, distance",
                   fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_DISTANCE, 4).max_distance, best[2], NEAR);
-    free(hull.corners);
     free_outline(&of);
 }
 

@@ -203,13 +203,12 @@ narc_fit_result fit_and_check(const struct outline *of, narc_fit_request request
 /* ---------------------------------------------------------------------------- checks */
 
 static size_t store(const narc_fit_result *fit, narc_arc out_arcs[NARC_MAX_ARCS]) {
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_error error = {0};
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     expect_ok(narc_add_shape(shapes, fit->arcs, fit->arc_count, NULL, &error), &error);
     const size_t count = narc_get_arcs(shapes, 0, out_arcs);
     assert_int_equal(count, fit->arc_count);
-    narc_destroy_shapes(shapes);
     return count;
 }
 
@@ -224,10 +223,8 @@ static void expect_near(const char *name, const char *what, real told, real expe
 static real find_room(const struct outline *of, const narc_fit_result *fit) {
     narc_arc arcs[NARC_MAX_ARCS];
     const size_t count = store(fit, arcs);
-    struct reference_hull points = reference_wrap(of->points, of->count, fit->origin);
-    const real least = reference_compare(arcs, count, &points).least;
-    free(points.corners);
-    return least;
+    AUTO(free_at) struct reference_hull points = reference_wrap(of->points, of->count, fit->origin);
+    return reference_compare(arcs, count, &points).least;
 }
 
 void check_contained(const struct outline *of, const narc_fit_result *fit, const char *what) {
@@ -272,14 +269,12 @@ static real miss_of(const narc_fit_result *fit, real size) {
 /* The hull is that of the flattened curves, which are off by up to the flatness told. */
 static struct reference_hull wrap_outline(const struct outline *of, const narc_fit_request *request,
                                           const narc_fit_result *fit, const char *name) {
-    narc_contours contours;
+    AUTO(narc_release_contours) narc_contours contours;
     narc_error error = {0};
     expect_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
     if (request->arc_count)
         expect_near(name, "flatness", fit->flatness, contours.flatness, 1e-3L * contours.flatness);
-    const struct reference_hull hull = reference_wrap(contours.points, contours.point_count, fit->origin);
-    narc_release_contours(&contours);
-    return hull;
+    return reference_wrap(contours.points, contours.point_count, fit->origin);
 }
 
 static void describe(char *out, size_t size, const struct outline *of, const narc_fit_request *request) {
@@ -291,7 +286,7 @@ void check_fit(const struct outline *of, const narc_fit_request *request, const 
     char name[160];
     describe(name, sizeof name, of, request);
     check_family(of, request, fit);
-    struct reference_hull hull = wrap_outline(of, request, fit, name);
+    AUTO(free_at) struct reference_hull hull = wrap_outline(of, request, fit, name);
     /* Corners of the hull that are closer than 1e-10 of its size are one to the library. */
     const real size = hull.radius, off = fit->flatness + 1e-9L * size;
     assert_true(fit->seconds >= 0);
@@ -308,7 +303,6 @@ void check_fit(const struct outline *of, const narc_fit_request *request, const 
     assert_true(request->arc_count || fit->max_distance + fit->flatness <= request->tolerance);
     if (request->goal <= NARC_FIT_BOUND_DISTANCE)
         check_contained(of, fit, name);
-    free(hull.corners);
 }
 
 void check_fit_result(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit) {
@@ -316,7 +310,7 @@ void check_fit_result(const struct outline *of, const narc_fit_request *request,
     char name[160];
     check_fit(of, request, fit);
     describe(name, sizeof name, of, request);
-    struct reference_hull hull = wrap_outline(of, request, fit, name);
+    AUTO(free_at) struct reference_hull hull = wrap_outline(of, request, fit, name);
     const real size = hull.radius, miss = miss_of(fit, size), closure = miss * hull.perimeter;
     narc_mass mass;
     assert_true(narc_compute_mass(fit->arcs, fit->arc_count, &mass));
@@ -342,5 +336,4 @@ void check_fit_result(const struct outline *of, const narc_fit_request *request,
         expect_near(name, "difference", fit->difference_area, difference,
                     2e-3L * difference + 1e-6L * hull.area + closure + hull.perimeter * fit->flatness);
     }
-    free(hull.corners);
 }

@@ -121,7 +121,7 @@ static void free_cover(cover *made) {
 }
 
 static double measure_union(const narc_fit_result *fits, size_t count) {
-    narc_arc *arcs = malloc(count * sizeof fits->arcs);
+    AUTO(free_at) narc_arc *arcs = malloc(count * sizeof fits->arcs);
     size_t *counts = malloc(count * sizeof *counts), next = 0;
     narc_mass mass;
     assert_true(arcs && counts);
@@ -134,14 +134,13 @@ static double measure_union(const narc_fit_result *fits, size_t count) {
         }
     }
     assert_int_equal(narc_compute_union_mass(arcs, counts, count, NULL, &mass, NULL), NARC_OK);
-    free(arcs);
     free(counts);
     return mass.area;
 }
 
 /* Fits each part: bounding, or to either side. */
 static void check_fits(cover *made, narc_fit_goal goal) {
-    narc_fit_result *fits = malloc(made->parts.count * sizeof *fits);
+    AUTO(free_at) narc_fit_result *fits = malloc(made->parts.count * sizeof *fits);
     double furthest = 0, area = 0;
     assert_non_null(fits);
     for (size_t k = 0; k < made->parts.count; k++) {
@@ -153,7 +152,7 @@ static void check_fits(cover *made, narc_fit_goal goal) {
         furthest = fmax(furthest, fits[k].max_distance);
         area += fits[k].area;
     }
-    walls *around = malloc(made->parts.count * sizeof *around);
+    AUTO(free_at) walls *around = malloc(made->parts.count * sizeof *around);
     assert_non_null(around);
     for (size_t k = 0; k < made->parts.count; k++)
         around[k] = wall_in(&fits[k]);
@@ -164,8 +163,6 @@ static void check_fits(cover *made, narc_fit_goal goal) {
     assert_true(covered <= area * (1 + 1e-9));
     assert_true(goal != NARC_FIT_BOUND_AREA || covered >= made->parts.area * (1 - 1e-9));
     made->fits = NULL;
-    free(around);
-    free(fits);
 }
 
 /* ---------------------------------------------------------------------------- families */

@@ -57,7 +57,7 @@ TEST(refuses_wrong_coordinates) {
         {1e9 + 1, NARC_ERROR_SIZE, "1000000001, coordinates reach up to 1e+09"},
         {-1e300, NARC_ERROR_SIZE, "coordinates reach up to 1e+09"},
     };
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     for (unsigned degree = 0; degree <= 3; degree++) {
         for (unsigned place = 0; place < 2 * (degree ? degree : 1); place++) {
             for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
@@ -74,18 +74,15 @@ TEST(refuses_wrong_coordinates) {
             }
         }
     }
-    narc_destroy_path(path);
 }
 
 TEST(takes_the_largest_coordinates) {
     const double most = NARC_MAX_COORDINATE;
     const narc_point square[] = {{-most, -most}, {most, -most}, {most, most}, {-most, most}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     draw_polygon(path, square, 4);
-    narc_contours contours = flatten(path);
+    AUTO(narc_release_contours) narc_contours contours = flatten(path);
     assert_memory_equal(contours.points, square, sizeof square);
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 /* ---------------------------------------------------------------------------- contours */
@@ -93,7 +90,7 @@ TEST(takes_the_largest_coordinates) {
 TEST(closes_contours) {
     static const narc_point open[] = {{0, 0}, {2, 0}, {2, 2}}, closed[] = {{5, 5}, {6, 5}, {6, 6}, {5, 5}, {5, 5}};
     static const narc_point expected[] = {{0, 0}, {2, 0}, {2, 2}, {5, 5}, {6, 5}, {6, 6}, {7, 7}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     draw_polygon(path, (narc_point[]){{9, 9}}, 1); /* a contour that is only begun is not drawn */
     draw_polygon(path, open, 3);
@@ -118,26 +115,23 @@ TEST(closes_contours) {
     assert_int_equal(contours.point_count, 9);
     assert_true(contours.points[7].x == 4 && contours.points[8].x == 1);
     narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 /* Points that repeat the one before stay, so that polygons come out as they were drawn. */
 TEST(keeps_repeated_points) {
     static const narc_point points[] = {{0, 0}, {0, 0}, {2, 0}, {2, 0}, {2, 2}, {1, 1}, {1, 1}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     draw_polygon(path, points, 7);
-    narc_contours contours = flatten(path);
+    AUTO(narc_release_contours) narc_contours contours = flatten(path);
     assert_int_equal(contours.point_count, 7);
     assert_memory_equal(contours.points, points, sizeof points);
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 /* A quarter of a slanted ellipse, a whole circle; the points of both fulfil their equations. */
 TEST(draws_parts_of_ellipses) {
     static const narc_point center = {2, 3}, u = {4, 1}, v = {-1, 2}, start = {6, 4}, end = {1, 5};
     static const narc_point along = {3, 0}, up = {0, 3}, side = {5, 3}, left = {-7, 0};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     expect_error(narc_ellipse_to(path, &center, &u, &v, 0, 1, &end, &error), NARC_ERROR_ARGUMENT, &error, "no contour");
     expect_ok(narc_move_to(path, &start, &error), &error);
@@ -149,7 +143,7 @@ TEST(draws_parts_of_ellipses) {
     expect_error(narc_ellipse_to(path, &center, NULL, &v, 0, 1, &end, &error), NARC_ERROR_ARGUMENT, &error, "NULL");
     expect_error(narc_ellipse_to(path, &center, &(narc_point){2e9, 0}, &v, 0, 1, &left, &error), NARC_ERROR_SIZE,
                  &error, "control point");
-    narc_contours contours;
+    AUTO(narc_release_contours) narc_contours contours;
     expect_ok(narc_flatten_path(path, 1e-4, &contours, &error), &error);
     assert_int_equal(contours.count, 2);
     assert_true(contours.ends[0] > 20 && contours.ends[1] > contours.ends[0] + 100);
@@ -159,8 +153,6 @@ TEST(draws_parts_of_ellipses) {
         assert_true(fabs(k < contours.ends[0] ? hypot(s, t) - 1 : hypot(x, y) / 3 - 1) < 1e-10);
     }
     assert_memory_equal(&contours.points[contours.ends[0] - 1], &end, sizeof end);
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 TEST_MAIN("paths")

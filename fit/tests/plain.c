@@ -10,12 +10,11 @@
 
 /* Within the tolerance, and around the outline if it bounds, by the reference. */
 static void check_plain(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit) {
-    struct reference_hull hull = reference_wrap(of->points, of->count, fit->origin);
+    AUTO(free_at) struct reference_hull hull = reference_wrap(of->points, of->count, fit->origin);
     const struct reference_range range = reference_compare(fit->arcs, fit->arc_count, &hull);
     const real slack = 1e-9L * hull.radius;
     assert_true(range.largest <= request->tolerance + slack && range.least >= -request->tolerance - slack);
     assert_true(request->goal > NARC_FIT_BOUND_DISTANCE || (range.least >= 0 && fit->clearance > 0));
-    free(hull.corners);
 }
 
 static narc_fit_result see(const struct outline *of, double tolerance, narc_fit_goal goal) {

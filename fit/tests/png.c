@@ -16,7 +16,7 @@ static const struct png_format gray_alpha_16 = {16, PNG_COLOR_TYPE_GRAY_ALPHA, f
 
 static void expect_points(struct png_file file, double threshold, const narc_point *points, size_t count,
                           double tolerance) {
-    narc_contours contours = read_png(file, threshold);
+    AUTO(narc_release_contours) narc_contours contours = read_png(file, threshold);
     assert_int_equal(contours.count, 1);
     assert_int_equal(contours.point_count, count);
     for (size_t k = 0; k < count; k++) {
@@ -24,7 +24,6 @@ static void expect_points(struct png_file file, double threshold, const narc_poi
         if (!(fabs(p.x - points[k].x) <= tolerance && fabs(p.y - points[k].y) <= tolerance))
             fail_msg("point %zu is (%.17g, %.17g)", k, p.x, p.y);
     }
-    narc_release_contours(&contours);
     free(file.bytes);
 }
 
@@ -99,7 +98,8 @@ TEST(keeps_the_place_of_discs) {
             alpha[k] = (uint16_t)lround(FULL * fmin(1, cover_disc(column - x, row - y, radius)));
             gray[k] = (uint16_t)(FULL - alpha[k]); /* black on white */
         }
-        const struct png_file file = write_png(kinds[trial % 3].format, SIZE, SIZE, gray, alpha);
+        AUTO(free_at) const struct png_file file = write_png(kinds[trial % 3].format, SIZE, SIZE, gray, alpha);
+        AUTO(narc_release_contours)
         narc_contours contours =
             read_silhouette(file, (narc_image_request){trial % 3 == 2 ? NARC_SILHOUETTE_DARK : NARC_SILHOUETTE_ALPHA,
                                                        .threshold = 0.5});
@@ -113,8 +113,6 @@ TEST(keeps_the_place_of_discs) {
         /* It goes round once: a crossing in each row and each column that it meets, to both sides. */
         const double round = (double)contours.point_count;
         assert_true(round > 7 * radius && round < 9 * radius);
-        narc_release_contours(&contours);
-        free(file.bytes);
     }
 }
 
@@ -182,8 +180,8 @@ TEST(follows_all_cells) {
                 count += add_cell(v, level, x + 0.5, y + 0.5, segments + count);
             }
         }
-        const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, gray, alpha);
-        narc_contours contours = read_png(file, threshold);
+        AUTO(free_at) const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, gray, alpha);
+        AUTO(narc_release_contours) narc_contours contours = read_png(file, threshold);
         assert_int_equal(contours.point_count, count);
         for (size_t k = 0, first = 0; k < contours.count; first = contours.ends[k++]) {
             for (size_t i = first; i < contours.ends[k]; i++) {
@@ -197,8 +195,6 @@ TEST(follows_all_cells) {
             }
         }
         assert_int_equal(count, 0);
-        narc_release_contours(&contours);
-        free(file.bytes);
     }
 }
 
@@ -208,13 +204,11 @@ TEST(turns_round_holes_the_other_way) {
     uint16_t alpha[25], gray[25] = {0};
     for (size_t k = 0; k < 25; k++)
         alpha[k] = k == 12 ? 0 : FULL;
-    const struct png_file file = write_png(gray_alpha_8, 5, 5, gray, alpha);
-    narc_contours contours = read_png(file, 0);
+    AUTO(free_at) const struct png_file file = write_png(gray_alpha_8, 5, 5, gray, alpha);
+    AUTO(narc_release_contours) narc_contours contours = read_png(file, 0);
     assert_int_equal(contours.count, 2);
     assert_true(measure_area(&contours, 0) == 25 - 4 * 0.125);
     assert_true(measure_area(&contours, 1) == -0.5);
-    narc_release_contours(&contours);
-    free(file.bytes);
 }
 
 /* ---------------------------------------------------------------------------- formats */
@@ -230,6 +224,7 @@ static void make_blob(uint16_t *values, size_t width, size_t height, bool two) {
 
 static void expect_same(const narc_contours *expected, struct png_file file, narc_silhouette silhouette,
                         double tolerance, const char *what) {
+    AUTO(narc_release_contours)
     narc_contours contours = read_silhouette(file, (narc_image_request){silhouette, .threshold = 0.5});
     if (contours.count != expected->count || contours.point_count != expected->point_count)
         fail_msg("%s: %zu points, not %zu", what, contours.point_count, expected->point_count);
@@ -238,7 +233,6 @@ static void expect_same(const narc_contours *expected, struct png_file file, nar
         if (!(fabs(a.x - b.x) <= tolerance && fabs(a.y - b.y) <= tolerance))
             fail_msg("%s: point %zu is (%.17g, %.17g), not (%.17g, %.17g)", what, k, a.x, a.y, b.x, b.y);
     }
-    narc_release_contours(&contours);
     free(file.bytes);
 }
 
@@ -255,7 +249,7 @@ TEST(reads_each_kind_of_format) {
             full[k] = FULL;
         }
         const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, full, blob);
-        narc_contours expected = read_png(file, 0.5);
+        AUTO(narc_release_contours) narc_contours expected = read_png(file, 0.5);
         free(file.bytes);
         for (int depth = 8; depth <= 16; depth *= 2) {
             const struct png_format gray = {depth, PNG_COLOR_TYPE_GRAY, false};
@@ -285,7 +279,6 @@ TEST(reads_each_kind_of_format) {
         expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, NULL), NARC_SILHOUETTE_DARK, 0, "palette");
         expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, blob), NARC_SILHOUETTE_ALPHA, 0,
                     "palette with alpha");
-        narc_release_contours(&expected);
     }
 }
 
@@ -329,17 +322,16 @@ TEST(takes_opaque_tiles_whole) {
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
             const bool palette = formats[f].color_type == PNG_COLOR_TYPE_PALETTE;
             const size_t height = 1 + 31 * (f % 2);
-            struct png_file file = write_png(formats[f], SIZE, height, gray, palette ? NULL : full);
+            AUTO(free_at) struct png_file file = write_png(formats[f], SIZE, height, gray, palette ? NULL : full);
             for (double threshold = 0; threshold < 1; threshold += 0.45) {
                 bool whole = false;
+                AUTO(narc_release_contours)
                 narc_contours contours =
                     read_silhouette(file, (narc_image_request){.threshold = threshold, .out_whole = &whole});
                 assert_true(whole);
                 assert_int_equal(contours.point_count, 4);
                 assert_true(measure_area(&contours, 0) == (double)(SIZE * height));
-                narc_release_contours(&contours);
             }
-            free(file.bytes);
         }
     }
 }
@@ -355,15 +347,15 @@ TEST(tells_what_is_whole) {
     static const double areas[] = {SIZE * SIZE, 3 * SIZE, 5 * SIZE};
     for (int silhouette = NARC_SILHOUETTE_ALPHA; silhouette <= NARC_SILHOUETTE_LIGHT; silhouette++) {
         bool whole = silhouette != NARC_SILHOUETTE_ALPHA;
+        AUTO(free_at)
         struct png_file file = write_png((struct png_format){8, PNG_COLOR_TYPE_GRAY, false}, SIZE, SIZE, gray, NULL);
+        AUTO(narc_release_contours)
         narc_contours contours = read_silhouette(
             file, (narc_image_request){(narc_silhouette)silhouette, .threshold = 0.5, .out_whole = &whole});
         assert_int_equal(whole, silhouette == NARC_SILHOUETTE_ALPHA);
         /* Grays of 39 and 234 of 255: darknesses pass 127.5 0.454 pixels behind the centre of the dark one, lightnesses
          * 0.546 before that of the light one, and at the borders 0.41 and 0.455 outside of centres. Corners are cut. */
         assert_true(fabs(measure_area(&contours, 0) - areas[silhouette]) <= 0.1 * (2 * SIZE + 10) + 0.5);
-        narc_release_contours(&contours);
-        free(file.bytes);
     }
     bool whole = true;
     struct png_file file = write_png(gray_alpha_8, SIZE, SIZE, gray, alpha);

@@ -18,17 +18,15 @@ static void expect_request_error(const void *bytes, size_t size, narc_image_requ
                                  const char *words) {
     bool whole = true;
     request.out_whole = &whole;
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_error error = {.message = "?"};
-    unsigned char *copy = malloc(size ? size : 1); /* the address sanitizer sees every read behind it */
+    AUTO(free_at) unsigned char *copy = malloc(size ? size : 1); /* the address sanitizer sees every read behind it */
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     expect_error(narc_read_png(copy, size, &request, path, &error), status, &error, words);
     assert_int_equal(narc_read_png(copy, size, &request, path, NULL), status);
     expect_unchanged(path);
     assert_true(whole);
-    free(copy);
-    narc_destroy_path(path);
 }
 
 static void expect_png_error(const void *bytes, size_t size, double threshold, narc_status status, const char *words) {
@@ -45,13 +43,12 @@ static struct png_file write_square(struct png_format format) {
 }
 
 TEST(refuses_damaged_files) {
-    struct png_file file = write_square(gray_8);
+    AUTO(free_at) struct png_file file = write_square(gray_8);
     expect_png_error("", 0, 0, NARC_ERROR_FORMAT, "the PNG file is empty");
     expect_png_error("GIF89a_____________________________", 35, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
     expect_png_error(file.bytes, file.size / 2, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
     file.bytes[file.size - 13] ^= 1; /* the checksum of the image's data; behind it is IEND, which has 12 bytes */
     expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "CRC");
-    free(file.bytes);
 }
 
 static unsigned long checksum(const unsigned char *bytes, size_t size) {
@@ -82,14 +79,13 @@ TEST(refuses_huge_images) {
         {1000000, 1000000, NARC_ERROR_SIZE, "1000000 x 1000000 pixels"},
         {20000, 5000, NARC_ERROR_FORMAT, "damaged"}, /* as large as can be, but there is not so much data */
     };
-    struct png_file file = write_square(gray_8);
+    AUTO(free_at) struct png_file file = write_square(gray_8);
     for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
         put_word(file.bytes + 16, cases[k].width);
         put_word(file.bytes + 20, cases[k].height);
         put_word(file.bytes + 29, checksum(file.bytes + 12, 17));
         expect_png_error(file.bytes, file.size, 0, cases[k].status, cases[k].words);
     }
-    free(file.bytes);
 }
 
 TEST(refuses_what_has_no_outline) {
@@ -109,10 +105,9 @@ TEST(refuses_what_has_no_outline) {
     expect_png_error(file.bytes, file.size, 1, NARC_ERROR_SIZE, "threshold is 1;");
     expect_png_error(file.bytes, file.size, -0.5, NARC_ERROR_SIZE, "threshold is -0.5;");
     expect_png_error(file.bytes, file.size, NAN, NARC_ERROR_NOT_FINITE, "threshold is");
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     expect_error(narc_read_png(NULL, 5, NULL, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
     expect_error(narc_read_png(file.bytes, file.size, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
-    narc_destroy_path(path);
     free(file.bytes);
 }

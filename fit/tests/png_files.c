@@ -76,7 +76,7 @@ struct png_file write_png(struct png_format format, size_t width, size_t height,
         set_palette(png, info, alpha != NULL);
     png_write_info(png, info);
     const size_t stride = 8 * width;
-    png_byte *pixels = calloc(height, stride);
+    AUTO(free_at) png_byte *pixels = calloc(height, stride);
     assert_non_null(pixels);
     for (size_t y = 0; y < height; y++)
         fill_row(format, width, gray + y * width, alpha ? alpha + y * width : NULL, pixels + y * stride);
@@ -85,17 +85,14 @@ struct png_file write_png(struct png_format format, size_t width, size_t height,
             png_write_row(png, pixels + y * stride);
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
-    free(pixels);
     return file;
 }
 
 narc_contours read_silhouette(struct png_file file, narc_image_request request) {
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error = {.message = ""};
     expect_ok(narc_read_png(file.bytes, file.size, &request, path, &error), &error);
-    const narc_contours contours = flatten(path);
-    narc_destroy_path(path);
-    return contours;
+    return flatten(path);
 }
 
 narc_contours read_png(struct png_file file, double threshold) {

@@ -12,10 +12,10 @@
 
 /* `expected` as contours, each ended by a point of NAN, and the last by two. */
 static void expect_points(reader *read, const char *text, const narc_point *expected) {
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     expect_ok(read_exactly(read, text, strlen(text), path, &error), &error);
-    narc_contours contours = flatten(path);
+    AUTO(narc_release_contours) narc_contours contours = flatten(path);
     size_t contour = 0, point = 0;
     for (size_t i = 0; contour == 0 || !isnan(expected[i].x); contour++, i++) {
         for (; !isnan(expected[i].x); i++, point++) {
@@ -26,8 +26,6 @@ static void expect_points(reader *read, const char *text, const narc_point *expe
         assert_int_equal(contours.ends[contour], point);
     }
     assert_int_equal(contours.count, contour);
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 static void expect_wrong(reader *read, const struct wrong *wrong, size_t count) {
@@ -118,7 +116,7 @@ TEST(names_lines_of_csv) {
 
 /* A NUL byte, and numbers that are too long to be any. */
 TEST(refuses_odd_csv) {
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_error error;
     expect_error(read_exactly(narc_read_csv, "0,0\n1,\0 2\n", 10, path, &error), NARC_ERROR_FORMAT, &error,
                  "line 2: a NUL byte");
@@ -128,7 +126,6 @@ TEST(refuses_odd_csv) {
     expect_error(read_exactly(narc_read_csv, text, sizeof text, path, &error), NARC_ERROR_FORMAT, &error,
                  "'1111111111111111111111111111111111111111...'");
     expect_unchanged(path);
-    narc_destroy_path(path);
 }
 
 /* ---------------------------------------------------------------------------- JSON */
@@ -177,7 +174,7 @@ TEST(names_places_of_json) {
 }
 
 TEST(refuses_odd_json) {
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     narc_error error;
     expect_error(read_exactly(narc_read_json, "[[0,\n\0 0]]", 10, path, &error), NARC_ERROR_FORMAT, &error,
                  "line 2: a NUL byte");
@@ -198,21 +195,19 @@ TEST(refuses_odd_json) {
                  "line 1: not valid JSON here: 'x'");
     free(deep);
     expect_unchanged(path);
-    narc_destroy_path(path);
 }
 
 /* ---------------------------------------------------------------------------- both */
 
 TEST(refuses_null) {
     reader *const readers[] = {narc_read_csv, narc_read_json};
-    narc_path *path = make_occupied_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_occupied_path();
     for (size_t k = 0; k < 2; k++) {
         narc_error error;
         expect_error(readers[k](NULL, 5, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
         expect_error(readers[k]("1,1", 3, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
     }
     expect_unchanged(path);
-    narc_destroy_path(path);
 }
 
 /* Where the decimal point is a comma, files mean the same. Skipped without such a locale. */

@@ -27,7 +27,7 @@ static narc_point arc_point(const narc_curve_arc *arc, double part) {
 static void check_near(const char *name, const narc_point *points, size_t count, const narc_arc_chains *chains,
                        double tolerance, double slop) {
     enum { SAMPLES = 50 };
-    narc_point *samples = malloc(chains->arc_count * (SAMPLES + 1) * sizeof *samples);
+    AUTO(free_at) narc_point *samples = malloc(chains->arc_count * (SAMPLES + 1) * sizeof *samples);
     size_t sample_count = 0;
     for (size_t i = 0; i < chains->arc_count; i++)
         for (size_t s = 0; s <= SAMPLES; s++)
@@ -47,7 +47,6 @@ static void check_near(const char *name, const narc_point *points, size_t count,
             fail_msg("%s: point %zu is %g from the arcs, the tolerance is %g", name, k, least, tolerance);
     }
     assert_true(chains->distance <= tolerance);
-    free(samples);
 }
 
 /* The store takes a chain. */
@@ -64,7 +63,7 @@ static void expect_taken(const narc_arc *arcs, size_t count, bool closed) {
 /* The closed chain in the form of shapes: arcs lie on its pieces, edges are its lines, and normals go on where an arc
  * follows. */
 static void check_arcs(const narc_arc_chains *chains) {
-    narc_arc *arcs = malloc((3 * chains->arc_count + 1) * sizeof *arcs);
+    AUTO(free_at) narc_arc *arcs = malloc((3 * chains->arc_count + 1) * sizeof *arcs);
     size_t count, curved = 0, met = 0;
     assert_non_null(arcs);
     assert_int_equal(narc_describe_chain(chains->arcs, chains->arc_count, true, arcs, &count, NULL), NARC_OK);
@@ -92,7 +91,6 @@ static void check_arcs(const narc_arc_chains *chains) {
     }
     assert_int_equal(met, curved);
     assert_true(fabs(turn - 2 * PI) <= 1e-5 * (double)count); /* once round, the inside on the left */
-    free(arcs);
 }
 
 /* How many arcs and lines, which join, and with a common tangent but at `corners` places. */
@@ -137,12 +135,10 @@ static size_t fit_ring(const char *name, const narc_point *points, size_t count,
 /* ---------------------------------------------------------------------------- the fewest pieces */
 
 static size_t count_fewest(narc_path *path, double tolerance) {
-    narc_arc_chains chains;
+    AUTO(narc_release_chains) narc_arc_chains chains;
     narc_error error;
     expect_ok(narc_fit_fewest_chains(path, tolerance, false, &chains, &error), &error);
-    const size_t count = chains.arc_count;
-    narc_release_chains(&chains);
-    return count;
+    return chains.arc_count;
 }
 
 enum { FEW = 60 };
@@ -201,12 +197,11 @@ TEST(test_fewest) {
             const double a = 2 * PI * (double)k / FEW, r = 10 * (1 + height * cos(waves * a));
             points[k] = (narc_point){r * cos(a), r * sin(a)};
         }
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         draw_polygon(path, points, FEW);
         const size_t found = count_fewest(path, 0.4), least = search_ring(points, 0.4 * 5 / 6);
         if (found > least)
             fail_msg("%zu pieces, %zu serve", found, least);
-        narc_destroy_path(path);
     }
 }
 
@@ -277,11 +272,10 @@ TEST(fewest_are_the_fewest) {
             const double a = 2 * PI * (double)k / MANY, r = 10 * (1 + rings[i].height * cos(rings[i].waves * a));
             points[k] = (narc_point){r * cos(a), r * sin(a)};
         }
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         draw_polygon(path, points, MANY);
         const size_t found = count_fewest(path, 0.2), least = bound_ring(points, 0.2);
         assert_in_range(found, least, least + rings[i].over);
-        narc_destroy_path(path);
     }
 }
 
@@ -328,8 +322,8 @@ TEST(test_exact_shapes) {
 TEST(fewest_are_no_more_than_smooth_ones) {
     for (size_t corners = 100; corners <= 500; corners += 100) {
         for (double tolerance = 0.1; tolerance > 1e-3; tolerance /= 4) {
-            narc_path *path = make_path();
-            narc_arc_chains chains;
+            AUTO(narc_destroy_path_at) narc_path *path = make_path();
+            AUTO(narc_release_chains) narc_arc_chains chains;
             narc_error error;
             narc_point points[500];
             for (size_t k = 0; k < corners; k++) {
@@ -342,8 +336,6 @@ TEST(fewest_are_no_more_than_smooth_ones) {
             if (fewest > chains.arc_count)
                 fail_msg("%zu corners, tolerance %g: %zu pieces, but %zu smooth ones", corners, tolerance, fewest,
                          chains.arc_count);
-            narc_release_chains(&chains);
-            narc_destroy_path(path);
         }
     }
 }
@@ -461,7 +453,7 @@ TEST(test_near_contours) {
         double phase[6];
         for (int w = 0; w < 6; w++)
             phase[w] = 2 * PI * random_unit(&random);
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         for (int inner = 0; inner < 2; inner++) {
             narc_point points[SIDES];
             for (size_t k = 0; k < SIDES; k++) {
@@ -473,12 +465,13 @@ TEST(test_near_contours) {
             }
             draw_polygon(path, points, SIDES);
         }
-        narc_arc_chains chains;
+        AUTO(narc_release_chains) narc_arc_chains chains;
         narc_error error;
         expect_ok(narc_fit_chains(path, tolerance, false, &chains, &error), &error);
         assert_int_equal(chains.count, 2);
         assert_true(chains.distance <= tolerance);
         /* All of the inner one, a sample each 64th of a piece, is inside the outer one. */
+        AUTO(free_at)
         narc_contours outer = {.count = 1, .point_count = STEPS * chains.ends[0], .ends = &outer.point_count};
         outer.points = malloc(outer.point_count * sizeof *outer.points);
         assert_non_null(outer.points);
@@ -492,9 +485,6 @@ TEST(test_near_contours) {
             if (least < INFINITY && least > 1e-4) /* the lines are that near to the arcs */
                 fail_msg("gap %g: the chain of the hole leaves that around it at %g, %g", gap, p.x, p.y);
         }
-        free(outer.points);
-        narc_release_chains(&chains);
-        narc_destroy_path(path);
     }
 }
 
@@ -547,7 +537,7 @@ TEST(test_crossings) {
                  {box, beside, 4, NULL},
                  {box, across, 4, NULL}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        narc_path *path = make_path();
+        AUTO(narc_destroy_path_at) narc_path *path = make_path();
         narc_arc_chains chains;
         narc_error error;
         draw_polygon(path, cases[k].first, cases[k].count);
@@ -560,7 +550,6 @@ TEST(test_crossings) {
             expect_ok(status, &error);
         if (!status)
             narc_release_chains(&chains);
-        narc_destroy_path(path);
     }
 }
 

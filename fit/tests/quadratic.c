@@ -97,7 +97,7 @@ TEST(finds_what_is_least) {
     const size_t trials = test_trials(3000);
     size_t missed = 0;
     for (size_t trial = 0; trial < trials; trial++) {
-        narc_quadratic q;
+        AUTO(narc_close_quadratic) narc_quadratic q;
         const size_t count = 1 + random_below(&random, MOST);
         assert_true(narc_open_quadratic(&q, count, ROWS));
         make_hessian(&random, &q);
@@ -115,7 +115,6 @@ TEST(finds_what_is_least) {
             expect_optimal(&q);
         missed += !solved;
         assert_true(q.active_count <= count);
-        narc_close_quadratic(&q);
     }
     /* There is always an x: roundings may hide it where it is the only one. */
     assert_true(missed <= 1 + trials / 500);
@@ -127,7 +126,7 @@ TEST(rows_hold_whatever_the_curvature) {
     size_t solved = 0;
     const size_t trials = test_trials(1000);
     for (size_t trial = 0; trial < trials; trial++) {
-        narc_quadratic q;
+        AUTO(narc_close_quadratic) narc_quadratic q;
         const size_t count = 2 + random_below(&random, MOST - 1);
         assert_true(narc_open_quadratic(&q, count, ROWS));
         q.settles = true;
@@ -147,7 +146,6 @@ TEST(rows_hold_whatever_the_curvature) {
             for (size_t a = 0; a < q.active_count; a++)
                 assert_true(fabs(find_slack(&q, q.active[a])) <= 1e-9);
         }
-        narc_close_quadratic(&q);
     }
     assert_true(2 * solved > trials);
 }
@@ -155,7 +153,7 @@ TEST(rows_hold_whatever_the_curvature) {
 TEST(tells_what_no_one_keeps) {
     struct test_random random = test_random_named("infeasible programmes");
     for (size_t trial = 0; trial < test_trials(500); trial++) {
-        narc_quadratic q;
+        AUTO(narc_close_quadratic) narc_quadratic q;
         const size_t count = 1 + random_below(&random, MOST);
         assert_true(narc_open_quadratic(&q, count, ROWS));
         make_hessian(&random, &q);
@@ -166,19 +164,17 @@ TEST(tells_what_no_one_keeps) {
         for (size_t c = 0; c < count; c++)
             opposite[c] = -last[c];
         assert_false(narc_solve_quadratic(&q));
-        narc_close_quadratic(&q);
     }
 }
 
 TEST(tells_a_hessian_that_is_not_definite) {
-    narc_quadratic q;
+    AUTO(narc_close_quadratic) narc_quadratic q;
     assert_true(narc_open_quadratic(&q, 2, 1));
     memcpy(q.hessian, (const double[]){1, 2, 2, 1}, 4 * sizeof *q.hessian);
     memset(q.gradient, 0, 2 * sizeof *q.gradient);
     assert_false(narc_solve_quadratic(&q));
     assert_non_null(narc_add_quadratic_row(&q, 0));
     assert_null(narc_add_quadratic_row(&q, 0));
-    narc_close_quadratic(&q);
 }
 
 TEST_MAIN("quadratic programmes")

@@ -143,7 +143,7 @@ static void fit_at_random(struct test_random *random, const struct outline *of) 
     narc_fit_request request = {.family = (narc_fit_family)random_below(random, 4), .starts = 1};
     request.goal = request.family == NARC_FIT_PAPER ? NARC_FIT_BOUND_AREA : (narc_fit_goal)random_below(random, 5);
     request.arc_count = 3 + random_below(random, 4);
-    struct reference_hull hull = reference_wrap(of->points, of->count, of->points[0]);
+    AUTO(free_at) struct reference_hull hull = reference_wrap(of->points, of->count, of->points[0]);
     if (random_below(random, 8) == 0 && request.family != NARC_FIT_PAPER) {
         request.arc_count = 0;
         request.tolerance = (double)hull.radius * random_between(random, 0.2, 1);
@@ -153,7 +153,6 @@ static void fit_at_random(struct test_random *random, const struct outline *of) 
         assert_true(hull.area < 4e-5L * hull.radius * hull.radius);
     else
         fit_and_check(of, request);
-    free(hull.corners);
 }
 
 TEST(test_hard_outlines) {
@@ -240,11 +239,10 @@ TEST(test_kept_origin) {
         const narc_fit_result fit = fit_outline(&of, request);
         assert_true(fit.origin.x == 0 && fit.origin.y == 0);
         check_contained(&of, &fit, "kept origin");
-        struct reference_hull hull = reference_wrap(of.points, of.count, (narc_point){0, 0});
+        AUTO(free_at) struct reference_hull hull = reference_wrap(of.points, of.count, (narc_point){0, 0});
         const struct reference_range range = reference_compare(fit.arcs, fit.arc_count, &hull);
         const real known = fmaxl(-range.least, range.largest);
         assert_true(fabsl(fit.max_distance - known) <= 4 * 0x1p-24L * (away + 2) + 1e-5L);
-        free(hull.corners);
         free_outline(&of);
     }
 }

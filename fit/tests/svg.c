@@ -41,10 +41,8 @@ static narc_path *read_path(const char *attributes, const char *body) {
 }
 
 static narc_contours read_contours(const char *attributes, const char *body) {
-    narc_path *path = read_path(attributes, body);
-    const narc_contours contours = flatten(path);
-    narc_destroy_path(path);
-    return contours;
+    AUTO(narc_destroy_path_at) narc_path *path = read_path(attributes, body);
+    return flatten(path);
 }
 
 static double find_support(const narc_point *points, size_t count, double angle) {
@@ -66,7 +64,7 @@ struct ink {
 /* In all directions the outline reaches as far as the ink, up to the flatness that it tells, which is a pixel: at most
  * one 4096th of the ink's longer side, or one 8192nd of the page's, which is 100. */
 static void expect_near_ink(const char *body, const struct ink *ink, double rounding) {
-    narc_contours contours = read_contours("viewBox='0 0 100 100'", body);
+    AUTO(narc_release_contours) narc_contours contours = read_contours("viewBox='0 0 100 100'", body);
     double sides[4];
     for (int k = 0; k < 4; k++)
         sides[k] = find_support(ink->points, ink->count, k * PI / 2) + ink->radius;
@@ -81,7 +79,6 @@ static void expect_near_ink(const char *body, const struct ink *ink, double roun
                      (reach - truth) / contours.flatness);
         }
     }
-    narc_release_contours(&contours);
 }
 
 /* Numbers in the file are short of these by 1e-12. */
@@ -166,7 +163,7 @@ TEST(bounds_what_is_drawn) {
                  random_middle(&random), corners);
         snprintf(body, sizeof body, "<path d='M%.12f %.12f %.12f %.12f %.12f %.12f %.12f %.12f'/>", corners[0].x,
                  -corners[0].y, corners[1].x, -corners[1].y, corners[2].x, -corners[2].y, corners[3].x, -corners[3].y);
-        narc_path *path = read_path("viewBox='0 0 100 100'", body);
+        AUTO(narc_destroy_path_at) narc_path *path = read_path("viewBox='0 0 100 100'", body);
         narc_fit_result fit;
         narc_error error;
         const narc_fit_request request = {.arc_count = 4, .family = NARC_FIT_POLYGON, .starts = 2};
@@ -181,7 +178,6 @@ TEST(bounds_what_is_drawn) {
                 assert_true(x * to_y - y * to_x > 0);
             }
         }
-        narc_destroy_path(path);
     }
 }
 
@@ -191,12 +187,11 @@ TEST(tells_a_pixel) {
     assert_true(fabs(contours.flatness - 1000.0 / 8192) < 1e-9);
     narc_release_contours(&contours);
     /* The path's other contours count with the same. */
-    narc_path *path = read_path("viewBox='0 0 100 100'", "<rect width='100' height='100'/>");
+    AUTO(narc_destroy_path_at) narc_path *path = read_path("viewBox='0 0 100 100'", "<rect width='100' height='100'/>");
     draw_polygon(path, (narc_point[]){{0, 0}, {1, 0}, {0, 1}}, 3);
     contours = flatten(path);
     assert_true(contours.flatness > 100.0 / 4200 && contours.flatness < 100.0 / 4096);
     narc_release_contours(&contours);
-    narc_destroy_path(path);
 }
 
 /* ---------------------------------------------------------------------------- units, and what is seen */
@@ -211,7 +206,7 @@ static void expect_seen(const struct seen *cases, size_t count) {
     for (size_t k = 0; k < 2 * count; k += stride(5)) {
         const struct seen *c = &cases[k / 2];
         traces = k % 2 == 0;
-        narc_contours contours = read_contours(c->attributes, c->body);
+        AUTO(narc_release_contours) narc_contours contours = read_contours(c->attributes, c->body);
         traces = true;
         const double sides[4] = {c->right, c->top, -c->left, -c->bottom};
         for (int i = 0; i < 4; i++) {
@@ -219,7 +214,6 @@ static void expect_seen(const struct seen *cases, size_t count) {
             if (!(fabs(reach - sides[i]) <= fmax(contours.flatness, 1e-9)))
                 fail_msg("<svg %s> %s: side %d is at %.9g, not %.9g", c->attributes, c->body, i, reach, sides[i]);
         }
-        narc_release_contours(&contours);
     }
 }
 
@@ -281,13 +275,10 @@ static const char page_of_100[] = "viewBox='0 0 100 100'", square[] = "<rect x='
 
 /* How far the outline reaches to the right, and upwards. */
 static narc_point measure_reach(const char *body, narc_image_request request) {
-    narc_path *path = read_request(page_of_100, body, request);
-    narc_contours contours = flatten(path);
-    const narc_point reach = {find_support(contours.points, contours.point_count, 0),
-                              find_support(contours.points, contours.point_count, PI / 2)};
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
-    return reach;
+    AUTO(narc_destroy_path_at) narc_path *path = read_request(page_of_100, body, request);
+    AUTO(narc_release_contours) narc_contours contours = flatten(path);
+    return (narc_point){find_support(contours.points, contours.point_count, 0),
+                        find_support(contours.points, contours.point_count, PI / 2)};
 }
 
 /* A shadow, even or blurred, apart or behind, counts if it is not fainter than the threshold, which usually is a quarter.
@@ -344,14 +335,13 @@ TEST(keeps_faint_ink_at_sides) {
                  "<g transform='rotate(%d 50 50)'><rect width='100' height='%.12f'/>"
                  "<rect width='100' height='%.12f' opacity='0.02'/></g>",
                  90 * side, pixel, 12 * pixel);
-        narc_contours contours = read_contours("viewBox='0 0 100 100'", body);
+        AUTO(narc_release_contours) narc_contours contours = read_contours("viewBox='0 0 100 100'", body);
         assert_true(contours.flatness == pixel);
         assert_int_equal(contours.count, 1);
         const double across = (side + 1) * PI / 2;
         const double depth = find_support(contours.points, contours.point_count, across) +
                              find_support(contours.points, contours.point_count, across + PI);
         assert_true(depth >= 8 * pixel && depth <= 11 * pixel);
-        narc_release_contours(&contours);
     }
 }
 
@@ -405,9 +395,9 @@ TEST(leaves_out_huge_text) {
     for (int trial = 0; trial < 2; trial++) {
         const struct seen seen = {"viewBox='0 0 9 9'", huge, 0, -9, 9, 0};
         expect_seen(&seen, 1);
+        AUTO(narc_release_contours)
         narc_contours contours =
             read_contours("viewBox='0 0 90 90'", "<rect width='9' height='9'/><text y='80'>l</text>");
-        narc_release_contours(&contours);
     }
 }
 
@@ -436,7 +426,7 @@ TEST(tells_what_is_wrong) {
         const struct wrong *w = &wrong[k];
         expect_wrong_text(read_usual, w->text, strlen(w->text), w->status, w->line, w->words);
     }
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error;
     expect_error(narc_read_svg(NULL, 1, NULL, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
     expect_error(narc_read_svg("<svg/>", 6, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
@@ -460,7 +450,6 @@ TEST(tells_what_is_wrong) {
     for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k += stride(3))
         expect_error(narc_read_svg(faint, sizeof faint - 1, &requests[k].request, path, &error), requests[k].status,
                      &error, requests[k].words);
-    narc_destroy_path(path);
 }
 
 /* What a file shows of others is not read, though they are there. */
@@ -498,7 +487,7 @@ TEST(reads_no_other_file) {
 /* A file of a kilobyte that would be 10^10 times its path; elements 100,000 deep. */
 TEST(ends_what_multiplies) {
     enum { DEEP = 100000 };
-    char *text = malloc(DEEP * 3 + 100);
+    AUTO(free_at) char *text = malloc(DEEP * 3 + 100);
     assert_non_null(text);
     size_t size = (size_t)sprintf(text, "<!DOCTYPE svg [<!ENTITY a0 'h1v1h1v1h1v1h1v1'>");
     for (int level = 1; level <= 10; level++) {
@@ -513,7 +502,6 @@ TEST(ends_what_multiplies) {
     for (int k = 0; k < DEEP; k++)
         size += (size_t)sprintf(text + size, "<g>");
     expect_wrong_text(read_usual, text, size, NARC_ERROR_FORMAT, 1, "not SVG: ");
-    free(text);
 }
 
 TEST(survives_changed_bytes) {
@@ -547,12 +535,11 @@ TEST(test_elements) {
     assert_true(fabs(reach.x - 3) <= 0.01 && fabs(reach.y + 2) <= 0.01);
     assert_true(fabs(other.x - 8) <= 0.01 && fabs(other.y + 1) <= 0.01);
     static const char text[] = "<svg xmlns='http://www.w3.org/2000/svg'><rect id='a' width='1' height='1'/></svg>";
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_error error = {.message = ""};
     const narc_status status =
         narc_read_svg(text, sizeof text - 1, &(narc_image_request){.element = "c"}, path, &error);
     expect_error(status, NARC_ERROR_INDEX, &error, "'c'");
-    narc_destroy_path(path);
 }
 
 TEST_MAIN("SVG")

@@ -74,13 +74,11 @@ TEST(test_geometry) {
         bool exact = false;
         double areas[2];
         for (int way = 0; way < 2; way++) {
-            narc_path *path = read_drawing(cases[k].body, way == 1, way ? NULL : &exact);
-            narc_contours contours = flatten(path);
+            AUTO(narc_destroy_path_at) narc_path *path = read_drawing(cases[k].body, way == 1, way ? NULL : &exact);
+            AUTO(narc_release_contours) narc_contours contours = flatten(path);
             areas[way] = sum_areas(&contours);
             if (contours.count != cases[k].contours)
                 fail_msg("%s: %zu contours, way %d", cases[k].body, contours.count, way);
-            narc_release_contours(&contours);
-            narc_destroy_path(path);
         }
         if (!exact || fabs(areas[0] - areas[1]) > 3e-3 * areas[0] ||
             (cases[k].area > 0 && fabs(areas[0] - cases[k].area) > 2e-4 * areas[0]))

@@ -55,8 +55,8 @@ static void check_box(const struct shape *shape, const narc_shape_header *header
 TEST(test_boxes) {
     enum { SHAPES = 40 * FAMILY_COUNT };
     struct test_random random = test_random_named("blocks");
-    narc_methods *methods = NULL;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_methods_at) narc_methods *methods = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -75,8 +75,6 @@ TEST(test_boxes) {
         header.first_record = shapes->headers[k].first_record;
         assert_memory_equal(&header, &shapes->headers[k], sizeof header);
     }
-    narc_destroy_methods(methods);
-    narc_destroy_shapes(shapes);
 }
 
 /* There is no answer for pieces of chains. */
@@ -84,13 +82,12 @@ TEST(test_pieces) {
     static const narc_arc hill[] = {{0, 0, 1, 0.5, 2.5}};
     narc_chain_entry entries[4];
     size_t count;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     narc_methods *methods = NULL;
     narc_error error;
     expect_ok(narc_add_chain(shapes, hill, 1, NULL, entries, 4, &count, &error), &error);
     expect_error(narc_create_methods(shapes, NULL, &methods, &error), NARC_ERROR_ARGUMENT, &error, "pieces of chains");
     assert_null(methods);
-    narc_destroy_shapes(shapes);
 }
 
 /* Two bodies of shape 0, 3 apart: do their boxes meet, or why is that not told? */
@@ -118,7 +115,7 @@ TEST(test_never_stale) {
     const narc_allocator allocator = ledger_allocator(&ledger);
     const struct shape small = box_of(1, 1, 0);
     struct shape wide;
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_methods *methods = NULL;
     narc_error error;
     bool meet = false;
@@ -157,7 +154,6 @@ TEST(test_never_stale) {
     narc_destroy_methods(methods);
     narc_destroy_methods(NULL);
     assert_int_equal(ledger.live, 0);
-    narc_destroy_shapes(shapes);
 }
 
 TEST_MAIN("method_copies")

@@ -90,7 +90,7 @@ static struct counts check_contacts(const struct corpus *corpus, const narc_meth
     const size_t count = corpus->scene.pair_count;
     struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
-    struct contacts all = query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY});
+    AUTO(free_at) struct contacts all = query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY});
     assert_int_equal(all.count, count);
     for (size_t k = 0; k < count; k++) {
         const unsigned outcome = options->out_outcomes[k];
@@ -101,7 +101,6 @@ static struct counts check_contacts(const struct corpus *corpus, const narc_meth
         if (wrong)
             show_wrong_pair(corpus, k, name, wrong, &all.rows[k], outcome, &counts.wrong);
     }
-    free(all.rows);
     return counts;
 }
 
@@ -111,14 +110,13 @@ TEST(test_tolerances) {
     for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
-            uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
+            AUTO(free_at) uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
             const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
             const struct counts counts = check_contacts(&corpora[c], &options, name);
             print_counts(name, &counts);
             wrong += counts.wrong;
-            free(outcomes);
         }
     }
     assert_int_equal(wrong, 0);
@@ -131,7 +129,7 @@ static size_t count_all_limits(check_corpus *check, const char *what, unsigned i
     size_t limits = 0;
     for (int c = 0; c < CORPORA; c++) {
         char name[64];
-        uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(corpora[c].scene.pair_count);
         const narc_method_options options = {
             .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
         snprintf(name, sizeof name, "%s, iterations %u, scene %d", what, iterations, c);
@@ -139,7 +137,6 @@ static size_t count_all_limits(check_corpus *check, const char *what, unsigned i
         print_counts(name, &counts);
         assert_int_equal(counts.wrong, 0);
         limits += counts.outcomes[NARC_OUTCOME_LIMIT];
-        free(outcomes);
     }
     return limits;
 }
@@ -166,10 +163,11 @@ TEST(test_margins) {
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = make_junk(count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(count);
         const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
         for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
-            uint64_t *bits = query_overlaps(&corpus->scene, &options, NULL);
+            AUTO(free_at) uint64_t *bits = query_overlaps(&corpus->scene, &options, NULL);
+            AUTO(free_at)
             struct contacts found = query_contacts(&corpus->scene, &options, &(narc_query){.margin = margins[m]});
             struct counts counts = {0};
             size_t next = 0;
@@ -196,10 +194,7 @@ TEST(test_margins) {
                 next += listed;
             }
             assert_int_equal(next, found.count);
-            free(found.rows);
-            free(bits);
         }
-        free(outcomes);
     }
     assert_int_equal(wrong_pairs, 0);
 }
@@ -211,7 +206,7 @@ static struct counts check_overlaps(const struct corpus *corpus, const narc_meth
     const size_t count = corpus->scene.pair_count;
     struct counts counts = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
-    uint64_t *bits = query_overlaps(&corpus->scene, options, NULL);
+    AUTO(free_at) uint64_t *bits = query_overlaps(&corpus->scene, options, NULL);
     for (size_t k = 0; k < count; k++) {
         const struct exact_pair *pair = &corpus->pairs[k];
         const unsigned outcome = options->out_outcomes[k];
@@ -233,7 +228,6 @@ static struct counts check_overlaps(const struct corpus *corpus, const narc_meth
             print_error("  answer: outcome %u, bit %d\n", outcome, bit_is_set(bits, k));
         }
     }
-    free(bits);
     return counts;
 }
 
@@ -256,8 +250,8 @@ static uint32_t *create_simplexes(size_t count) {
 /* Overlaps and contacts from these simplexes, and from what those calls leave of them. */
 static size_t check_warm_starts(const struct corpus *corpus, uint32_t *simplexes, const char *what) {
     const size_t count = corpus->scene.pair_count, size = count * sizeof *simplexes;
-    uint8_t *outcomes = make_junk(count);
-    uint32_t *of_overlaps = memcpy(create_simplexes(count), simplexes, size);
+    AUTO(free_at) uint8_t *outcomes = make_junk(count);
+    AUTO(free_at) uint32_t *of_overlaps = memcpy(create_simplexes(count), simplexes, size);
     narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes, .simplexes = of_overlaps};
     size_t wrong = 0;
     for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
@@ -272,21 +266,18 @@ static size_t check_warm_starts(const struct corpus *corpus, uint32_t *simplexes
         print_counts(what, &counts);
         wrong += counts.wrong;
     }
-    free(of_overlaps);
-    free(outcomes);
     return wrong;
 }
 
 static size_t count_limits(const struct corpus *corpus, unsigned iterations, uint32_t *simplexes) {
     const size_t count = corpus->scene.pair_count;
-    uint8_t *outcomes = make_junk(count);
+    AUTO(free_at) uint8_t *outcomes = make_junk(count);
     size_t limits = 0;
     const narc_method_options options = {
         .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes, .simplexes = simplexes};
     free(query_overlaps(&corpus->scene, &options, NULL));
     for (size_t k = 0; k < count; k++)
         limits += outcomes[k] == NARC_OUTCOME_LIMIT;
-    free(outcomes);
     return limits;
 }
 
@@ -294,13 +285,12 @@ static size_t count_limits(const struct corpus *corpus, unsigned iterations, uin
  * them. */
 TEST(test_warm_start) {
     for (int c = 0; c < CORPORA; c++) {
-        uint32_t *simplexes = create_simplexes(corpora[c].scene.pair_count);
+        AUTO(free_at) uint32_t *simplexes = create_simplexes(corpora[c].scene.pair_count);
         const size_t cold = count_limits(&corpora[c], 3, NULL);
         assert_int_equal(count_limits(&corpora[c], 0, simplexes), 0);
         const size_t warm = count_limits(&corpora[c], 3, simplexes);
         printf("  three steps are too few for %zu pairs, of a warm start for %zu\n", cold, warm);
         assert_true(warm < cold / 2 || cold < 100); /* of fewer pairs it is chance */
-        free(simplexes);
     }
 }
 
@@ -330,7 +320,7 @@ TEST(test_any_simplexes) {
     size_t wrong = 0;
     for (int c = 0; c < CORPORA; c++) {
         const size_t count = corpora[c].scene.pair_count;
-        uint32_t *simplexes = create_simplexes(count);
+        AUTO(free_at) uint32_t *simplexes = create_simplexes(count);
         for (int kind = 0; kind < 6; kind++) {
             static const char *const names[] = {"random bits", "all ones",       "single bits",
                                                 "random axes", "random triples", "three times the same"};
@@ -346,7 +336,6 @@ TEST(test_any_simplexes) {
             }
             wrong += check_warm_starts(&corpora[c], simplexes, names[kind]);
         }
-        free(simplexes);
     }
     assert_int_equal(wrong, 0);
 }
@@ -359,6 +348,7 @@ TEST(test_simplexes_of_a_batch) {
     const size_t count = scene->pair_count, first = 64, size = count * sizeof(uint32_t);
     narc_workers three;
     narc_openmp_workers(3, &three);
+    AUTO(free_at)
     uint32_t *const right = create_simplexes(count), *const start = create_simplexes(count),
                     *selection = make_junk(size);
     for (uint32_t k = 0; k < count; k++) {
@@ -378,14 +368,13 @@ TEST(test_simplexes_of_a_batch) {
             free(query_overlaps(scene, &options, NULL));
         test_use_isa(test_isa());
         for (int q = 0; q < 3; q++) {
-            uint32_t *const found = options.simplexes = guard_copy(start, size);
+            AUTO(guard_release_at) uint32_t *const found = options.simplexes = guard_copy(start, size);
             if (contacts)
                 free(query_contacts(scene, &options, queries[q]).rows);
             else
                 free(query_overlaps(scene, &options, queries[q]));
             for (size_t k = 0; k < count; k++)
                 assert_int_equal(found[k], q == 0 || k >= first ? right[k] : start[k]);
-            guard_release(found);
         }
         options.simplexes = memcpy(right, start, size);
         options.method = NARC_METHOD_SAT;
@@ -394,7 +383,7 @@ TEST(test_simplexes_of_a_batch) {
         free(query_contacts(scene, &options, &whole).rows);
         assert_memory_equal(right, start, size);
     }
-    narc_methods *const methods = create_methods(scene->store);
+    AUTO(narc_destroy_methods_at) narc_methods *const methods = create_methods(scene->store);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     const narc_method_options options = {.method = NARC_METHOD_GJK, .simplexes = right};
@@ -403,10 +392,6 @@ TEST(test_simplexes_of_a_batch) {
         narc_find_contacts_by(methods, &bodies, &pairs, &options, &(narc_query){.margin = NAN}, NULL, 0, &found, NULL),
         NARC_ERROR_NOT_FINITE);
     assert_memory_equal(right, start, size);
-    narc_destroy_methods(methods);
-    free(selection);
-    free(start);
-    free(right);
 }
 
 int main(void) { return test_begin() ? test_run("methods_gjk", make_corpora, destroy_corpora) : TEST_SKIPPED; }

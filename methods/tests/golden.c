@@ -23,8 +23,8 @@ static uint64_t hash_method(const struct scene *scene, narc_method method) {
     uint64_t hash = TEST_HASH_START;
     memset(simplexes, 0, sizeof simplexes);
     for (int round = 0; round < 2; round++) {
-        uint64_t *bits = query_overlaps(scene, &options, &query);
-        struct contacts found = {0};
+        AUTO(free_at) uint64_t *bits = query_overlaps(scene, &options, &query);
+        AUTO(free_at) struct contacts found = {0};
         if (method <= NARC_METHOD_GJK) {
             found = query_contacts(scene, &options, &query);
             assert_int_equal(found.count, scene->pair_count);
@@ -33,8 +33,6 @@ static uint64_t hash_method(const struct scene *scene, narc_method method) {
         hash = test_hash(hash, outcomes, scene->pair_count);
         hash = test_hash_items(hash, simplexes, PAIRS, sizeof *simplexes);
         hash = hash_contacts(hash, found);
-        free(found.rows);
-        free(bits);
     }
     return hash;
 }

@@ -19,25 +19,23 @@ narc_methods *create_methods(const narc_shapes *shapes) {
 
 uint64_t *query_overlaps(const struct scene *scene, const narc_method_options *options, const narc_query *query) {
     uint64_t *bits = make_junk(NARC_BIT_WORDS(scene->pair_count) * sizeof *bits);
-    narc_methods *methods = create_methods(scene->store);
+    AUTO(narc_destroy_methods_at) narc_methods *methods = create_methods(scene->store);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
     expect_ok(narc_find_overlaps_by(methods, &bodies, &pairs, options, query, bits, &error), &error);
-    narc_destroy_methods(methods);
     return bits;
 }
 
 struct contacts query_contacts(const struct scene *scene, const narc_method_options *options, const narc_query *query) {
     struct contacts found = {make_junk(scene->pair_count * sizeof *found.rows), 0};
-    narc_methods *methods = create_methods(scene->store);
+    AUTO(narc_destroy_methods_at) narc_methods *methods = create_methods(scene->store);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
     expect_ok(
         narc_find_contacts_by(methods, &bodies, &pairs, options, query, found.rows, pairs.count, &found.count, &error),
         &error);
-    narc_destroy_methods(methods);
     return found;
 }
 

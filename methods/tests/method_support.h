@@ -9,6 +9,7 @@
 #include "narc_methods.h"
 
 narc_methods *create_methods(const narc_shapes *shapes);
+RELEASE_AT(narc_destroy_methods)
 
 /* The calls of narc_methods.h on a scene; any error fails the test. Outputs are full of junk before. `query` may be
  * NULL. */

@@ -48,24 +48,19 @@ TEST(test_sat_is_narc_find) {
         const size_t count = scene->pair_count;
         const narc_bodies bodies = scene_bodies(scene);
         const narc_pairs pairs = scene_pairs(scene);
-        uint8_t *outcomes = make_junk(count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(count);
         const narc_method_options options = {.tolerance = 0.5f, .iterations = 1, .out_outcomes = outcomes};
         for (int m = 0; m < MARGINS; m++) {
             const narc_query query = {.margin = margins[m]};
-            struct contacts found = query_contacts(scene, &options, &query);
-            struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &query);
+            AUTO(free_at) struct contacts found = query_contacts(scene, &options, &query);
+            AUTO(free_at) struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &query);
             check_contacts_below(&found, &expected, INFINITY, "sat");
-            free(found.rows);
-            free(expected.rows);
         }
         check_all_done(outcomes, count);
         memset(outcomes, 0xa5, count);
-        uint64_t *bits = query_overlaps(scene, &options, NULL), *expected_bits = scene_overlaps(scene);
+        AUTO(free_at) uint64_t *bits = query_overlaps(scene, &options, NULL), *expected_bits = scene_overlaps(scene);
         assert_memory_equal(bits, expected_bits, NARC_BIT_WORDS(count) * sizeof *bits);
         check_all_done(outcomes, count);
-        free(bits);
-        free(expected_bits);
-        free(outcomes);
     }
 }
 
@@ -74,6 +69,7 @@ TEST(test_sat_is_exact) {
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
+        AUTO(free_at)
         struct contacts all =
             query_contacts(&corpus->scene, &(narc_method_options){0}, &(narc_query){.margin = INFINITY});
         for (size_t k = 0; k < all.count; k++) {
@@ -87,7 +83,6 @@ TEST(test_sat_is_exact) {
             if (wrong)
                 show_wrong_pair(corpus, k, "sat", wrong, &all.rows[k], 0, &wrong_pairs);
         }
-        free(all.rows);
     }
     assert_int_equal(wrong_pairs, 0);
 }
@@ -214,28 +209,24 @@ TEST(test_first_pair) {
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = make_junk(count), *again = make_junk(count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(count), *again = make_junk(count);
         const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes};
         const narc_method_options other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
         const narc_query query = {.margin = INFINITY};
-        struct contacts all = query_contacts(&corpus->scene, &options, &query);
+        AUTO(free_at) struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
-        uint64_t *bits = query_overlaps(&corpus->scene, &other, NULL);
+        AUTO(free_at) uint64_t *bits = query_overlaps(&corpus->scene, &other, NULL);
         assert_memory_equal(outcomes, again, count);
         for (size_t k = 0; k < count; k++) {
             assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
             check_first_pair(corpus, &all, k, outcomes[k], &counts);
         }
         for (int m = 0; m < MARGINS; m++) {
+            AUTO(free_at)
             struct contacts found = query_contacts(&corpus->scene, &other, &(narc_query){.margin = margins[m]});
             check_contacts_below(&found, &all, margins[m], "sat-first");
             assert_memory_equal(outcomes, again, count);
-            free(found.rows);
         }
-        free(outcomes);
-        free(again);
-        free(bits);
-        free(all.rows);
     }
     printf("  sat-first: %zu pairs; in doubt %zu, without a pair of arcs %zu, with one that is not the first of all "
            "%zu; sign wrong %zu, of %zu with all centres inside 0\n",
@@ -269,14 +260,14 @@ TEST(test_polygons) {
     for (int c = POLYGONS; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
-        uint8_t *outcomes = make_junk(count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(count);
         const narc_method_options options = {.method = NARC_METHOD_POLYGON_SAT, .out_outcomes = outcomes};
         narc_query query = {.margin = INFINITY};
-        struct contacts all = query_contacts(&corpus->scene, &options, &query);
+        AUTO(free_at) struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
         check_all_done(outcomes, count);
         memset(outcomes, 0xa5, count);
-        uint64_t *bits = query_overlaps(&corpus->scene, &options, &query);
+        AUTO(free_at) uint64_t *bits = query_overlaps(&corpus->scene, &options, &query);
         check_all_done(outcomes, count);
         for (size_t k = 0; k < count; k++) {
             const struct exact_pair *pair = &corpus->pairs[k];
@@ -295,13 +286,9 @@ TEST(test_polygons) {
         const float more[] = {0, 0.2f, 1e-6f, -1e-6f, -0.1f, -10, 10};
         for (size_t m = 0; m < sizeof more / sizeof *more; m++) {
             query.margin = more[m];
-            struct contacts found = query_contacts(&corpus->scene, &options, &query);
+            AUTO(free_at) struct contacts found = query_contacts(&corpus->scene, &options, &query);
             check_contacts_below(&found, &all, more[m], "polygon-sat");
-            free(found.rows);
         }
-        free(outcomes);
-        free(bits);
-        free(all.rows);
     }
     printf("  polygon-sat: %zu pairs apart, of %zu of them less than the distance; %zu colliding\n", apart, less,
            colliding);
@@ -348,12 +335,12 @@ TEST(test_filters) {
         const struct corpus *corpus = &corpora[c];
         const struct scene *scene = &corpus->scene;
         const size_t count = scene->pair_count;
-        struct smallest_boxes *boxes = malloc(scene->shape_count * sizeof *boxes);
+        AUTO(free_at) struct smallest_boxes *boxes = malloc(scene->shape_count * sizeof *boxes);
         assert_non_null(boxes);
         for (size_t k = 0; k < scene->shape_count; k++)
             boxes[k] = find_boxes(&scene->shapes[k]);
         uint64_t *bits[3];
-        uint8_t *outcomes = make_junk(count);
+        AUTO(free_at) uint8_t *outcomes = make_junk(count);
         for (int f = 0; f < 3; f++) {
             const narc_method_options options = {.method = (narc_method)(NARC_METHOD_CIRCLE + f),
                                                  .out_outcomes = outcomes};
@@ -383,8 +370,6 @@ TEST(test_filters) {
         }
         for (int f = 0; f < 3; f++)
             free(bits[f]);
-        free(outcomes);
-        free(boxes);
     }
     for (int f = 0; f < 3; f++) {
         printf("  %s: %zu apart, %zu overlapping; says yes of %zu separated pairs\n",
@@ -399,16 +384,13 @@ TEST(test_filters) {
 TEST(test_filters_far_from_origin) {
     struct test_random random = test_random_named("filters far from origin");
     for (int decade = FIRST_FAR; decade <= LAST_FAR; decade++) {
-        struct scene scene = make_far_scene(&random, decade);
-        uint64_t *exact = scene_overlaps(&scene);
+        AUTO(destroy_scene) struct scene scene = make_far_scene(&random, decade);
+        AUTO(free_at) uint64_t *exact = scene_overlaps(&scene);
         for (narc_method method = NARC_METHOD_CIRCLE; narc_method_name(method); method++) {
-            uint64_t *passed = query_overlaps(&scene, &(narc_method_options){.method = method}, NULL);
+            AUTO(free_at) uint64_t *passed = query_overlaps(&scene, &(narc_method_options){.method = method}, NULL);
             for (size_t k = 0; k < NARC_BIT_WORDS(scene.pair_count); k++)
                 assert_true((exact[k] & ~passed[k]) == 0);
-            free(passed);
         }
-        free(exact);
-        destroy_scene(&scene);
     }
 }
 
@@ -417,7 +399,7 @@ TEST(test_filters_far_from_origin) {
 TEST(test_broken_bodies) {
     enum { PAIRS = 1200 };
     struct test_random random = test_random_named("broken bodies");
-    struct scene scene = create_scene(NARC_FLOAT64, 1, 2 * PAIRS, PAIRS);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 1, 2 * PAIRS, PAIRS);
     const struct shape box = box_of(2, 1, 0);
     scene_add_shape(&scene, &box);
     for (size_t k = 0; k < PAIRS; k++) {
@@ -433,7 +415,7 @@ TEST(test_broken_bodies) {
         }
         scene_add_two(&scene, a, b);
     }
-    struct contacts all = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) struct contacts all = scene_contacts(&scene, INFINITY);
     size_t broken = 0;
     for (size_t k = 0; k < all.count; k++)
         broken += all.rows[k].count == 0;
@@ -446,16 +428,13 @@ TEST(test_broken_bodies) {
         free(query_overlaps(&scene, &options, &query));
         assert_int_equal(skipped, broken);
         if (method < NARC_METHOD_CIRCLE) {
-            struct contacts found = query_contacts(&scene, &options, &query);
+            AUTO(free_at) struct contacts found = query_contacts(&scene, &options, &query);
             for (size_t k = 0; k < PAIRS; k++)
                 if (all.rows[k].count == 0)
                     assert_true(found.rows[k].count == 0 && outcomes[k] == NARC_OUTCOME_DONE);
-            free(found.rows);
         }
         assert_int_equal(skipped, broken);
     }
-    free(all.rows);
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ circles */
@@ -483,7 +462,7 @@ TEST(test_circles_in_one_place) {
                 {1e-2f, 8, NARC_OUTCOME_LIMIT, INFINITY},
                 {1e-6f, 0, NARC_OUTCOME_LIMIT, 1e-5}};
     const struct shape disc = circle_of(1);
-    struct scene scene = make_two(&disc, 0, 0);
+    AUTO(destroy_scene) struct scene scene = make_two(&disc, 0, 0);
     uint8_t outcome;
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const narc_method_options options = {.method = NARC_METHOD_GJK,
@@ -494,16 +473,13 @@ TEST(test_circles_in_one_place) {
         assert_int_equal(outcome, ways[k].outcome);
         assert_true(fabs((double)found.rows[0].separation + 2) <= ways[k].off);
         free(found.rows);
-        uint64_t *bits = query_overlaps(&scene, &options, NULL);
+        AUTO(free_at) uint64_t *bits = query_overlaps(&scene, &options, NULL);
         assert_true(bit_is_set(bits, 0) && outcome == NARC_OUTCOME_DONE);
-        free(bits);
     }
     /* The first of Algorithm 2's arcs has no direction to look along. */
     const narc_method_options first = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
-    uint64_t *bits = query_overlaps(&scene, &first, NULL);
+    AUTO(free_at) uint64_t *bits = query_overlaps(&scene, &first, NULL);
     assert_true(!bit_is_set(bits, 0) && outcome == NARC_OUTCOME_NONE);
-    free(bits);
-    destroy_scene(&scene);
 }
 
 /* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
@@ -514,20 +490,18 @@ TEST(test_first_at_the_seam) {
     for (size_t k = 0; k < 2 * sizeof turns / sizeof *turns; k++) {
         const float *turn = turns[k / 2], side = k % 2 ? 1 : -1;
         const narc_point to = {(double)(side * turn[0]), (double)(side * turn[1])};
-        struct scene scene = make_two(&disc, to.x, to.y);
+        AUTO(destroy_scene) struct scene scene = make_two(&disc, to.x, to.y);
         for (size_t i = 0; i < 2; i++) {
             scene.bodies[i].cosine = turn[0];
             scene.bodies[i].sine = turn[1];
         }
         uint8_t outcome = 0xa5;
         const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
-        struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
+        AUTO(free_at) struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
         assert_int_equal(outcome, NARC_OUTCOME_DONE);
         assert_true(fabs((double)found.rows[0].separation + 1) < 1e-6);
         assert_true(fabs((double)found.rows[0].normal_x - to.x) < 1e-6);
         assert_true(fabs((double)found.rows[0].normal_y - to.y) < 1e-6);
-        free(found.rows);
-        destroy_scene(&scene);
     }
 }
 

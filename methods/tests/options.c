@@ -29,7 +29,7 @@ static void expect_wrong(const struct scene *scene, narc_method_options options,
         size_t count;
         uint8_t outcomes[PAIRS];
     } *out = make_junk(sizeof *out);
-    narc_methods *methods = create_methods(scene->store);
+    AUTO(narc_destroy_methods_at) narc_methods *methods = create_methods(scene->store);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
@@ -40,14 +40,13 @@ static void expect_wrong(const struct scene *scene, narc_method_options options,
     expect_error(narc_find_contacts_by(methods, &bodies, &pairs, &options, NULL, out->rows, PAIRS, &out->count, &error),
                  expected, &error, words);
     assert_true(is_junk(out, sizeof *out));
-    narc_destroy_methods(methods);
     free(out);
 }
 
 TEST(test_options) {
     static const int bad_methods[] = {METHODS, 100, -1, INT32_MAX, INT32_MIN};
     struct test_random random = test_random_named("options");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 30, PAIRS);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, 30, PAIRS);
     for (size_t k = 0; k < sizeof bad_methods / sizeof *bad_methods; k++) {
         char words[32];
         snprintf(words, sizeof words, "no method %d", bad_methods[k]);
@@ -69,12 +68,11 @@ TEST(test_options) {
         if (method >= NARC_METHOD_CIRCLE)
             expect_wrong(&scene, options, NARC_ERROR_ARGUMENT, narc_method_name(method));
     }
-    destroy_scene(&scene);
 }
 
 /* The first pair whose shape is not a polygon is the one that is told, and the shape and the body. */
 TEST(test_not_a_polygon) {
-    struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
     const struct shape box = box_of(1, 1, 0), round = box_of(1, 1, 0.1);
     const narc_method_options polygons = {.method = NARC_METHOD_POLYGON_SAT};
     scene_add_shape(&scene, &box);
@@ -93,5 +91,4 @@ TEST(test_not_a_polygon) {
     scene.pairs[66].b = 23;
     expect_wrong(&scene, polygons, NARC_ERROR_ARGUMENT,
                  "pair 66: polygon-sat needs polygons, but shape 1 of body 23 has arcs");
-    destroy_scene(&scene);
 }

@@ -34,11 +34,10 @@ static narc_status ask(narc_method method, narc_error *error) {
 
 /* Makes and takes a copy of the shapes. */
 static narc_status copy(narc_error *error) {
-    narc_methods *methods = NULL;
+    AUTO(narc_destroy_methods_at) narc_methods *methods = NULL;
     narc_status status = narc_create_methods(scene.store, NULL, &methods, error);
     if (status == NARC_OK)
         status = narc_refresh_methods(methods, error);
-    narc_destroy_methods(methods);
     return status;
 }
 

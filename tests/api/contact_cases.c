@@ -17,7 +17,7 @@
 /* All slots that there is room for are asked, and new. */
 TEST(slots_have_room) {
     allowed = SIZE_MAX;
-    struct few *const few = make_few(circle_of(0.5), 600, &watched);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 600, &watched);
     few->bodies.count = 8;
     assert_int_equal(step_few(few)->count, 4);
     for (size_t count = 500; count <= 600; count += 2) {
@@ -26,12 +26,11 @@ TEST(slots_have_room) {
             few->body[k].y += 1e-4;
         assert_int_equal(step_few(few)->count, count / 2);
     }
-    destroy_few(few);
 }
 
 /* Two that sleep change their order: the row is that of (a, b) all the same. */
 TEST(rows_at_rest_are_turned) {
-    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 3, NULL);
     few->body[0].x = 50;
     few->body[1].x = 0;
     few->body[2].x = 0.9;
@@ -47,12 +46,11 @@ TEST(rows_at_rest_are_turned) {
     assert_int_equal(r->state[r->order[0]] & (NARC_TURNED | NARC_TOUCHING), NARC_TURNED | NARC_TOUCHING);
     assert_true(r->manifolds[r->order[0]].normal_x < -0.9f);
     assert_int_equal(r->began_count + r->ended_count, 0);
-    destroy_few(few);
 }
 
 /* A step that failed has not been: the list of what moved is that since the step before it. */
 TEST(goes_on_from_the_last_good_step) {
-    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 3, NULL);
     const uint32_t none = 0;
     const narc_step_result *r = step_few(few);
     narc_error error;
@@ -66,7 +64,6 @@ TEST(goes_on_from_the_last_good_step) {
     r = step_few(few);
     assert_int_equal(r->touching_count, 1);
     assert_int_equal(r->ended_count, 0);
-    destroy_few(few);
 }
 
 /* The same bodies in an object that knows nothing of them: as much touches, as deep. */
@@ -86,14 +83,13 @@ static void check_with_fresh(struct few *few) {
 
 /* Two change their numbers, and each stands where the other one stood. */
 TEST(bodies_are_known_by_their_ids) {
-    struct few *const few = make_few(circle_of(0.5), 3, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 3, NULL);
     few->body[1].x = 0.05;
     few->body[2].x = 0.9;
     check_with_fresh(few);
     few->id[0] = 2;
     few->id[1] = 1;
     check_with_fresh(few);
-    destroy_few(few);
 }
 
 /* Entries of a chain as static bodies behind body 0, without what is between. */
@@ -119,7 +115,7 @@ static size_t lay_entries(struct few *few, const narc_arc *arcs, size_t count, d
 TEST(ground_that_goes_leaves_what_it_was_merged_with) {
     const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
     for (int way = 0; way < 10; way++) {
-        struct few *const few = make_few(circle_of(0.5), 2, NULL);
+        AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 2, NULL);
         static uint32_t run[600];
         static uint64_t mask[600];
         const uint32_t small = store_shape(few->store, circle_of(0.01));
@@ -153,13 +149,12 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
         }
         check_with_fresh(few);
         assert_int_equal(step_few(few)->touching_count, 1);
-        destroy_few(few);
     }
 }
 
 /* A box touches a bowl in two places, and then the bowl is a circle. */
 TEST(second_rows_go_with_their_ground) {
-    struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
     const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
     static uint32_t run[600];
     const uint32_t circle = store_shape(few->store, circle_of(1));
@@ -174,12 +169,11 @@ TEST(second_rows_go_with_their_ground) {
     }
     check_with_fresh(few);
     assert_int_equal(step_few(few)->more_count, 0);
-    destroy_few(few);
 }
 
 /* What was kept of a row goes with it, whatever recycling is meanwhile. */
 TEST(kept_rows_are_those_of_now) {
-    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
     const double places[] = {0.7, 0.9, 2, 2, 0.7, 0.7005};
     for (size_t k = 0; k < 6; k++) {
         for (size_t i = 0; i < 2; i++) {
@@ -189,12 +183,11 @@ TEST(kept_rows_are_those_of_now) {
         few->step.recycling = k == 1 || k == 2 ? 0 : 0.01f;
         assert_int_equal(step_few(few)->touching_count, places[k] < 0.8);
     }
-    destroy_few(few);
 }
 
 /* A box turns about the first point of its contact: that stays, and the second one does not. */
 TEST(a_turn_is_a_way) {
-    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
     few->body[0].x = few->body[1].x = 0;
     few->body[1].y = 0.995;
     few->step.recycling = 0.01f;
@@ -213,7 +206,6 @@ TEST(a_turn_is_a_way) {
         few->body[1] = (narc_body){0, 0.995, 1, 0, 1, 0};
         step_few(few);
     }
-    destroy_few(few);
 }
 
 /* Rows are as deep as they are to be, but for what recycling lets them be off by. */
@@ -233,7 +225,7 @@ static void check_separations(const struct few *few, const narc_step_result *r) 
 
 /* Enough for several parts of each kind: asked plainly, by entries, and rows that follow. */
 TEST(workers_share_a_step) {
-    struct few *const few = make_few(circle_of(0.5), 600, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 600, NULL);
     struct test_random random = test_random_named("shared steps");
     narc_workers workers;
     narc_openmp_workers(3, &workers);
@@ -261,13 +253,12 @@ TEST(workers_share_a_step) {
     }
     assert_true(pairs > 4 * 1024);
     narc_destroy_contacts(alone);
-    destroy_few(few);
 }
 
 /* A body that is taken out and is there still is another one: what was known of its pairs is gone. */
 TEST(bodies_that_are_taken_out_are_others) {
     for (int way = 0; way < 3; way++) {
-        struct few *const few = make_few(circle_of(0.5), 6, NULL);
+        AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
         const uint64_t gone[] = {way ? 3 : 2, 77};
         const uint32_t none = 0;
         narc_error error;
@@ -293,13 +284,12 @@ TEST(bodies_that_are_taken_out_are_others) {
         }
         r = step_few(few);
         assert_int_equal(r->began_count + r->ended_count + r->asked_count, 0);
-        destroy_few(few);
     }
 }
 
 /* Pairs of the caller's that are none, and what was there before stays. */
 TEST(own_pairs_are_checked) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     uint32_t a[] = {0, 2, 4}, b[] = {1, 3, 5};
     float shift[3] = {0};
     narc_pairs pairs = {.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
@@ -344,13 +334,12 @@ TEST(own_pairs_are_checked) {
     few->step.pairs = NULL;
     r = step_few(few);
     assert_int_equal(r->count, 2);
-    destroy_few(few);
 }
 
 /* Where there is no filter any more nothing is a sensor, or sleeps. */
 TEST(kinds_go_with_the_filter) {
     for (int way = 0; way < 2; way++) {
-        struct few *const few = make_few(circle_of(0.5), 600, NULL);
+        AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 600, NULL);
         few->kind[0] = NARC_SENSOR;
         few->kind[2] = few->kind[3] = way ? NARC_ASLEEP : 0;
         assert_int_equal(step_few(few)->sensor_count, 1);
@@ -359,7 +348,6 @@ TEST(kinds_go_with_the_filter) {
         assert_int_equal(r->sensor_count, 0);
         assert_int_equal(r->touching_count, 300);
         assert_int_equal(r->manifolds[r->order[0]].count, 1);
-        destroy_few(few);
     }
 }
 
@@ -375,29 +363,27 @@ static char *save_few(const struct few *few, size_t *out_size) {
 
 /* What was saved is loaded, of contacts that were forgotten, too. */
 TEST(forgotten_contacts_are_saved) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     size_t size;
     narc_error error;
     assert_int_equal(step_few(few)->began_count, 3);
     narc_forget_contacts(few->contacts);
-    char *const bytes = save_few(few, &size);
+    AUTO(free_at) char *const bytes = save_few(few, &size);
     expect_ok(narc_load_contacts(few->contacts, few->store, bytes, size, NULL, &error), &error);
     assert_int_equal(step_few(few)->began_count, 3);
-    free(bytes);
-    destroy_few(few);
 }
 
 /* Back to where there were fewer slots, and on again: the same bytes, whatever lay in those that came meanwhile. */
 TEST(saved_bytes_are_those_of_the_same_steps) {
-    struct few *const few = make_few(circle_of(0.5), 40, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 40, NULL);
     size_t size, first_size, second_size;
     narc_error error;
     few->bodies.count = 20;
     step_few(few);
-    char *const start = save_few(few, &size);
+    AUTO(free_at) char *const start = save_few(few, &size);
     few->bodies.count = 40;
     step_few(few);
-    char *const first = save_few(few, &first_size);
+    AUTO(free_at) char *const first = save_few(few, &first_size);
     for (size_t step = 0; step < 3; step++) { /* pairs that are asked again have entries */
         for (size_t k = 0; k < 40; k++)
             few->body[k].x += step < 2 ? 0x1p-10 : -0x1p-9;
@@ -405,18 +391,14 @@ TEST(saved_bytes_are_those_of_the_same_steps) {
     }
     expect_ok(narc_load_contacts(few->contacts, few->store, start, size, NULL, &error), &error);
     step_few(few);
-    char *const second = save_few(few, &second_size);
+    AUTO(free_at) char *const second = save_few(few, &second_size);
     assert_int_equal(first_size, second_size);
     assert_memory_equal(first, second, first_size);
-    free(start);
-    free(first);
-    free(second);
-    destroy_few(few);
 }
 
 /* Pairs that are the same are not looked at, whoever moves. */
 TEST(same_pairs_are_not_looked_at) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     uint32_t a[] = {0, 2, 4}, b[] = {1, 3, 5};
     const narc_pairs pairs = {.count = 3, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     few->step.pairs = &pairs;
@@ -431,12 +413,11 @@ TEST(same_pairs_are_not_looked_at) {
         assert_int_equal(r->count, 3);
         assert_int_equal(r->touching_count, 3);
     }
-    destroy_few(few);
 }
 
 /* To take bodies out does not make all others be looked at from then on. */
 TEST(bodies_are_listed_after_some_were_taken_out) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     const uint64_t gone = 1;
     const uint32_t none = 0;
     narc_error error;
@@ -448,12 +429,11 @@ TEST(bodies_are_listed_after_some_were_taken_out) {
     few->step.moved = (narc_index_column){&none, sizeof none};
     few->body[3].x += 0.05; /* but it is not listed */
     assert_int_equal(step_few(few)->asked_count, 0);
-    destroy_few(few);
 }
 
 /* A box rides on a piece of ground to another one, and meets it. */
 TEST(ground_that_carries_is_not_all) {
-    struct few *const few = make_few(box_of(0.2, 0.2, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(0.2, 0.2, 0), 2, NULL);
     const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
     static uint32_t run[600];
     assert_int_equal(lay_entries(few, line, 2, 0, run), 1);
@@ -471,13 +451,12 @@ TEST(ground_that_carries_is_not_all) {
         few->body[0].x += 0.01;
         few->body[1].x += 0.01;
     }
-    destroy_few(few);
 }
 
 /* A box sinks into ground that becomes a plain body, while there is no ground any more: the list stays, the pair is asked. */
 TEST(ground_that_goes_away) {
     const narc_arc line[] = {{10, 0, 0, PI / 4, PI / 2}, {-10, 0, 0, PI / 2, 3 * PI / 4}};
-    struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
     static uint32_t run[600];
     const uint32_t slab = store_shape(few->store, box_of(20, 2, 0.5));
     narc_error error;
@@ -491,7 +470,6 @@ TEST(ground_that_goes_away) {
         few->body[0].y -= 0.002;
         check_with_fresh(few);
     }
-    destroy_few(few);
 }
 
 /* Whatever bit is another one, and the sum is right: no step reads or writes where it must not. Where trials are few,
@@ -499,13 +477,13 @@ TEST(ground_that_goes_away) {
 TEST(damaged_bytes_do_no_harm) {
     const size_t stride = test_trials(10) < 10 ? 7 : 1;
     for (int way = 0; way < 3; way++) {
-        struct few *const few = make_few(circle_of(0.5), 6, NULL);
+        AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
         const narc_pair_filter *const filter = few->step.filter;
         size_t size, loads = 0;
         few->step.filter = way ? filter : NULL;
         few->kind[3] = way > 1 ? NARC_SENSOR : 0;
         step_few(few);
-        char *const bytes = save_few(few, &size);
+        AUTO(free_at) char *const bytes = save_few(few, &size);
         narc_destroy_contacts(few->contacts);
         for (size_t bit = 0; bit < 8 * size; bit += stride) {
             const uint32_t *slots;
@@ -531,14 +509,12 @@ TEST(damaged_bytes_do_no_harm) {
         }
         assert_true(loads > size / stride);
         few->contacts = NULL;
-        free(bytes);
-        destroy_few(few);
     }
 }
 
 /* A body that is not listed has no shape, which is found out when pairs have their slots: the next step begins anew. */
 TEST(unlisted_bodies_without_a_shape_are_an_error) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     const uint32_t moved = 0;
     narc_error error;
     const narc_step_result *r = step_few(few);
@@ -552,23 +528,21 @@ TEST(unlisted_bodies_without_a_shape_are_an_error) {
     few->step.moved_count = 0;
     few->body[1].x = 10.5;
     check_with_fresh(few);
-    destroy_few(few);
 }
 
 /* Saves contacts and loads them into others, which know something else. */
 static void save_and_load(const struct few *from, narc_contacts *to) {
     narc_error error;
     const size_t size = narc_count_contact_bytes(from->contacts);
-    char *const bytes = malloc(size);
+    AUTO(free_at) char *const bytes = malloc(size);
     assert_non_null(bytes);
     expect_ok(narc_save_contacts(from->contacts, bytes, size, &error), &error);
     expect_ok(narc_load_contacts(to, from->store, bytes, size, NULL, &error), &error);
-    free(bytes);
 }
 
 /* What is not saved is found out again: who sleeps, which pairs are known, for how long no entry is made. */
 TEST(goes_on_from_what_was_loaded) {
-    struct few *const few = make_few(circle_of(0.5), 6, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 6, NULL);
     const uint64_t gone = 3;
     narc_error error;
     narc_contacts *const awake = make_contacts(NARC_MANIFOLD_ROWS, NULL), *const kept = few->contacts;
@@ -592,14 +566,14 @@ TEST(goes_on_from_what_was_loaded) {
     assert_int_equal(r->ended_count, 1);
     assert_int_equal(r->began_count, 1);
     narc_destroy_contacts(kept);
-    destroy_few(few);
 }
 
 TEST(saves_how_long_no_entry_is_made) {
     struct test_random random = test_random_named("wild turns");
-    struct few *const few = make_few(make_shape(&random, FAMILY_SMOOTH), 100, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(make_shape(&random, FAMILY_SMOOTH), 100, NULL);
     narc_contacts *const kept = few->contacts;
     for (size_t step = 0; step < 12; step++) {
+        AUTO(narc_destroy_contacts_at)
         narc_contacts *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL); /* it knows nothing else */
         few->contacts = kept;
         save_and_load(few, loaded);
@@ -622,15 +596,13 @@ TEST(saves_how_long_no_entry_is_made) {
         free(one);
         free(other);
         few->contacts = kept;
-        narc_destroy_contacts(loaded);
     }
-    destroy_few(few);
 }
 
 /* A pair that only the filter makes is asked, though nobody moves. */
 TEST(a_filter_makes_pairs) {
     static uint64_t mask[600];
-    struct few *const few = make_few(circle_of(0.5), 600, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 600, NULL);
     memset(mask, 0xff, sizeof mask);
     mask[101] = 0;
     few->filter.mask = NARC_ARRAY(mask);
@@ -640,14 +612,13 @@ TEST(a_filter_makes_pairs) {
     const narc_step_result *const r = step_few(few);
     assert_int_equal(r->touching_count, 300);
     assert_int_equal(r->asked_count, 1);
-    destroy_few(few);
 }
 
 /* As many pairs as there is room for, and behind their slots one that had a pair: nothing is written behind the lists. */
 TEST(lists_have_room_behind_slots_that_are_free) {
     enum { FIRST = 4, ALL = 260 /* as many as there is room for after FIRST */ };
     allowed = SIZE_MAX;
-    struct few *const few = make_few(box_of(1, 1, 0), 2 * ALL + 4, &watched);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2 * ALL + 4, &watched);
     uint32_t a[ALL], b[ALL];
     narc_pairs pairs = {.a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     few->step.pairs = &pairs;
@@ -663,13 +634,12 @@ TEST(lists_have_room_behind_slots_that_are_free) {
             few->body[k].x += 1e-4;
         assert_int_equal(step_few(few)->touching_count, pairs.count);
     }
-    destroy_few(few);
 }
 
 /* Steps after loading are those after saving: pairs without a row, whose boxes part later, too. */
 TEST(bare_pairs_are_loaded_as_they_were) {
     const double x[] = {1.9, 1.901, 1.902, 1.903, 1.904, 2.1, 1.9, 1.901, 4, 1.9};
-    struct few *const few = make_few(box_of(sqrt(2), sqrt(2), 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(sqrt(2), sqrt(2), 0), 2, NULL);
     narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     struct bytes from = {0};
     narc_error error;
@@ -694,7 +664,6 @@ TEST(bare_pairs_are_loaded_as_they_were) {
     }
     free(from.all);
     narc_destroy_contacts(loaded);
-    destroy_few(few);
 }
 
 /* Two that creep or turn towards each other, by so little in a step that most keep their boxes, are listed when they are near,
@@ -702,7 +671,7 @@ TEST(bare_pairs_are_loaded_as_they_were) {
 TEST(bodies_that_creep_are_found) {
     struct test_random random = test_random_named("creeping");
     for (size_t trial = 0; trial < test_trials(60); trial++) {
-        struct few *const few = make_few(capsule_of(4, 0.25), 2, NULL);
+        AUTO(destroy_few_at) struct few *const few = make_few(capsule_of(4, 0.25), 2, NULL);
         const float ahead[] = {0.3f, 0.3f}, more = trial % 4 < 2 ? 0.6f : 0;
         const double gap = 0.02 + (double)more + 2 * random_between(&random, 0.85, 1.01);
         const double step = random_between(&random, 0.002, 0.05);
@@ -731,7 +700,6 @@ TEST(bodies_that_creep_are_found) {
             listed += r->count;
         }
         assert_true(found > 0 && listed > 0);
-        destroy_few(few);
     }
 }
 

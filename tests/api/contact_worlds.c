@@ -28,13 +28,12 @@ TEST(worlds_far_away_have_the_pairs_of_near_ones) {
     size_t here = 0;
     for (size_t k = 0; k < sizeof far / sizeof *far; k++) {
         const narc_point origin = {far[k], -far[k]};
-        struct few *const few = make_crowd(far[k], -far[k]);
+        AUTO(destroy_few_at) struct few *const few = make_crowd(far[k], -far[k]);
         few->step.origin = k > 0 ? &origin : NULL;
         const narc_step_result *const r = step_few(few);
         here = k > 0 ? here : r->count;
         assert_int_equal(r->count, here);
         assert_true(r->count < 4 * 600);
-        destroy_few(few);
     }
 }
 
@@ -43,7 +42,7 @@ TEST(worlds_far_away_have_the_pairs_of_near_ones) {
 TEST(an_origin_that_moves_keeps_everything) {
     static const double ways[] = {0.5, 20, 300, 4e3, 1e6, -1e6, 7};
     for (int recycling = 0; recycling < 2; recycling++) {
-        struct few *const few = make_crowd(3e5, 2e5);
+        AUTO(destroy_few_at) struct few *const few = make_crowd(3e5, 2e5);
         narc_point origin = {3e5, 2e5};
         narc_manifold rows[600 * 8];
         uint32_t order[600 * 8];
@@ -70,13 +69,12 @@ TEST(an_origin_that_moves_keeps_everything) {
         few->body[0].x += 1.5; /* over the next one */
         r = step_few(few);
         assert_true(r->began_count > 0);
-        destroy_few(few);
     }
 }
 
 /* A step that is refused while its origin moves: the next one finds what comes, though all others stand where they stood. */
 TEST(a_step_that_is_refused_forgets_no_origin) {
-    struct few *const few = make_crowd(0, 0);
+    AUTO(destroy_few_at) struct few *const few = make_crowd(0, 0);
     narc_point origin = {0, 0};
     few->step.origin = &origin;
     step_few(few);
@@ -91,12 +89,11 @@ TEST(a_step_that_is_refused_forgets_no_origin) {
         few->body[20 * k].x += 1.5; /* over the next one */
         assert_true(step_few(few)->began_count > 0);
     }
-    destroy_few(few);
 }
 
 /* Contacts that were saved go on from their boxes' origin. */
 TEST(the_origin_is_saved) {
-    struct few *const few = make_crowd(1e7, 1e7);
+    AUTO(destroy_few_at) struct few *const few = make_crowd(1e7, 1e7);
     narc_contacts *const saved = few->contacts, *const loaded = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     narc_point origin = {1e7, 1e7};
     struct bytes from = {0};
@@ -115,7 +112,6 @@ TEST(the_origin_is_saved) {
     }
     free(from.all);
     narc_destroy_contacts(loaded);
-    destroy_few(few);
 }
 
 /* ------------------------------------------------------------------------------------------------ worlds */
@@ -144,7 +140,7 @@ TEST(worlds_do_not_meet) {
     struct test_random random = test_random_named("worlds of contacts");
     static uint32_t world[WORLDS * EACH], counts[WORLDS];
     narc_pair_filter filter;
-    struct few *const few = make_worlds(world, counts, &filter);
+    AUTO(destroy_few_at) struct few *const few = make_worlds(world, counts, &filter);
     for (size_t step = 0; step < 30; step++) {
         if (step % 5 == 4) { /* world 2 begins again */
             uint64_t *const gone = few->id + (size_t)2 * EACH;
@@ -156,7 +152,7 @@ TEST(worlds_do_not_meet) {
         const narc_step_result *const r = step_few(few);
         size_t first = 0;
         for (uint32_t w = 0; w < WORLDS; w++) {
-            narc_contacts *const alone = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+            AUTO(narc_destroy_contacts_at) narc_contacts *const alone = make_contacts(NARC_MANIFOLD_ROWS, NULL);
             narc_bodies bodies;
             narc_view_bodies(few->body + (size_t)w * EACH, EACH, &bodies);
             const narc_step own = {.bodies = &bodies, .margin = few->step.margin, .skin = few->step.skin};
@@ -170,7 +166,6 @@ TEST(worlds_do_not_meet) {
                 assert_memory_equal(&row, &other, sizeof row);
             }
             first += counts[w];
-            narc_destroy_contacts(alone);
         }
         assert_int_equal(first, r->touching_count);
         for (size_t k = 0; k < r->ended_count && step % 5 == 4; k++)
@@ -192,7 +187,6 @@ TEST(worlds_do_not_meet) {
     counts[2] = 77;
     step_few(few);
     assert_int_equal(counts[2], 77);
-    destroy_few(few);
 }
 
 TEST_MAIN("contacts of worlds")

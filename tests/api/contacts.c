@@ -78,7 +78,7 @@ static void check_body_slots(narc_contacts *contacts, const narc_step_result *r,
 static void check_world(struct test_random random, bool ground, size_t steps) {
     static struct memory memory;
     static struct given given;
-    struct step_world *const w = make_step_world(random, ground);
+    AUTO(destroy_step_world_at) struct step_world *const w = make_step_world(random, ground);
     narc_workers workers;
     narc_openmp_workers(3, &workers);
     narc_contacts *const all = make_contacts(NARC_MANIFOLD_ROWS, NULL), *const listed = make_contacts(0, NULL),
@@ -140,7 +140,6 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
     for (size_t k = 0; k < sizeof objects / sizeof *objects; k++)
         narc_destroy_contacts(objects[k]);
     free(saved.all);
-    destroy_step_world(w);
 }
 
 TEST(rows_are_those_of_the_plain_calls) {
@@ -160,8 +159,9 @@ TEST(pairs_with_ground_are_asked_before_they_touch) {
     struct test_random random = test_random_named("creeping over ground");
     size_t asked = 0, pairs = 0, began = 0;
     for (size_t trial = 0; trial < 4 + test_trials(36); trial++) {
+        AUTO(destroy_step_world_at)
         struct step_world *const w = make_step_world((struct test_random){random_bits(&random)}, true);
-        narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+        AUTO(narc_destroy_contacts_at) narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
         w->has_filter = w->has_motion = false;
         for (size_t k = 0; k < 60; k++) {
             narc_bodies bodies;
@@ -185,8 +185,6 @@ TEST(pairs_with_ground_are_asked_before_they_touch) {
                 w->body[i].sine = (float)(sin(turn) * cosine + cos(turn) * sine);
             }
         }
-        narc_destroy_contacts(contacts);
-        destroy_step_world(w);
     }
     assert_true(began > 100 && asked < 3 * pairs / 4);
 }
@@ -217,8 +215,8 @@ static size_t check_followed(const struct step_world *w, const narc_step *step, 
 }
 
 TEST(rows_follow_their_bodies) {
-    struct step_world *const w = make_step_world(test_random_named("followers"), false);
-    narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    AUTO(destroy_step_world_at) struct step_world *const w = make_step_world(test_random_named("followers"), false);
+    AUTO(narc_destroy_contacts_at) narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     const narc_step_result *r;
     narc_error error;
     size_t followed = 0, asked = 0, pairs = 0;
@@ -242,8 +240,6 @@ TEST(rows_follow_their_bodies) {
         }
     }
     assert_true(pairs > 1000 && followed > pairs / 5 && asked > 0);
-    narc_destroy_contacts(contacts);
-    destroy_step_world(w);
 }
 
 /* ------------------------------------------------------------------------------------------------ what fails */
@@ -267,9 +263,10 @@ TEST(goes_on_without_memory) {
     struct test_random random = test_random_named("memory of contacts");
     size_t failures = 0;
     for (size_t trial = 0; trial < test_trials(40); trial++) {
+        AUTO(destroy_step_world_at)
         struct step_world *const w = make_step_world((struct test_random){random_bits(&random)}, trial % 2);
         const narc_step_result *r = NULL;
-        narc_contacts *contacts;
+        AUTO(narc_destroy_contacts_at) narc_contacts *contacts;
         narc_error error;
         allowed = SIZE_MAX;
         contacts = make_contacts(NARC_MANIFOLD_ROWS, &watched);
@@ -305,8 +302,6 @@ TEST(goes_on_without_memory) {
             }
             move_step_world(w);
         }
-        narc_destroy_contacts(contacts);
-        destroy_step_world(w);
     }
     assert_true(failures > test_trials(40));
 }
@@ -319,8 +314,8 @@ static void expect_refused(narc_contacts *contacts, const narc_shapes *store, co
 }
 
 TEST(says_what_is_wrong) {
-    struct step_world *const w = make_step_world(test_random_named("wrong"), false);
-    narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
+    AUTO(destroy_step_world_at) struct step_world *const w = make_step_world(test_random_named("wrong"), false);
+    AUTO(narc_destroy_contacts_at) narc_contacts *const contacts = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     narc_bodies bodies;
     narc_view_bodies(w->body, w->count, &bodies);
     const uint32_t moved[] = {1, BODIES};
@@ -372,9 +367,7 @@ TEST(says_what_is_wrong) {
     for (size_t k = 0; k < r->count; k++)
         assert_true(r->state[r->order[k]] & NARC_NEW);
     assert_int_equal(r->ended_count, 0);
-    narc_destroy_contacts(contacts);
     narc_destroy_contacts(NULL);
-    destroy_step_world(w);
 }
 
 /* The same bytes on every instruction set. */
@@ -385,8 +378,9 @@ TEST(saves_the_same_bytes_everywhere) {
     for (size_t isa = 0; narc_isa_name(isa); isa++) {
         if (narc_set_isa(narc_isa_name(isa), NULL) != NARC_OK)
             continue;
+        AUTO(destroy_step_world_at)
         struct step_world *const w = make_step_world(test_random_named("saved everywhere"), true);
-        narc_contacts *const contacts = make_contacts(0, NULL);
+        AUTO(narc_destroy_contacts_at) narc_contacts *const contacts = make_contacts(0, NULL);
         for (size_t k = 0; k < 12; k++) {
             narc_bodies bodies;
             narc_view_bodies(w->body, w->count + w->ground, &bodies);
@@ -399,8 +393,6 @@ TEST(saves_the_same_bytes_everywhere) {
         }
         save(contacts, first.all ? &bytes : &first);
         assert_true(!bytes.all || (bytes.count == first.count && memcmp(bytes.all, first.all, first.count) == 0));
-        narc_destroy_contacts(contacts);
-        destroy_step_world(w);
     }
     narc_set_isa(chosen, NULL);
     free(first.all);
@@ -409,7 +401,7 @@ TEST(saves_the_same_bytes_everywhere) {
 
 /* Other bytes, other settings, no memory: contacts are as they were. */
 TEST(loads_what_was_saved_alone) {
-    struct step_world *const w = make_step_world(test_random_named("damage"), true);
+    AUTO(destroy_step_world_at) struct step_world *const w = make_step_world(test_random_named("damage"), true);
     allowed = SIZE_MAX;
     narc_contacts *const contacts = make_contacts(0, &watched), *const other = make_contacts(NARC_CONTACT_ROWS, NULL);
     narc_bodies bodies, few;
@@ -425,7 +417,7 @@ TEST(loads_what_was_saved_alone) {
     save(contacts, &saved);
     step.bodies = &few;
     narc_destroy_contacts(contacts);
-    narc_contacts *const small = make_contacts(0, &watched);
+    AUTO(narc_destroy_contacts_at) narc_contacts *const small = make_contacts(0, &watched);
     expect_ok(narc_update_contacts(small, w->store, &step, &r, &error), &error);
     const uint64_t before = hash_result(r);
     for (size_t k = 0; k < 200; k++) {
@@ -449,10 +441,8 @@ TEST(loads_what_was_saved_alone) {
     step.bodies = &bodies;
     expect_ok(narc_update_contacts(small, w->store, &step, &r, &error), &error);
     assert_int_equal(r->asked_count, 0);
-    narc_destroy_contacts(small);
     narc_destroy_contacts(other);
     free(saved.all);
-    destroy_step_world(w);
 }
 
 TEST_MAIN("contacts")

@@ -110,9 +110,9 @@ static void all_calls_unknown(void) {
         .count = 1, .x = place, .y = place, .motion_x = NARC_ARRAY(&angle), .motion_y = NARC_ARRAY(&zero)};
     const narc_step step = {.bodies = bodies};
     const narc_step_result *r;
-    narc_contacts *contacts;
-    narc_broad_phase *broad;
-    narc_index *index;
+    AUTO(narc_destroy_contacts_at) narc_contacts *contacts;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_box box = {0, 0, 1, 1};
     narc_pairs pairs;
     narc_contact contact;
@@ -145,9 +145,6 @@ static void all_calls_unknown(void) {
     REQUIRE(narc_cast_shapes(index, shapes, &none, bodies, &motions, NULL, NULL, &impact, 1, NULL) == unknown);
     REQUIRE(narc_find_nearest(index, shapes, &none, &points, NULL, &distance, 1, NULL) == unknown);
     REQUIRE(narc_get_isa() == NULL);
-    narc_destroy_contacts(contacts);
-    narc_destroy_broad_phase(broad);
-    narc_destroy_index(index);
     narc_destroy_shapes(batch.shapes);
 }
 

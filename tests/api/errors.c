@@ -43,7 +43,7 @@ static narc_status run(const struct question *question, const struct call *call,
 /* With an error to fill and without, and some numbers of threads: always the same error, and nothing is written. */
 static void check_call(const struct question *question, struct call call, narc_status expected,
                        const char *const texts[], size_t text_count) {
-    struct outputs *out = make_junk(sizeof *out);
+    AUTO(free_at) struct outputs *out = make_junk(sizeof *out);
     for (unsigned threads = 0; threads < 3; threads++) {
         narc_workers workers;
         narc_openmp_workers(threads, &workers);
@@ -56,7 +56,6 @@ static void check_call(const struct question *question, struct call call, narc_s
         assert_int_equal(run(question, &call, out, NULL), expected);
     }
     assert_true(is_junk(out, sizeof *out));
-    free(out);
 }
 
 /* What is wrong with a batch is so in every question. */
@@ -91,7 +90,7 @@ static void tear_down(struct fixture *f) {
 /* ------------------------------------------------------------------------------------------------ arguments */
 
 TEST(test_queries) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     enum { MANIFOLDS = sizeof(narc_manifold) };
     static const struct {
@@ -125,11 +124,10 @@ TEST(test_queries) {
         f.call.query.reserved[k] = &f;
         check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("reserved"));
     }
-    tear_down(&f);
 }
 
 TEST(test_null_arguments) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     struct call call = f.call;
     call.shapes = NULL;
@@ -175,7 +173,6 @@ TEST(test_null_arguments) {
         f.bodies = bodies;
         f.pairs = pairs;
     }
-    tear_down(&f);
 }
 
 /* A pair that names a body there is not, whichever of those that are looked at at once, in plain arrays and in rows of
@@ -184,7 +181,7 @@ TEST(test_body_index) {
     static const uint32_t wrong[] = {BODIES, 99991, 0x80000000u, UINT32_MAX};
     uint32_t rows[PAIRS][3];
     for (size_t k = 0; k < 64; k++) {
-        struct fixture f;
+        AUTO(tear_down) struct fixture f;
         set_up(&f);
         const size_t pair = 134 + k / 16;
         *(k % 2 ? &f.scene.pairs[pair].a : &f.scene.pairs[pair].b) = wrong[k % 8 / 2];
@@ -202,7 +199,6 @@ TEST(test_body_index) {
         snprintf(body, sizeof(body), "%lu", (unsigned long)wrong[k % 8 / 2]);
         snprintf(number, sizeof(number), "%zu", pair);
         check_batch(f.call, NARC_ERROR_INDEX, NAMES(number, body));
-        tear_down(&f);
     }
 }
 
@@ -210,12 +206,12 @@ TEST(test_body_index) {
 TEST(test_first_wrong_pair) {
     enum { MANY = 9000 };
     struct test_random random = test_random_named("first wrong pair");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, MANY);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, MANY);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     const void *shapes = take_shapes(scene.store, NULL);
-    narc_manifold *rows = make_junk(MANY * sizeof *rows);
-    uint8_t *outcomes = make_junk(MANY);
+    AUTO(free_at) narc_manifold *rows = make_junk(MANY * sizeof *rows);
+    AUTO(free_at) uint8_t *outcomes = make_junk(MANY);
     scene.pairs[8111].a = scene.pairs[4055].b = scene.pairs[4056].a = 5005;
     for (size_t k = 0; k < 6 * question_count; k++) {
         narc_workers workers;
@@ -231,13 +227,10 @@ TEST(test_first_wrong_pair) {
     }
     assert_true(is_junk(outcomes, MANY));
     release_shapes(shapes);
-    free(outcomes);
-    free(rows);
-    destroy_scene(&scene);
 }
 
 TEST(test_shape_index) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     for (size_t k = 0; k < PAIRS; k++)
         f.scene.pairs[k] = (struct pair){(uint32_t)(k % 20), (uint32_t)(k / 20)};
@@ -246,14 +239,13 @@ TEST(test_shape_index) {
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23", "4711"));
     f.scene.bodies[23].shape = (uint32_t)narc_count_shapes(f.scene.store);
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23"));
-    tear_down(&f);
 }
 
 /* Of two sets of bodies, either of which may have a shape that there is not. */
 TEST(test_shapes_of_two_sets) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
-    struct body *others = make_junk(BODIES * sizeof *others);
+    AUTO(free_at) struct body *others = make_junk(BODIES * sizeof *others);
     memcpy(others, f.scene.bodies, BODIES * sizeof *others);
     const struct scene second = {.bodies = others, .body_count = BODIES, .precision = NARC_FLOAT32};
     const narc_bodies other_bodies = scene_bodies(&second);
@@ -265,14 +257,12 @@ TEST(test_shapes_of_two_sets) {
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23", "4711"));
     f.scene.bodies[22].shape = 4712;
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "22", "4712"));
-    free(others);
-    tear_down(&f);
 }
 
 /* A selection that names a pair there is not, or a pair that names a body there is not. What is not asked of may be
  * wrong. */
 TEST(test_selections) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     uint32_t selection[] = {150, 3, PAIRS, 7};
     f.call.query.selection = NARC_ARRAY(selection);
@@ -300,38 +290,34 @@ TEST(test_selections) {
         f.call.query.selection_count = too_many[k];
         check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("query.selection_count", "200 pairs"));
     }
-    tear_down(&f);
 }
 
 /* No body at all, and no shape at all. */
 TEST(test_empty_tables) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
-    struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
+    AUTO(destroy_scene) struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
     struct call call = f.call;
     call.shapes = take_shapes(empty.store, NULL);
     check_batch(call, NARC_ERROR_INDEX, NAMES("pair 0"));
     f.bodies = (narc_bodies){0};
     check_batch(f.call, NARC_ERROR_INDEX, NAMES("pair 0"));
     release_shapes(call.shapes);
-    destroy_scene(&empty);
-    tear_down(&f);
 }
 
 TEST(test_too_many_pairs) {
 #if SIZE_MAX > UINT32_MAX
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     /* With a stride of 0 there really are that many. */
     static const uint32_t first_body = 0;
     f.pairs = (narc_pairs){.count = (size_t)UINT32_MAX + 1, .a = {&first_body, 0}, .b = {&first_body, 0}};
     check_batch(f.call, NARC_ERROR_ARGUMENT, NULL, 0);
-    tear_down(&f);
 #endif
 }
 
 TEST(test_ranges) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
     static const size_t bad_anywhere[][2] = {{PAIRS, 1},          {0, PAIRS + 1},       {192, 9}, {SIZE_MAX - 63, 64},
                                              {64, SIZE_MAX - 63}, {SIZE_MAX, SIZE_MAX}, {256, 0}};
@@ -355,13 +341,12 @@ TEST(test_ranges) {
         f.call.query.selection = NARC_ARRAY(selection);
         f.call.query.selection_count = PAIRS;
     }
-    tear_down(&f);
 }
 
 TEST(test_outputs) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
-    struct outputs *out = make_junk(sizeof *out);
+    AUTO(free_at) struct outputs *out = make_junk(sizeof *out);
     for (size_t q = 0; q < question_count; q++) {
         const struct question *question = &questions[q];
         struct asked asked = {f.call.shapes, &f.bodies, &f.pairs, NULL, NULL, 3, &out->count, out->outcomes};
@@ -381,15 +366,13 @@ TEST(test_outputs) {
     assert_int_equal(narc_compute_poses(&angle, 1, NULL, &sine, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_compute_poses(&angle, 1, &cosine, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_true(cosine == 7 && sine == 7);
-    free(out);
-    tear_down(&f);
 }
 
 /* No pairs: nothing is needed, nothing is written. */
 TEST(test_no_pairs) {
-    struct fixture f;
+    AUTO(tear_down) struct fixture f;
     set_up(&f);
-    struct outputs *out = make_junk(sizeof *out);
+    AUTO(free_at) struct outputs *out = make_junk(sizeof *out);
     f.pairs = (narc_pairs){0};
     for (size_t k = 0; k < 6 * question_count; k++) {
         const struct question *question = &questions[k / 6];
@@ -404,8 +387,6 @@ TEST(test_no_pairs) {
         memset(&out->count, GUARD_JUNK, 2 * sizeof out->count);
         assert_true(is_junk(out, sizeof *out));
     }
-    free(out);
-    tear_down(&f);
 }
 
 /* ------------------------------------------------------------------------------------------------ capacity */
@@ -419,19 +400,19 @@ TEST(test_capacity) {
         const struct question *question = &questions[q];
         if (!question->row_size)
             continue;
-        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 200, MANY);
+        AUTO(destroy_scene) struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 200, MANY);
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         const void *shapes = take_shapes(scene.store, NULL);
-        uint8_t *outcomes = make_junk(MANY);
-        struct answer all = ask_scene(question, &scene, (narc_query){0});
+        AUTO(free_at) uint8_t *outcomes = make_junk(MANY);
+        AUTO(destroy_answer) struct answer all = ask_scene(question, &scene, (narc_query){0});
         const size_t fixed[] = {0, 1, 63, 64, 65, all.count - 1, all.count};
         assert_true(all.count > 100);
         for (size_t trial = 0; trial < 24; trial++) {
             narc_workers workers;
             narc_openmp_workers((unsigned)(trial % 4), &workers);
             const size_t capacity = trial < 7 ? fixed[trial] : random_below(&random, all.count);
-            void *shorter = guard_allocate(answer_size(question, capacity));
+            AUTO(guard_release_at) void *shorter = guard_allocate(answer_size(question, capacity));
             size_t skipped = 12345, needed;
             narc_query query = {.workers = &workers, .out_skipped = &skipped};
             query.row_stride = trial % 2 ? (ptrdiff_t)question->row_size : 0;
@@ -447,19 +428,15 @@ TEST(test_capacity) {
             assert_int_equal(skipped, 0);
             assert_memory_equal(shorter, all.rows, answer_size(question, capacity));
             assert_memory_equal(outcomes, all.outcomes, MANY);
-            guard_release(shorter);
         }
-        free(outcomes);
-        destroy_answer(&all);
         release_shapes(shapes);
-        destroy_scene(&scene);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ contacts that stay */
 
 TEST(test_contact_settings) {
-    narc_contacts *contacts = NULL;
+    AUTO(narc_destroy_contacts_at) narc_contacts *contacts = NULL;
     narc_error error;
     const struct {
         narc_contacts_settings settings;
@@ -483,7 +460,6 @@ TEST(test_contact_settings) {
     assert_null(contacts);
     const narc_contacts_settings tight = {.rows = 3, .user_size = 40, .row_offset = 4};
     expect_ok(narc_create_contacts(&tight, &contacts, &error), &error);
-    narc_destroy_contacts(contacts);
 }
 
 /* Five discs in a row, each touching the next; and contacts of them. */
@@ -524,7 +500,7 @@ TEST(test_steps) {
     static const uint32_t a[] = {0, 1, 1, 4}, same[] = {3, 1}, far[] = {0, 5}, once[] = {1, 2, 2, 3}, turned[] = {1, 0};
     static const uint64_t ids[] = {9, 3, 2, 7, 3};
     static const float zero = 0;
-    struct row_of_discs d;
+    AUTO(tear_down_discs) struct row_of_discs d;
     set_up_discs(&d);
 #define PAIRS_OF(...) (&(const narc_pairs){__VA_ARGS__})
     const struct {
@@ -568,12 +544,11 @@ TEST(test_steps) {
     }
     expect_error(narc_update_contacts(d.contacts, d.store, &(narc_step){.bodies = &d.bodies}, NULL, &error),
                  NARC_ERROR_ARGUMENT, &error, "out_result is NULL");
-    tear_down_discs(&d);
 }
 
 /* The first step has memory for so many arrays alone: rows in the caller's bytes are nowhere yet. */
 TEST(test_first_step_without_memory) {
-    struct row_of_discs d;
+    AUTO(tear_down_discs) struct row_of_discs d;
     set_up_discs(&d);
     for (size_t left = 0, failures = 1; failures > 0; left++) {
         struct ledger ledger = {0};
@@ -596,12 +571,11 @@ TEST(test_first_step_without_memory) {
         narc_destroy_contacts(contacts);
         assert_int_equal(ledger.live, 0);
     }
-    tear_down_discs(&d);
 }
 
 TEST(test_slots_of_bodies) {
-    struct row_of_discs d;
-    narc_contacts *none;
+    AUTO(tear_down_discs) struct row_of_discs d;
+    AUTO(narc_destroy_contacts_at) narc_contacts *none;
     const narc_step_result *r;
     const uint32_t *slots = NULL;
     size_t count = 7;
@@ -624,13 +598,11 @@ TEST(test_slots_of_bodies) {
     expect_ok(narc_find_body_slots(none, 0, &slots, &count, &error), &error);
     assert_int_equal(count, 0);
     d.bodies.count = 5;
-    narc_destroy_contacts(none);
-    tear_down_discs(&d);
 }
 
 /* Bytes of which any one is another are refused, and so are those of other settings. */
 TEST(test_saved_contacts) {
-    struct row_of_discs d;
+    AUTO(tear_down_discs) struct row_of_discs d;
     narc_contacts *other;
     const narc_step_result *r = NULL;
     narc_error error;
@@ -666,7 +638,6 @@ TEST(test_saved_contacts) {
     expect_ok(narc_load_contacts(d.contacts, d.store, bytes, size, NULL, NULL), &error);
     guard_release(bytes);
     free(junk);
-    tear_down_discs(&d);
 }
 
 TEST_MAIN("errors")

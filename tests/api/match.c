@@ -33,7 +33,7 @@ static void match(narc_broad_phase *broad, const narc_pairs *olds, const narc_pa
 TEST(matches_as_a_search_does) {
     enum { MOST = 400 };
     struct test_random random = test_random_named("matches");
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     static halves pairs[2][MOST];
     for (size_t trial = 0; trial < test_trials(80); trial++) {
         const size_t count[2] = {random_below(&random, MOST), random_below(&random, MOST)};
@@ -44,7 +44,7 @@ TEST(matches_as_a_search_does) {
             if (order >> list & 1)
                 qsort(pairs[list], count[list], sizeof(halves), compare_pairs);
         }
-        uint32_t *const found = guard_allocate(count[1] * sizeof *found);
+        AUTO(guard_release_at) uint32_t *const found = guard_allocate(count[1] * sizeof *found);
         const narc_pairs olds = view(pairs[0], count[0]), news = view(pairs[1], count[1]);
         match(broad, &olds, &news, 1 + (unsigned)trial % 3, found);
         for (size_t k = 0; k < count[1]; k++) {
@@ -54,9 +54,7 @@ TEST(matches_as_a_search_does) {
                     expected = (uint32_t)i;
             assert_int_equal(found[k], expected);
         }
-        guard_release(found);
     }
-    narc_destroy_broad_phase(broad);
 }
 
 enum { MANY = 100000, SKIPPED = 5, PART = 16384 };
@@ -67,7 +65,7 @@ static uint32_t found[MANY];
 TEST(matches_lists_with_one_disorder) {
     enum { COUNT = 40000 };
     static const uint32_t places[] = {1, PART - 1, PART, PART + 1, 2 * PART, COUNT - 1};
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t p = 0; p < sizeof places / sizeof places[0]; p++) {
         for (uint32_t k = 0; k < COUNT; k++) {
             const uint32_t at = k == places[p] ? k - 1 : k == places[p] - 1 ? k + 1 : k; /* two change places */
@@ -81,7 +79,6 @@ TEST(matches_lists_with_one_disorder) {
                 assert_int_equal(found[k], k);
         }
     }
-    narc_destroy_broad_phase(broad);
 }
 
 /* Pairs of which a fixed hash makes little; none stands twice. By the usual multiplier's inverse: the upper bits of a product
@@ -103,7 +100,7 @@ static uint64_t choose_small_second_products(uint64_t k) {
 TEST(matches_lists_that_were_chosen_badly) {
     static uint64_t (*const choose[])(uint64_t) = {choose_grid, choose_small_products, choose_folded_products,
                                                    choose_small_second_products};
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     assert_true(inverse * UINT64_C(0x9e3779b97f4a7c15) == 1);
     for (size_t way = 0; way < sizeof choose / sizeof choose[0]; way++) {
         for (size_t k = 0; k < MANY; k++) { /* each once, in disorder; and one twice */
@@ -119,7 +116,6 @@ TEST(matches_lists_that_were_chosen_badly) {
             assert_int_equal(found[news.count - 1], SKIPPED);
         }
     }
-    narc_destroy_broad_phase(broad);
 }
 
 static void *refuse_large(size_t size, void *context) {
@@ -137,14 +133,13 @@ TEST(tells_that_there_is_no_memory) {
     static halves falling[] = {{1, 1}, {0, 0}};
     static const uint32_t zero = 0;
     const narc_allocator allocator = {refuse_large, release, NULL};
-    narc_broad_phase *broad = NULL;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = NULL;
     assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
     const narc_pairs olds = {.count = ((size_t)1 << 30) + 1, .a = {&zero, 0}, .b = {&zero, 0}}, news = view(falling, 2);
     found[0] = 7;
     assert_int_equal(narc_match_pairs(broad, &olds, &news, NULL, found), NARC_ERROR_MEMORY);
     assert_int_equal(found[0], 7);
     match(broad, &news, &news, 0, found);
-    narc_destroy_broad_phase(broad);
 }
 
 TEST_MAIN("match")

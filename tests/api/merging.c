@@ -47,11 +47,10 @@ static const double down = -1.57079632679489661923; /* the ground is below: the 
 
 static size_t merge_as_told(struct rows *rows, const uint32_t *runs) {
     const narc_pairs pairs = {.count = rows->count, .a = NARC_ARRAY(rows->a), .b = NARC_ARRAY(rows->b)};
-    narc_manifold *own = guard_copy(rows->manifolds, rows->count * sizeof *own);
+    AUTO(guard_release_at) narc_manifold *own = guard_copy(rows->manifolds, rows->count * sizeof *own);
     const narc_index_column run = {runs, runs ? sizeof *runs : 0};
     const size_t left = narc_merge_manifolds(&pairs, run, own, rows->count);
     memcpy(rows->manifolds, own, left * sizeof *own);
-    guard_release(own);
     return left;
 }
 

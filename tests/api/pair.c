@@ -41,23 +41,17 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
     for (size_t q = 0; q < sizeof queries / sizeof *queries; q++) {
         const narc_query *query = &queries[q];
         const size_t asked = query->selection_count ? query->selection_count : PAIRS;
-        uint64_t *bits = find_overlaps(scene->store, bodies, pairs, query);
-        uint64_t *right_bits = find_overlaps(scene->store, &right_bodies, &right_pairs, query);
+        AUTO(free_at) uint64_t *bits = find_overlaps(scene->store, bodies, pairs, query);
+        AUTO(free_at) uint64_t *right_bits = find_overlaps(scene->store, &right_bodies, &right_pairs, query);
         assert_memory_equal(bits, right_bits, NARC_BIT_WORDS(asked) * sizeof *bits);
-        struct contacts list = find_contacts(scene->store, bodies, pairs, query);
-        struct contacts right = find_contacts(scene->store, &right_bodies, &right_pairs, query);
+        AUTO(free_at) struct contacts list = find_contacts(scene->store, bodies, pairs, query);
+        AUTO(free_at) struct contacts right = find_contacts(scene->store, &right_bodies, &right_pairs, query);
         assert_int_equal(list.count, right.count);
         assert_memory_equal(list.rows, right.rows, right.count * sizeof *right.rows);
-        struct manifolds points = find_manifolds(scene->store, bodies, pairs, query);
-        struct manifolds right_points = find_manifolds(scene->store, &right_bodies, &right_pairs, query);
+        AUTO(free_at) struct manifolds points = find_manifolds(scene->store, bodies, pairs, query);
+        AUTO(free_at) struct manifolds right_points = find_manifolds(scene->store, &right_bodies, &right_pairs, query);
         assert_int_equal(points.count, right_points.count);
         assert_memory_equal(points.rows, right_points.rows, right_points.count * sizeof *points.rows);
-        free(bits);
-        free(right_bits);
-        free(list.rows);
-        free(right.rows);
-        free(points.rows);
-        free(right_points.rows);
     }
 }
 
@@ -96,9 +90,9 @@ static void check_two(const narc_shapes *store, const narc_body two[2]) {
 
 /* Every pair by itself, with bodies of its own, has the row of its pair in a batch. */
 static void check_each(const struct scene *scene, const narc_body *rows) {
-    struct contacts batch = scene_contacts(scene, INFINITY);
-    struct manifolds points = scene_manifolds(scene, INFINITY);
-    uint64_t *bits = scene_overlaps(scene);
+    AUTO(free_at) struct contacts batch = scene_contacts(scene, INFINITY);
+    AUTO(free_at) struct manifolds points = scene_manifolds(scene, INFINITY);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(scene);
     const narc_pairs one = {.count = 1};
     for (size_t k = 0; k < PAIRS; k++) {
         narc_bodies two;
@@ -119,16 +113,14 @@ static void check_each(const struct scene *scene, const narc_body *rows) {
         assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
         check_two(scene->store, &rows[2 * k]);
     }
-    free(batch.rows);
-    free(points.rows);
-    free(bits);
 }
 
 TEST(own_poses) {
     struct test_random random = test_random_named("own poses");
     for (int precision = 0; precision < 2; precision++) {
+        AUTO(destroy_scene)
         struct scene scene = make_random_scene(&random, precision ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
-        narc_body *rows = find_rows(&scene);
+        AUTO(free_at) narc_body *rows = find_rows(&scene);
         narc_bodies bodies, few;
         narc_view_bodies(rows, 2 * PAIRS, &bodies);
         narc_view_bodies(rows, 2 * PAIRS - 1, &few);
@@ -145,8 +137,6 @@ TEST(own_poses) {
         narc_error error;
         expect_error(narc_find_overlaps(scene.store, &few, &pairs, NULL, bits, &error), NARC_ERROR_INDEX, &error,
                      "pair 599");
-        free(rows);
-        destroy_scene(&scene);
     }
 }
 
@@ -154,14 +144,15 @@ TEST(own_poses) {
 TEST(one_pair_is_right) {
     struct test_random random = test_random_named("one contact, reference");
     struct fractions worst = {0};
-    struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
-    narc_body *rows = find_rows(&scene);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
+    AUTO(free_at) narc_body *rows = find_rows(&scene);
     size_t apart = 0;
     for (size_t k = 0; k < PAIRS; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a);
         const struct reference_body b = scene_reference(&scene, scene.pairs[k].b);
         narc_bodies two;
         narc_view_bodies(&rows[2 * k], 2, &two);
+        AUTO(free_at)
         struct contacts one =
             find_contacts(scene.store, &two, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY});
         const char *wrong = check_contact(&a, &b, reference_find_gap(&a, &b).gap, one.rows, &worst);
@@ -170,17 +161,14 @@ TEST(one_pair_is_right) {
             fail_msg("%s", wrong);
         }
         apart += one.rows->separation > 0;
-        free(one.rows);
     }
     assert_true(apart > PAIRS / 10 && apart < PAIRS * 9 / 10);
-    free(rows);
-    destroy_scene(&scene);
 }
 
 /* The bodies that `b` names are in another set, in another order there; or body k of each set is of pair k. */
 TEST(two_sets) {
     struct test_random random = test_random_named("two sets");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
     narc_body others[BODIES], of_a[PAIRS], of_b[PAIRS];
     uint32_t b[PAIRS];
     for (uint32_t k = 0; k < BODIES; k++)
@@ -212,7 +200,6 @@ TEST(two_sets) {
     pairs = (narc_pairs){.count = PAIRS, .other_bodies = &fewer};
     expect_error(narc_find_overlaps(scene.store, &all_a, &pairs, NULL, bits, &error), NARC_ERROR_INDEX, &error,
                  "pair 599");
-    destroy_scene(&scene);
 }
 
 /* A scene in which the bodies A, or B, or both, stand at the origin. */
@@ -230,8 +217,7 @@ static struct scene make_origin_scene(struct test_random *random, bool a, bool b
         }
         scene_add_pair(&scene, 2 * k, 2 * k + 1);
     }
-    struct scene done = from;
-    destroy_scene(&done);
+    AUTO(destroy_scene) struct scene done = from;
     return scene;
 }
 
@@ -255,7 +241,7 @@ static narc_bodies find_side(const struct scene *scene, size_t first, bool shape
 TEST(sets_at_the_origin) {
     struct test_random random = test_random_named("sets at the origin");
     for (int sides = 1; sides < 4; sides++) {
-        struct scene scene = make_origin_scene(&random, sides & 1, sides & 2);
+        AUTO(destroy_scene) struct scene scene = make_origin_scene(&random, sides & 1, sides & 2);
         const narc_bodies a = find_side(&scene, 0, sides & 1), b = find_side(&scene, 1, sides & 2);
         check_same_answers(&scene, &a, &(narc_pairs){.count = PAIRS, .other_bodies = &b});
         uint32_t own[PAIRS]; /* the same by index */
@@ -263,10 +249,9 @@ TEST(sets_at_the_origin) {
             own[k] = k;
         const narc_pairs named = {.count = PAIRS, .a = NARC_ARRAY(own), .b = NARC_ARRAY(own), .other_bodies = &b};
         check_same_answers(&scene, &a, &named);
-        destroy_scene(&scene);
     }
     /* In one set, too. */
-    struct scene scene = make_origin_scene(&random, true, true);
+    AUTO(destroy_scene) struct scene scene = make_origin_scene(&random, true, true);
     narc_bodies bodies = scene_bodies(&scene);
     const narc_bodies all = bodies;
     bodies.x = bodies.y = (narc_position_column){0};
@@ -299,12 +284,11 @@ TEST(sets_at_the_origin) {
         expect_error(narc_find_overlaps(scene.store, &all, &half, NULL, bits, &error), NARC_ERROR_ARGUMENT, &error,
                      side ? "b" : "a");
     }
-    destroy_scene(&scene);
 }
 
 /* Two boxes, by hand. */
 TEST(boxes) {
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count, found;
     uint32_t box;
@@ -336,12 +320,11 @@ TEST(boxes) {
     assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, &query, &m, 1, &found, NULL), NARC_OK);
     assert_memory_equal(&m, &no_manifold, sizeof m);
     check_two(shapes, two);
-    narc_destroy_shapes(shapes);
 }
 
 /* What is broken has no answer; a wrong call has its error, and nothing is written. */
 TEST(two_bodies_that_are_wrong) {
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count, skipped = 9;
     narc_error error;
@@ -410,7 +393,6 @@ TEST(two_bodies_that_are_wrong) {
         assert_memory_equal(&contact, &contact_before, sizeof contact);
         assert_memory_equal(&manifold, &manifold_before, sizeof manifold);
     }
-    narc_destroy_shapes(shapes);
 }
 
 static void check_direct(const struct scene *scene, const narc_query *query, const struct contacts *all,
@@ -432,13 +414,14 @@ static void check_direct(const struct scene *scene, const narc_query *query, con
 TEST(hard_places) {
     static const float margins[] = {INFINITY, 0, 0.25f, -0.1f};
     for (size_t q = 0; q < 8; q++) {
+        AUTO(destroy_corpus)
         struct corpus corpus = make_corpus("two bodies", q % 2 ? NARC_FLOAT64 : NARC_FLOAT32, 0.5, q % 4 > 1);
         const struct scene *scene = &corpus.scene;
         const narc_bodies bodies = scene_bodies(scene);
         const narc_pairs pairs = scene_pairs(scene);
         narc_query query = {.margin = margins[q / 2], .dense = 1, .flat_angle = q == 1 ? 0.2f : 0};
-        struct contacts all = find_contacts(scene->store, &bodies, &pairs, &query);
-        struct manifolds points = find_manifolds(scene->store, &bodies, &pairs, &query);
+        AUTO(free_at) struct contacts all = find_contacts(scene->store, &bodies, &pairs, &query);
+        AUTO(free_at) struct manifolds points = find_manifolds(scene->store, &bodies, &pairs, &query);
         for (size_t isa = 0; narc_isa_name(isa); isa++) {
             if (!narc_isa_supported(narc_isa_name(isa)))
                 continue;
@@ -446,9 +429,6 @@ TEST(hard_places) {
             check_direct(scene, &query, &all, &points);
         }
         test_use_isa(test_isa());
-        free(all.rows);
-        free(points.rows);
-        destroy_corpus(&corpus);
     }
 }
 
@@ -505,10 +485,10 @@ static void place_beside(struct test_random *random, size_t shapes, narc_body tw
 TEST(kinds_with_ways_of_their_own) {
     enum { MANY = 4000 };
     struct test_random random = test_random_named("kinds with ways of their own");
-    narc_shapes *store = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *store = NULL;
     assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
     const size_t shapes = add_known_kinds(store, &random);
-    narc_body *const rows = malloc(2 * MANY * sizeof *rows);
+    AUTO(free_at) narc_body *const rows = malloc(2 * MANY * sizeof *rows);
     assert_non_null(rows);
     narc_bodies bodies;
     narc_view_bodies(rows, 2 * MANY, &bodies);
@@ -516,8 +496,8 @@ TEST(kinds_with_ways_of_their_own) {
         const narc_query query = {.margin = trial % 3 == 0 ? INFINITY : trial % 3 == 1 ? 0 : 0.1f, .dense = 1};
         for (size_t k = 0; k < MANY; k++)
             place_beside(&random, shapes, &rows[2 * k]);
-        struct contacts all = find_contacts(store, &bodies, &(narc_pairs){.count = MANY}, &query);
-        struct manifolds points = find_manifolds(store, &bodies, &(narc_pairs){.count = MANY}, &query);
+        AUTO(free_at) struct contacts all = find_contacts(store, &bodies, &(narc_pairs){.count = MANY}, &query);
+        AUTO(free_at) struct manifolds points = find_manifolds(store, &bodies, &(narc_pairs){.count = MANY}, &query);
         for (size_t isa = 0; narc_isa_name(isa); isa++) {
             if (!narc_isa_supported(narc_isa_name(isa)))
                 continue;
@@ -543,11 +523,7 @@ TEST(kinds_with_ways_of_their_own) {
             }
         }
         test_use_isa(test_isa());
-        free(all.rows);
-        free(points.rows);
     }
-    free(rows);
-    narc_destroy_shapes(store);
 }
 
 /* One pair or two of a batch have the rows that they have among all, listed, dense and in larger structures, with margins
@@ -559,6 +535,7 @@ TEST(few_of_a_batch) {
         narc_manifold row;
     } slots[PAIRS];
     for (int precision = 0; precision < 4; precision++) {
+        AUTO(destroy_scene)
         struct scene scene = make_random_scene(&random, precision % 2 ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
         const narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
@@ -570,8 +547,8 @@ TEST(few_of_a_batch) {
         if (precision > 1)
             pairs.shift_y = NARC_ARRAY(shifts);
         narc_query query = {.margins = NARC_ARRAY(margins), .dense = 1};
-        struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
-        struct manifolds points = find_manifolds(scene.store, &bodies, &pairs, &query);
+        AUTO(free_at) struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
+        AUTO(free_at) struct manifolds points = find_manifolds(scene.store, &bodies, &pairs, &query);
         query.row_stride = sizeof *slots;
         for (size_t k = 0; k + 1 < PAIRS; k++) {
             const uint32_t selection[] = {(uint32_t)k, (uint32_t)(PAIRS - 1 - k)};
@@ -606,16 +583,13 @@ TEST(few_of_a_batch) {
             const unsigned char *const behind = (const void *)&slots[k + 2 < PAIRS ? k + 2 : 0];
             assert_true(behind[0] == 0x5a && behind[sizeof *slots - 1] == 0x5a);
         }
-        free(all.rows);
-        free(points.rows);
-        destroy_scene(&scene);
     }
 }
 
 /* Where the second pair of two is an error, rows and counts stay as they were. */
 TEST(an_error_behind_an_answer) {
     struct test_random random = test_random_named("an error behind an answer");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     const narc_bodies bodies = scene_bodies(&scene);
     const uint32_t a[] = {0, 1}, b[] = {0, BODIES};
     const float motion[BODIES] = {0};
@@ -639,7 +613,6 @@ TEST(an_error_behind_an_answer) {
     assert_memory_equal(contacts, none, sizeof contacts);
     assert_memory_equal(manifolds, none, sizeof none);
     assert_memory_equal(impacts, none, sizeof none);
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("pair")

@@ -309,7 +309,7 @@ typedef struct totals {
 
 /* Gives all objects the same step. */
 static void check_step(reference *r, const body *bodies, size_t count, bool with_ids, totals *sums) {
-    uint8_t *const kinds = guard_allocate(count);
+    AUTO(guard_release_at) uint8_t *const kinds = guard_allocate(count);
     for (size_t k = 0; k < count; k++)
         kinds[k] = bodies[k].kind;
     const narc_pair_filter alone = {.kind = NARC_ARRAY(kinds)}, all = {.kind = NARC_COLUMN(bodies, kind),
@@ -355,7 +355,6 @@ static void check_step(reference *r, const body *bodies, size_t count, bool with
     r->next = last;
     r->pair_count = r->next_count;
     hash_pairs(r);
-    guard_release(kinds);
 }
 
 /* ------------------------------------------------------------------------------------------------ a world */
@@ -511,7 +510,7 @@ static void forget_pairs(reference *r) {
 static totals run_world(const world *w) {
     struct test_random random = test_random_named(w->name);
     reference *r = create_reference(w->most * 40 + 1000);
-    body *bodies = calloc(w->most + 1, sizeof *bodies);
+    AUTO(free_at) body *bodies = calloc(w->most + 1, sizeof *bodies);
     uint64_t next_id = w->start;
     totals sums = {0};
     half_of_margin = w->bare ? 0 : 0.25;
@@ -538,7 +537,6 @@ static totals run_world(const world *w) {
         for (size_t k = 0; k < changes; k++)
             count = change(&random, bodies, count, w->most, w->side, w->with_ids, &next_id);
     }
-    free(bodies);
     destroy_reference(r);
     return sums;
 }
@@ -581,6 +579,7 @@ TEST(finds_pairs_of_few_that_move) {
 /* Bodies that move by the last bit of a number, with a skin of some of them: as if no pose were known. */
 TEST(notices_the_last_bit) {
     for (int number = 0; number < 4; number++) {
+        AUTO(narc_destroy_broad_phase_at)
         narc_broad_phase *broad = create_broad_phase(NULL), *other = create_broad_phase(NULL);
         body two[] = {body_at(1, 1, LONG), body_at(2, 2, LONG)};
         in_singles = number < 2;
@@ -598,15 +597,13 @@ TEST(notices_the_last_bit) {
                 put(&two[0], (double)nextafterf(two[0].near_x, 2), two[0].at.y);
         }
         assert_in_range(renewed, 4, 36);
-        narc_destroy_broad_phase(broad);
-        narc_destroy_broad_phase(other);
     }
     in_singles = false;
 }
 
 /* A position of 3 in single precision has the bits of one near 0 in double precision. */
 TEST(notices_the_precision_of_positions) {
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     const float three = 3;
     union {
         uint64_t bits;
@@ -626,7 +623,6 @@ TEST(notices_the_precision_of_positions) {
     bodies.x = (narc_position_column){&x[0].parts[low], sizeof x[0], NARC_FLOAT32};
     bodies.y = (narc_position_column){&x[0].parts[low], 0, NARC_FLOAT32};
     assert_int_equal(update(broad, store, &step)->pairs.count, 0);
-    narc_destroy_broad_phase(broad);
 }
 
 /* Memory that begins anew. */
@@ -651,7 +647,7 @@ static void leave_in_arena(void *memory, void *context) {
 TEST(notices_another_store_in_the_same_place) {
     static arena memory;
     const narc_allocator allocator = {take_from_arena, leave_in_arena, &memory};
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     const body two[] = {body_at(0, 0, 0), body_at(3, 0, 0)};
     const narc_bodies bodies = view(two, 2);
     const narc_step step = {.bodies = &bodies, .skin = 0.125f};
@@ -664,7 +660,6 @@ TEST(notices_another_store_in_the_same_place) {
         narc_destroy_shapes(shapes);
         narc_forget_pairs(broad); /* or larger boxes are kept */
     }
-    narc_destroy_broad_phase(broad);
 }
 
 /* Nearly all boxes of a row move a little, again and again: they are all sorted again, though searching for the pairs of
@@ -672,8 +667,8 @@ TEST(notices_another_store_in_the_same_place) {
 TEST(sorts_again_what_moves) {
     enum { COUNT = 1000 };
     static body row[COUNT];
-    narc_shapes *const shapes = empty_store();
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_bodies bodies = view(row, COUNT);
     const narc_step step = {.bodies = &bodies, .skin = 0.02f};
     store_shape(shapes, box_of(1, 1, 0));
@@ -682,8 +677,6 @@ TEST(sorts_again_what_moves) {
             row[k] = body_at((double)k * 0.9 + (double)(k % 2 * round) * 0.01, (double)round * 0.3, 0);
         assert_int_equal(update(broad, shapes, &step)->pairs.count, COUNT - 1);
     }
-    narc_destroy_broad_phase(broad);
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ memory */
@@ -693,7 +686,7 @@ TEST(allocates_nothing_once_it_has_grown) {
     static body bodies[COUNT];
     struct test_random random = test_random_named("steady lists");
     struct ledger ledger = {0};
-    narc_broad_phase *broad = create_broad_phase(&ledger);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
     narc_workers workers;
     narc_openmp_workers(2, &workers);
     const narc_bodies all = view(bodies, COUNT);
@@ -710,7 +703,6 @@ TEST(allocates_nothing_once_it_has_grown) {
             after = ledger.allocations;
     }
     assert_int_equal(ledger.allocations, after);
-    narc_destroy_broad_phase(broad);
 }
 
 /* What is given in a step. */
@@ -792,7 +784,7 @@ TEST(survives_failing_allocations) {
 TEST(lists_no_bodies) {
     const body bodies[] = {body_at(0, 0, LONG), body_at(0.5, 0, LONG)};
     static const size_t counts[] = {0, 0, 2, 0, 1, 2};
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t step = 0, pairs = 0; step < sizeof counts / sizeof *counts; step++) {
         const narc_pair_list *list = NULL;
         assert_int_equal(take_step(broad, &(struct given){bodies, counts[step], false}, &list), NARC_OK);
@@ -801,7 +793,6 @@ TEST(lists_no_bodies) {
         assert_int_equal(list->pairs.count, pairs);
         assert_int_equal(list->added_count, pairs);
     }
-    narc_destroy_broad_phase(broad);
 }
 
 int main(void) { return test_begin() ? test_run("pair lists", set_up, tear_down) : TEST_SKIPPED; }

@@ -74,7 +74,7 @@ static bool race(size_t first, bool switching) {
     const struct question of_polygons = {.polygons = true}; /* so that every question takes them */
     struct shared shared = {.switching = switching,
                             .scene = make_question_scene(&random, &of_polygons, NARC_FLOAT32, 100, PAIRS)};
-    struct worker *workers = calloc(THREADS, sizeof *workers);
+    AUTO(free_at) struct worker *workers = calloc(THREADS, sizeof *workers);
     shared.shapes = take_shapes(shared.scene.store, NULL);
     if (!workers || pthread_barrier_init(&shared.start, NULL, THREADS) != 0)
         return false;
@@ -98,7 +98,6 @@ static bool race(size_t first, bool switching) {
     pthread_barrier_destroy(&shared.start);
     release_shapes(shared.shapes);
     destroy_scene(&shared.scene);
-    free(workers);
     return same;
 }
 

@@ -64,8 +64,8 @@ static narc_status count_workers(void) {
 }
 
 static narc_status keep_shapes(narc_error *error) {
-    narc_shapes *shapes = NULL, *loaded = NULL;
-    narc_broad_phase *other = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL, *loaded = NULL;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *other = NULL;
     const size_t size = narc_count_saved_bytes(store);
     const bool fine = narc_create_shapes(NULL, &shapes) == NARC_OK && narc_reserve_shapes(shapes, 2, 100) == NARC_OK &&
                       narc_add_shape(shapes, arcs, arc_count, &shape, error) == NARC_OK &&
@@ -77,23 +77,18 @@ static narc_status keep_shapes(narc_error *error) {
                       size <= sizeof bytes && narc_save_shapes(store, bytes, size, error) == NARC_OK &&
                       narc_load_shapes(NULL, bytes, size, &loaded, error) == NARC_OK &&
                       narc_create_broad_phase(NULL, &other) == NARC_OK;
-    narc_destroy_broad_phase(other);
-    narc_destroy_shapes(loaded);
-    narc_destroy_shapes(shapes);
     return TRUE(fine);
 }
 
 static narc_status add_chain(narc_error *error) {
     enum { ARCS = 4000 };
     static narc_chain_entry entries[ARCS];
-    struct turtle t = create_turtle(0, 0, 1);
-    narc_shapes *shapes = NULL;
+    AUTO(free_at) struct turtle t = create_turtle(0, 0, 1);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     for (int k = 0; k < ARCS; k++)
         walk_arc(&t, 2, k % 2 ? -1 : 1);
     const bool fine = narc_create_shapes(NULL, &shapes) == NARC_OK &&
                       narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ARCS, &count, error) == NARC_OK;
-    narc_destroy_shapes(shapes);
-    free(t.arcs);
     return TRUE(fine);
 }
 
@@ -109,7 +104,7 @@ static narc_status keep_contacts(narc_error *error) {
     narc_bodies few = bodies;
     few.count = FEW;
     narc_step step = {.bodies = &few, .margin = 0.1f, .skin = 0.05f, .recycling = 0.01f, .workers = query.workers};
-    narc_contacts *slots = NULL;
+    AUTO(narc_destroy_contacts_at) narc_contacts *slots = NULL;
     const narc_step_result *r;
     const uint32_t *of_body;
     bool fine = narc_create_contacts(NULL, &slots, error) == NARC_OK;
@@ -122,13 +117,11 @@ static narc_status keep_contacts(narc_error *error) {
                (k < 4 || narc_forget_bodies(slots, ids, 2, error) == NARC_OK);
     }
     const size_t size = narc_count_contact_bytes(slots);
-    char *const saved = malloc(size + 1);
+    AUTO(free_at) char *const saved = malloc(size + 1);
     fine = fine && saved && narc_save_contacts(slots, saved, size, error) == NARC_OK &&
            narc_load_contacts(slots, store, saved, size, &r, error) == NARC_OK &&
            narc_load_contacts(slots, store, saved, size - 8, &r, error) == NARC_ERROR_FORMAT;
     narc_forget_contacts(slots);
-    narc_destroy_contacts(slots);
-    free(saved);
     return TRUE(fine);
 }
 
@@ -146,7 +139,7 @@ static narc_status ask_index(narc_error *error) {
                                     .most = 3,
                                     .out_skipped = &skipped,
                                     .out_order = query.workers ? order : NULL};
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     narc_pairs met;
     size_t found_nodes;
     const bool fine =
@@ -164,7 +157,6 @@ static narc_status ask_index(narc_error *error) {
         narc_find_distances(store, &bodies, &at, NULL, query.workers, distances, error) == NARC_OK &&
         narc_find_inside(store, &bodies, &at, NULL, query.workers, bits, error) == NARC_OK &&
         narc_cast_ray_pairs(store, &bodies, &rays, NULL, &leave, hits, BODIES, error) == NARC_OK;
-    narc_destroy_index(index);
     return TRUE(fine);
 }
 

@@ -37,11 +37,8 @@ static size_t ask(unsigned threads, narc_contact *rows) {
 }
 
 static bool is_answered(unsigned threads) {
-    narc_contact *rows = calloc(PAIRS, sizeof *rows);
-    const bool same =
-        rows && ask(threads, rows) == expected_count && memcmp(rows, expected, expected_count * sizeof *rows) == 0;
-    free(rows);
-    return same;
+    AUTO(free_at) narc_contact *rows = calloc(PAIRS, sizeof *rows);
+    return rows && ask(threads, rows) == expected_count && memcmp(rows, expected, expected_count * sizeof *rows) == 0;
 }
 
 /* ------------------------------------------------------------------------------------------------ callers */

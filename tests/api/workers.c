@@ -152,7 +152,7 @@ static void ask_steps(size_t count, const narc_workers *workers, answers *out) {
     narc_view_bodies(rows, count, &bodies);
     const narc_step step = {
         .bodies = &bodies, .margin = 0.0625f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = workers};
-    narc_contacts *slots = NULL;
+    AUTO(narc_destroy_contacts_at) narc_contacts *slots = NULL;
     OK(narc_create_contacts(NULL, &slots, NULL));
     for (int frame = 0; frame < 3; frame++) {
         const narc_step_result *r;
@@ -166,7 +166,6 @@ static void ask_steps(size_t count, const narc_workers *workers, answers *out) {
         assert_true(r->touching_count > count / 2);
         note(out, hash_step(r));
     }
-    narc_destroy_contacts(slots);
 }
 
 /* From each body through its neighbours; those of the broken one have no answer. */
@@ -189,7 +188,7 @@ static void ask_rays(size_t count, const narc_workers *workers, answers *out) {
                                       .most = 2,
                                       .out_skipped = &skipped,
                                       .out_order = order};
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     OK(narc_create_index(NULL, &index));
     OK(narc_build_index(index, boxes, count, NULL, NULL));
     OK(narc_cast_rays(index, shapes, &bodies, &rays, &options, hits, 2 * count, NULL));
@@ -197,7 +196,6 @@ static void ask_rays(size_t count, const narc_workers *workers, answers *out) {
         found += hits[k].count;
     assert_true(skipped == 1 && found > count);
     note(out, test_hash(TEST_HASH_START, hits, 2 * count * sizeof *hits));
-    narc_destroy_index(index);
 }
 
 static answers ask(size_t count, const narc_workers *workers) {
@@ -303,7 +301,7 @@ TEST(takes_any_number_of_workers) {
     static uint32_t one[HALF], other[HALF];
     watch watched = {run_backwards, UINT32_MAX, false};
     const narc_workers workers = {&watched, UINT32_MAX, watch_run};
-    narc_broad_phase *broad = NULL;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = NULL;
     size_t found = 0;
     for (size_t k = 0; k < 2 * HALF; k++) /* two at each place, with half of the boxes between them */
         row[k] = (narc_box){2 * (float)(k % HALF), 0, 2 * (float)(k % HALF) + 1, 1};
@@ -314,7 +312,6 @@ TEST(takes_any_number_of_workers) {
         assert_true(one[k] == k && other[k] == k + HALF);
     assert_true(runs > 0 && !watched.wrong);
     runs = 0;
-    narc_destroy_broad_phase(broad);
 }
 
 static int set_up(void **state) {

@@ -170,7 +170,7 @@ enum { FLIERS = 300 };
 
 /* Bodies fly at a wall from both sides, turned and spinning: none comes through, and none that spins on stands there. */
 static void fly_at_line(double thickness, float speed, uint64_t seed) {
-    world w = create_line(thickness, (vec){0, 0});
+    AUTO(world_destroy) world w = create_line(thickness, (vec){0, 0});
     struct test_random random = {seed};
     for (size_t k = 0; k < FLIERS; k++) {
         const float side = k % 2 ? 1 : -1;
@@ -193,7 +193,6 @@ static void fly_at_line(double thickness, float speed, uint64_t seed) {
                 fail_msg("seed %d, %g m/s: body %zu has stood for %zu steps", (int)seed, (double)speed, k, stood[k]);
         }
     }
-    world_destroy(&w);
 }
 
 TEST(test_segment_is_a_wall) {
@@ -209,7 +208,7 @@ TEST(test_thin_walls_hold) {
 
 /* What falls on a segment, fast and turned, comes to rest above it. */
 TEST(test_segment_is_a_floor) {
-    world w = create_line(0, (vec){0, -9.81f});
+    AUTO(world_destroy) world w = create_line(0, (vec){0, -9.81f});
     struct test_random random = {5};
     for (size_t k = 0; k < 60; k++) {
         const double angle = random_between(&random, -3, 3);
@@ -225,13 +224,12 @@ TEST(test_segment_is_a_floor) {
     }
     for (size_t k = 1; k < w.body_count; k++)
         assert_true(w.bodies[k].kind & NARC_ASLEEP);
-    world_destroy(&w);
 }
 
 /* A box slides on it by v^2 / (2 * friction * g), fast or slow. */
 TEST(test_boxes_slide_on_a_segment) {
     for (float speed = 1; speed < 40; speed *= 2) {
-        world w = create_line(0, (vec){0, -9.81f});
+        AUTO(world_destroy) world w = create_line(0, (vec){0, -9.81f});
         const world_body *const box = add_body_at(&w, 2, 0, 0.15f);
         w.bodies[1].velocity.x = speed;
         for (int step = 0; step < 60 * 10; step++)
@@ -239,14 +237,13 @@ TEST(test_boxes_slide_on_a_segment) {
         const double way = (double)speed * (double)speed / (2 * 0.5 * 9.81);
         print_message("%g m/s: %.3f m, expected %.3f\n", (double)speed, (double)box->position.x, way);
         assert_true(fabs((double)box->position.x - way) < 0.05 + 0.02 * way);
-        world_destroy(&w);
     }
 }
 
 /* Wheels roll on without slowing down, and stay on it. */
 TEST(test_wheels_roll_on_a_segment) {
     for (float speed = 5; speed < 100; speed *= 3) {
-        world w = create_line(0, (vec){0, -9.81f});
+        AUTO(world_destroy) world w = create_line(0, (vec){0, -9.81f});
         world_body *const wheel = add_body_at(&w, 1, -1000, 1);
         wheel->velocity.x = speed;
         wheel->spin = -speed;
@@ -257,7 +254,6 @@ TEST(test_wheels_roll_on_a_segment) {
         }
         assert_true(fabsf(wheel->velocity.x - speed) < 1e-3f * speed);
         assert_true(fabsf(wheel->position.x - (10 * speed - 1000)) < 1e-3f * 10 * speed);
-        world_destroy(&w);
     }
 }
 

@@ -52,7 +52,7 @@ static void add_bowl(world *w, size_t sides) {
 
 /* Of a ball of radius 0.5 without friction, from 60 degrees: the energy that is lost in ten swings. */
 static double swing(size_t sides) {
-    world w = create_world(256);
+    AUTO(world_destroy) world w = create_world(256);
     w.settings.rolling_arm = 0;
     add_bowl(&w, sides);
     const world_body *ball = add_ball(&w, 0.5, 4.5 * sin(pi / 3), -4.5 * cos(pi / 3), 0);
@@ -70,7 +70,6 @@ static double swing(size_t sides) {
                   100 * (1 - left), 100 * (most / start - 1));
     assert_int_equal(turns, 20);
     assert_true(most < 1.005 * start);
-    world_destroy(&w);
     return 1 - left;
 }
 
@@ -84,7 +83,7 @@ TEST(test_bowl) {
 /* How far from its looping is a marble at most, from where it enters it until its arc ends, 0.8 radians short of a full
  * turn? What comes from a height below 2.5 times the radius of its centre's circle falls off. */
 static double find_gap(double height) {
-    world w = create_world(64);
+    AUTO(world_destroy) world w = create_world(64);
     const double circle = 2 - 0.25;
     w.settings.rolling_arm = 0;
     add_looping(&w, 0, height * circle);
@@ -97,7 +96,6 @@ static double find_gap(double height) {
         turned += remainder(atan2(y, x) + pi / 2 - turned, 2 * pi);
         gap = fmax(gap, circle - hypot(x, y));
     }
-    world_destroy(&w);
     return gap / circle;
 }
 

@@ -60,41 +60,38 @@ static void assert_near(double value, double expected, double tolerance) {
 
 /* Friction 0.5 holds a box on any slope below atan 0.5. It may give way by what a soft contact does. */
 TEST(test_box_stays_on_slope) {
-    world w = create_slope(0.95 * atan(0.5));
+    AUTO(world_destroy) world w = create_slope(0.95 * atan(0.5));
     const world_body *box = add_box(&w, 0, 0.5f);
     step_for(&w, 10);
     assert_near((double)box->position.x, 0, 0.01);
-    world_destroy(&w);
 }
 
 /* On a steeper one it slides with g (sin - 0.5 cos). */
 TEST(test_box_slides) {
     const double angle = 0.7;
-    world w = create_slope(angle);
+    AUTO(world_destroy) world w = create_slope(angle);
     const world_body *box = add_box(&w, 0, 0.5f);
     step_for(&w, 2);
     const double speed = 2 * g * (sin(angle) - 0.5 * cos(angle));
     assert_near((double)box->velocity.x, speed, 0.01 * speed);
     assert_near((double)box->spin, 0, 0.01);
-    world_destroy(&w);
 }
 
 /* A disc's moment of inertia leaves it two thirds of the acceleration, after the torque of rolling friction. */
 TEST(test_circle_rolls) {
     const double angle = 0.2, radius = 0.5;
-    world w = create_slope(angle);
+    AUTO(world_destroy) world w = create_slope(angle);
     const world_body *circle = add_circle(&w, radius, -90, (float)radius);
     step_for(&w, 4);
     const double arm = (double)w.settings.rolling_arm;
     const double speed = 4 * g * (sin(angle) - cos(angle) * arm / radius) * 2 / 3;
     assert_near((double)circle->velocity.x, speed, 0.01 * speed);
     assert_near((double)circle->spin, -speed / radius, 0.01 * speed / radius);
-    world_destroy(&w);
 }
 
 /* A ball that falls from h rises to e^2 h. */
 TEST(test_ball_bounces) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     world_body *ball = add_circle(&w, 0.5, 0, 4.5f);
     ball->restitution = 0.7f;
     double highest = 0, last = 4;
@@ -107,12 +104,11 @@ TEST(test_ball_bounces) {
         last = height;
     }
     assert_near(highest, 0.7 * 0.7 * 4, 0.04 * 0.7 * 0.7 * 4);
-    world_destroy(&w);
 }
 
 /* Where nothing pulls, momentum and angular momentum stay. */
 TEST(test_momentum) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     w.settings.gravity = (vec){0, 0};
     w.settings.rolling_arm = 0.02f;
     const world_body *bodies[] = {add_box(&w, -3, 10), add_box(&w, 0, 10.3f), add_circle(&w, 0.4, 0.2f, 13)};
@@ -139,13 +135,12 @@ TEST(test_momentum) {
     /* A contact's anchors stay while bodies move on within the step, by up to 5 / 60 here: so far off its line may an
      * impulse act, which is up to 5 times the mass, 1. */
     assert_near(angular[1], angular[0], 5 * 5 / 60.0);
-    world_destroy(&w);
 }
 
 /* An ellipse that rocks on its flat side keeps its energy: it gains none, and loses 15 % at most in ten seconds, 5 times
  * in and out. If its point stayed where it was at the beginning of each step it would gain 19 %. */
 TEST(test_ellipse_rocks) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     w.settings.rolling_arm = 0;
     w.settings.sleep_time = INFINITY;
     narc_arc arcs[NARC_MAX_ARCS];
@@ -164,12 +159,11 @@ TEST(test_ellipse_rocks) {
     }
     assert_near(greatest / start, 1, 0.01);
     assert_near(last / start, 0.925, 0.075);
-    world_destroy(&w);
 }
 
 /* Bodies that have turned together, as in a column that falls over, have another normal. */
 TEST(test_turned_together) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     w.settings.gravity = (vec){0, 0};
     w.settings.sleep_time = INFINITY;
     add_box(&w, 0, 10);
@@ -186,12 +180,11 @@ TEST(test_turned_together) {
     step_for(&w, 1.0 / 60);
     assert_int_equal(w.active_count, 1);
     assert_near((double)w.active[0]->points[0].normal.x, -0.6, 1e-4);
-    world_destroy(&w);
 }
 
 /* A pair that is listed still, but has no point, forgets what pressed and what rolled. */
 TEST(test_forgets) {
-    world w = create_slope(0.2);
+    AUTO(world_destroy) world w = create_slope(0.2);
     world_body *circle = add_circle(&w, 0.5, 0, 0.5f);
     step_for(&w, 0.5);
     assert_true(world_contact_of(&w, 0)->points[0].normal_impulse > 0 && world_contact_of(&w, 0)->rolling_impulse != 0);
@@ -202,12 +195,11 @@ TEST(test_forgets) {
     assert_int_equal(world_contact_of(&w, 0)->point_count, 0);
     assert_true(world_contact_of(&w, 0)->points[0].normal_impulse == 0 &&
                 world_contact_of(&w, 0)->rolling_impulse == 0);
-    world_destroy(&w);
 }
 
 /* A step names the body that is broken: no pair would ever show it, because its box overlaps nothing. */
 TEST(test_broken_body) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     world_body *box = add_box(&w, 0, 0.5f);
     step_for(&w, 0.1);
     box->position.x = NAN;
@@ -217,11 +209,10 @@ TEST(test_broken_body) {
     box->position.x = 0; /* mended, it goes on: what is known of pairs is that of the list, whatever failed */
     step_for(&w, 0.5);
     assert_near((double)box->position.y, 0.5, 0.005);
-    world_destroy(&w);
 }
 
 TEST(test_errors) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS] = {{0, 0, -1, 0, 1}};
     assert_int_equal(world_add_shape(&w, arcs, 1, NULL), NARC_ERROR_RADIUS);
     assert_int_equal(world_add_body(&w, (world_body){.cosine = 1, .shape = 1}), NARC_ERROR_INDEX);
@@ -229,12 +220,11 @@ TEST(test_errors) {
         add_circle(&w, 1, 0, (float)(4 * k));
     assert_int_equal(world_add_body(&w, w.bodies[1]), NARC_ERROR_CAPACITY);
     assert_true(strlen(w.error.message) > 0);
-    world_destroy(&w);
 }
 
 /* A shape that the world has already needs no room, whatever else it has. */
 TEST(test_equal_shapes) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     uint32_t shape, first = 0;
@@ -250,12 +240,11 @@ TEST(test_equal_shapes) {
     assert_int_equal(shape, first);
     for (uint32_t k = 0; k < 7; k++)
         assert_true(fabsf(w.shapes[first + k].mass - 2 * (float)(k + 1)) < 1e-5f);
-    world_destroy(&w);
 }
 
 /* What has no mass does not move. */
 TEST(test_segment) {
-    world w = create_slope(0);
+    AUTO(world_destroy) world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     world_body body = {.cosine = 1};
@@ -264,7 +253,6 @@ TEST(test_segment) {
     assert_int_equal(world_add_body(&w, body), NARC_ERROR_SIZE);
     body.kind = NARC_STATIC;
     assert_int_equal(world_add_body(&w, body), NARC_OK);
-    world_destroy(&w);
 }
 
 TEST_MAIN("mechanics")

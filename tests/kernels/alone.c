@@ -65,8 +65,8 @@ TEST(rays_hit_one_body_as_by_an_index) {
     struct test_random random = test_random_named("rays alone");
     for (size_t trial = 0; trial < test_trials(8); trial++) {
         const narc_precision precision = (narc_precision)(trial % 2);
-        struct room room = create_room(&random, precision, BODIES, 6);
-        struct test_ray *const rays = make_rays(&random, &room, RAYS, 6);
+        AUTO(destroy_room) struct room room = create_room(&random, precision, BODIES, 6);
+        AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, RAYS, 6);
         const narc_bodies bodies = scene_bodies(&room.scene);
         narc_workers workers;
         narc_openmp_workers(3, &workers);
@@ -84,7 +84,7 @@ TEST(rays_hit_one_body_as_by_an_index) {
             const narc_index_column column = NARC_ARRAY(body);
             const narc_ray_options options = {
                 .search.workers = &workers, .inside = (narc_inside)inside, .out_skipped = &skipped};
-            narc_ray_hit *const rows = guard_allocate(RAYS * sizeof *rows);
+            AUTO(guard_release_at) narc_ray_hit *const rows = guard_allocate(RAYS * sizeof *rows);
             narc_error error;
             expect_ok(narc_cast_ray_pairs(room.scene.store, &bodies, &view, &column, &options, rows, RAYS, &error),
                       &error);
@@ -97,11 +97,8 @@ TEST(rays_hit_one_body_as_by_an_index) {
                 hits += right.count;
             }
             assert_int_equal(skipped, expected);
-            guard_release(rows);
         }
         assert_true(hits > RAYS / 20);
-        free(rays);
-        destroy_room(&room);
     }
 }
 
@@ -128,7 +125,7 @@ static void check_one_point(const struct room *room, const narc_bodies *bodies, 
 TEST(points_are_within_where_separations_are_below_0) {
     struct test_random random = test_random_named("points alone");
     for (size_t trial = 0; trial < test_trials(12); trial++) {
-        struct room room = create_room(&random, (narc_precision)(trial % 2), BODIES, 6);
+        AUTO(destroy_room) struct room room = create_room(&random, (narc_precision)(trial % 2), BODIES, 6);
         const narc_bodies bodies = scene_bodies(&room.scene);
         const size_t count = 1 + random_below(&random, RAYS);
         uint32_t body[RAYS];
@@ -150,8 +147,8 @@ TEST(points_are_within_where_separations_are_below_0) {
         const narc_index_column column = {trial % 5 ? body : &body[count - 1], trial % 5 ? sizeof *body : 0};
         narc_workers workers;
         narc_openmp_workers(3, &workers);
-        narc_distance *const rows = guard_allocate(count * sizeof *rows);
-        uint64_t *const bits = guard_allocate(NARC_BIT_WORDS(count) * sizeof *bits);
+        AUTO(guard_release_at) narc_distance *const rows = guard_allocate(count * sizeof *rows);
+        AUTO(guard_release_at) uint64_t *const bits = guard_allocate(NARC_BIT_WORDS(count) * sizeof *bits);
         narc_error error;
         expect_ok(narc_find_inside(room.scene.store, &bodies, &points, &column, &workers, bits, &error), &error);
         expect_ok(narc_find_distances(room.scene.store, &bodies, &points, &column, NULL, rows, &error), &error);
@@ -171,15 +168,12 @@ TEST(points_are_within_where_separations_are_below_0) {
         for (size_t k = count; k < 64 * NARC_BIT_WORDS(count); k++)
             assert_false(bit_is_set(bits, k));
         assert_true(count < 50 || trial % 5 == 0 || within > 0);
-        guard_release(rows);
-        guard_release(bits);
-        destroy_room(&room);
     }
 }
 
 /* No point is within a piece of a chain; nothing asks of no points. */
 TEST(points_are_never_within_ground) {
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     const narc_arc hill = {0, 0, 4, PI / 4, PI * 3 / 4};
     narc_chain_entry entry;
     size_t count;
@@ -193,15 +187,14 @@ TEST(points_are_never_within_ground) {
     assert_int_equal(narc_find_inside(shapes, &bodies, &point, NULL, NULL, &bits, NULL), NARC_OK);
     assert_true(bits == 0);
     assert_int_equal(narc_find_inside(shapes, &bodies, &(narc_points){0}, NULL, NULL, NULL, NULL), NARC_OK);
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ errors */
 
 TEST(what_is_wrong_is_said) {
     struct test_random random = test_random_named("errors alone");
-    struct room room = create_room(&random, NARC_FLOAT64, BODIES, 6);
-    struct test_ray *const rays = make_rays(&random, &room, 4, 6);
+    AUTO(destroy_room) struct room room = create_room(&random, NARC_FLOAT64, BODIES, 6);
+    AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, 4, 6);
     const narc_bodies bodies = scene_bodies(&room.scene);
     const narc_rays view = view_rays(rays, 4);
     const narc_points points = {.count = 4, .x = view.x, .y = view.y};
@@ -238,8 +231,6 @@ TEST(what_is_wrong_is_said) {
                      NARC_ERROR_ARGUMENT);
     for (size_t k = 0; k < sizeof rows; k++)
         assert_int_equal(((const char *)rows)[k], 7);
-    free(rays);
-    destroy_room(&room);
 }
 
 TEST_MAIN("alone")

@@ -31,8 +31,8 @@ TEST(test_overlap_ranges) {
     struct test_random random = test_random_named("overlap ranges");
     for (size_t round = 0; round < test_trials(40); round++) {
         size_t count = 1 + random_below(&random, 3000), words = NARC_BIT_WORDS(count);
-        struct scene scene = make_scene("ranges", count);
-        uint64_t *whole = scene_overlaps(&scene), *glued = malloc(words * sizeof(uint64_t));
+        AUTO(destroy_scene) struct scene scene = make_scene("ranges", count);
+        AUTO(free_at) uint64_t *whole = scene_overlaps(&scene), *glued = malloc(words * sizeof(uint64_t));
         memset(glued, 0xa5, words * sizeof(uint64_t));
         for (size_t first = 0; first < words;) {
             size_t step = 1 + random_below(&random, 5), last = first + step < words ? first + step : words;
@@ -58,9 +58,6 @@ TEST(test_overlap_ranges) {
             assert_true(is_junk(glued, words / 2 * 8));
             assert_memory_equal(glued + words / 2, whole + words / 2, (words - words / 2) * 8);
         }
-        free(whole);
-        free(glued);
-        destroy_scene(&scene);
     }
 }
 
@@ -68,11 +65,11 @@ TEST(test_overlap_ranges) {
 TEST(test_margins) {
     const float margins[] = {0.0f,   -0.0f,  1e-6f, 0.05f,   0.7f,   100.0f,   3e38f,
                              -1e-6f, -0.05f, -0.7f, -100.0f, -3e38f, -INFINITY};
-    struct scene scene = make_scene("margins", 5000);
-    struct contacts all = scene_contacts(&scene, INFINITY);
-    uint64_t *bits = scene_overlaps(&scene);
+    AUTO(destroy_scene) struct scene scene = make_scene("margins", 5000);
+    AUTO(free_at) struct contacts all = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(&scene);
     for (size_t m = 0; m < sizeof(margins) / sizeof(margins[0]); m++) {
-        struct contacts some = scene_contacts(&scene, margins[m]);
+        AUTO(free_at) struct contacts some = scene_contacts(&scene, margins[m]);
         size_t next = 0;
         for (size_t k = 0; k < all.count; k++) {
             if (all.rows[k].separation < margins[m]) {
@@ -84,20 +81,16 @@ TEST(test_margins) {
                 assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
         }
         assert_int_equal(next, some.count);
-        free(some.rows);
     }
-    free(all.rows);
-    free(bits);
-    destroy_scene(&scene);
 }
 
 /* A body and itself: as deep as it gets, and still an answer. (Only a segment has no depth, it touches itself.) */
 TEST(test_pairs_with_itself) {
-    struct scene scene = make_scene("itself", 500);
+    AUTO(destroy_scene) struct scene scene = make_scene("itself", 500);
     for (uint32_t k = 0; k < 500; k++)
         scene.pairs[k] = (struct pair){k, k};
-    struct contacts all = scene_contacts(&scene, INFINITY);
-    uint64_t *bits = scene_overlaps(&scene);
+    AUTO(free_at) struct contacts all = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(&scene);
     for (uint32_t k = 0; k < 500; k++) {
         struct reference_body body = scene_reference(&scene, k);
         struct fractions errors = {0};
@@ -109,9 +102,6 @@ TEST(test_pairs_with_itself) {
             fail_msg("%s", wrong);
         }
     }
-    free(all.rows);
-    free(bits);
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ places of rows */
@@ -197,14 +187,14 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
     narc_workers workers;
     narc_openmp_workers(threads, &workers);
     const narc_query plain = {.margin = margin};
-    unsigned char *listed = make_junk(count * size);
-    uint32_t *selection = make_junk(count * sizeof *selection);
+    AUTO(free_at) unsigned char *listed = make_junk(count * size);
+    AUTO(free_at) uint32_t *selection = make_junk(count * sizeof *selection);
     size_t found = 0, again = 0, points = 0, part_points = 0;
     assert_int_equal(ask(batch, &plain, listed, count, &found, NULL), NARC_OK);
-    unsigned char *dense = make_dense(batch, listed, found);
+    AUTO(free_at) unsigned char *dense = make_dense(batch, listed, found);
     for (size_t k = 0; k < found; k++)
         points += has_point(batch, listed + k * size);
-    struct place *places = make_junk(count * sizeof *places);
+    AUTO(free_at) struct place *places = make_junk(count * sizeof *places);
 
     narc_query query = {.margin = margin, .row_stride = sizeof *places, .workers = &workers};
     assert_int_equal(ask(batch, &query, &places->row, found, &again, NULL), NARC_OK);
@@ -216,7 +206,7 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
     assert_int_equal(again, points);
     check_places(places, dense, count, size);
     query.row_stride = 0;
-    unsigned char *rows = guard_allocate(count * size);
+    AUTO(guard_release_at) unsigned char *rows = guard_allocate(count * size);
     assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
     assert_int_equal(again, points);
     assert_memory_equal(rows, dense, count * size);
@@ -239,7 +229,7 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
     query.count = first + part < selected ? part : 0;
     memset(rows, 0xa5, count * size);
     assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
-    bool *is_asked = calloc(count, sizeof *is_asked);
+    AUTO(free_at) bool *is_asked = calloc(count, sizeof *is_asked);
     assert_non_null(is_asked);
     for (size_t k = first; k < first + part; k++) {
         is_asked[selection[k]] = true;
@@ -253,7 +243,7 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
             assert_true(is_junk(rows + k * size, size));
     query.dense = 0;
     assert_int_equal(ask(batch, &query, rows, count, &again, NULL), NARC_OK);
-    bool *is_listed = calloc(count, sizeof *is_listed);
+    AUTO(free_at) bool *is_listed = calloc(count, sizeof *is_listed);
     assert_non_null(is_listed);
     for (size_t k = 0; k < found; k++) {
         uint32_t pair;
@@ -265,20 +255,13 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
         if (is_listed[selection[k]])
             assert_memory_equal(rows + size * at++, dense + selection[k] * size, size);
     assert_int_equal(at, again);
-    free(is_asked);
-    free(is_listed);
-    free(listed);
-    free(dense);
-    free(places);
-    guard_release(rows);
-    free(selection);
 }
 
 TEST(test_places_of_rows) {
     struct test_random random = test_random_named("places of rows");
     static const size_t counts[] = {1, 2, 17, 64, 1000, 1025, 5003};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
-        struct scene scene = make_scene("places of rows", counts[c]);
+        AUTO(destroy_scene) struct scene scene = make_scene("places of rows", counts[c]);
         for (size_t k = 0; k < scene.body_count; k += 50)
             scene.bodies[k].sine = NAN;
         for (size_t q = 0; q < question_count; q++) {
@@ -291,19 +274,18 @@ TEST(test_places_of_rows) {
                 check_rows(&random, &batch, INFINITY, threads);
             }
         }
-        destroy_scene(&scene);
     }
 }
 
 /* Dense rows need room up to the last pair, of a selection that of the batch: less is an error, and nothing is
  * written. */
 TEST(test_dense_capacity) {
-    struct scene scene = make_scene("dense capacity", 1500);
+    AUTO(destroy_scene) struct scene scene = make_scene("dense capacity", 1500);
     for (size_t q = 0; q < question_count; q++) {
         const struct batch batch = {&scene, &questions[q]};
         if (!questions[q].row_size)
             continue;
-        unsigned char *rows = make_junk(1500 * batch.question->row_size);
+        AUTO(free_at) unsigned char *rows = make_junk(1500 * batch.question->row_size);
         const uint32_t selection[] = {700, 1200, 3};
         size_t found = 12345;
         assert_int_equal(ask(&batch, &(narc_query){.dense = 1}, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
@@ -320,9 +302,7 @@ TEST(test_dense_capacity) {
         assert_true(is_junk(rows, 1500 * batch.question->row_size));
         assert_int_equal(ask(&batch, &some, rows, 1500, &found, NULL), NARC_OK);
         assert_false(is_junk(rows + 1200 * batch.question->row_size, batch.question->row_size));
-        free(rows);
     }
-    destroy_scene(&scene);
 }
 
 /* Bit k of a selection is that of pair selection[k]; the bits behind the last are 0. */
@@ -330,10 +310,10 @@ TEST(test_selected_bits) {
     struct test_random random = test_random_named("selected bits");
     for (size_t round = 0; round < test_trials(20); round++) {
         const size_t count = 1 + random_below(&random, 5000);
-        struct scene scene = make_scene("selected bits", count);
+        AUTO(destroy_scene) struct scene scene = make_scene("selected bits", count);
         narc_workers workers;
         narc_openmp_workers((unsigned)(round % 4), &workers);
-        uint32_t *selection = make_junk(count * sizeof *selection);
+        AUTO(free_at) uint32_t *selection = make_junk(count * sizeof *selection);
         const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
         uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);
         narc_query query = {
@@ -342,19 +322,16 @@ TEST(test_selected_bits) {
         for (size_t k = 0; k < 64 * words; k++)
             assert_int_equal(bit_is_set(bits, k), k < selected && bit_is_set(all, selection[k]));
         if (words > 2) { /* a sub-range of the selection */
-            uint64_t *part = make_junk(words * sizeof *part);
+            AUTO(free_at) uint64_t *part = make_junk(words * sizeof *part);
             query.first = 64;
             query.count = 64;
             assert_int_equal(ask_overlaps(&scene, &query, part, NULL), NARC_OK);
             assert_true(is_junk(part, 8) && part[1] == bits[1] && is_junk(part + 2, (words - 2) * 8));
-            free(part);
         }
         query = (narc_query){.selection = query.selection}; /* of none */
         assert_int_equal(ask_overlaps(&scene, &query, NULL, NULL), NARC_OK);
         guard_release(bits);
         free(all);
-        free(selection);
-        destroy_scene(&scene);
     }
 }
 

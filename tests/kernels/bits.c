@@ -78,8 +78,8 @@ static void check_answer(const struct expected *expected, const struct part *par
     const size_t count = part->columns.pairs.count, from = rows_before(question, all, part->first),
                  found = rows_before(question, all, part->first + count) - from;
     /* No longer than what is found: the guard then lies right behind the last row. */
-    void *const rows = guard_allocate(answer_size(question, question->row_size ? found : count));
-    uint8_t *const outcomes = guard_allocate(count);
+    AUTO(guard_release_at) void *const rows = guard_allocate(answer_size(question, question->row_size ? found : count));
+    AUTO(guard_release_at) uint8_t *const outcomes = guard_allocate(count);
     size_t told = found;
     const narc_query query = {.margin = margins[m], .workers = &part->workers};
     const struct asked asked = {part->shapes, &part->columns.bodies, &part->columns.pairs, &query, rows, found, &told,
@@ -95,8 +95,6 @@ static void check_answer(const struct expected *expected, const struct part *par
                      (double)margins[m], count, part->first, part->workers.count, k);
     }
     assert_memory_equal(outcomes, all->outcomes + part->first, count);
-    guard_release(rows);
-    guard_release(outcomes);
 }
 
 static void check_part(const struct scene *scene, const void *shapes, const struct expected *expected,
@@ -130,18 +128,16 @@ static void release_guarded(struct guarded *guarded) {
 static void check_counts(const struct question *question, narc_precision precision, enum layout layout, size_t layouts,
                          size_t grow) {
     struct test_random random = test_random_named(question->name);
+    AUTO(destroy_scene)
     struct scene scene = make_question_scene(&random, question, precision, BODIES, 2 * SMALL_COUNTS);
     suit_layout(&scene, layout);
-    struct guarded guarded = guard_shapes(&scene);
-    struct expected expected = expect(&scene, question);
+    AUTO(release_guarded) struct guarded guarded = guard_shapes(&scene);
+    AUTO(destroy_expected) struct expected expected = expect(&scene, question);
     const size_t each = question->every_layout ? layouts : 1;
     for (size_t count = 0; count < SMALL_COUNTS; count += 1 + count / grow)
         for (size_t k = 0; k < each; k++)
             check_part(&scene, guarded.shapes, &expected, layout + (enum layout)((count + k) % layouts),
                        random_below(&random, SMALL_COUNTS), count, 1);
-    destroy_expected(&expected);
-    release_guarded(&guarded);
-    destroy_scene(&scene);
 }
 
 TEST(test_all_counts) {
@@ -163,33 +159,28 @@ TEST(test_threads) {
     for (size_t q = 0; q < question_count; q++) {
         for (size_t k = 0; k < (questions[q].every_layout ? 4 : 3); k++) {
             const narc_precision precision = k % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+            AUTO(destroy_scene)
             struct scene scene = make_question_scene(&random, &questions[q], precision, 300, counts[k]);
-            struct guarded guarded = guard_shapes(&scene);
-            struct expected expected = expect(&scene, &questions[q]);
+            AUTO(release_guarded) struct guarded guarded = guard_shapes(&scene);
+            AUTO(destroy_expected) struct expected expected = expect(&scene, &questions[q]);
             for (unsigned threads = 0; threads <= 3; threads++)
                 check_part(&scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, counts[k], threads);
-            destroy_expected(&expected);
-            release_guarded(&guarded);
-            destroy_scene(&scene);
         }
     }
 }
 
 /* Everything there is, in the hardest places. */
 static void check_corpus(const char *name, narc_precision precision, bool polygons) {
-    struct corpus corpus = make_corpus(name, precision, 0.5, polygons);
+    AUTO(destroy_corpus) struct corpus corpus = make_corpus(name, precision, 0.5, polygons);
     const struct scene *scene = &corpus.scene;
-    struct guarded guarded = guard_shapes(scene);
+    AUTO(release_guarded) struct guarded guarded = guard_shapes(scene);
     for (size_t q = 0; q < question_count; q++) {
         if (questions[q].polygons && !polygons)
             continue;
-        struct expected expected = expect(scene, &questions[q]);
+        AUTO(destroy_expected) struct expected expected = expect(scene, &questions[q]);
         check_part(scene, guarded.shapes, &expected, LAYOUT_STRUCTURES, 0, scene->pair_count, 2);
         check_part(scene, guarded.shapes, &expected, LAYOUT_ARRAYS, 0, scene->pair_count, 1);
-        destroy_expected(&expected);
     }
-    release_guarded(&guarded);
-    destroy_corpus(&corpus);
 }
 
 TEST(test_hard_places) {
@@ -207,7 +198,7 @@ TEST(test_margins_of_pairs) {
         const struct question *question = &questions[q];
         if (!question->row_size)
             continue;
-        struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 150, PAIRS);
+        AUTO(destroy_scene) struct scene scene = make_question_scene(&random, question, NARC_FLOAT32, 150, PAIRS);
         struct answer each[MARGINS];
         float margin[PAIRS];
         size_t skipped = 0;
@@ -239,7 +230,6 @@ TEST(test_margins_of_pairs) {
         destroy_answer(&found);
         for (size_t m = 0; m < MARGINS; m++)
             destroy_answer(&each[m]);
-        destroy_scene(&scene);
     }
 }
 
@@ -279,11 +269,11 @@ static void check_skipped(const struct scene *scene, const struct question *ques
     narc_workers workers;
     narc_openmp_workers(threads, &workers);
     for (size_t m = 0; m < margins_of(question); m++) {
+        AUTO(destroy_answer)
         struct answer answer = ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers});
         assert_int_equal(answer.skipped, expected);
         for (uint32_t k = 0; k < scene->pair_count && (!question->row_size || isinf(margins[m])); k++)
             assert_true(has_none(question, &answer, k) || !(broken[scene->pairs[k].a] || broken[scene->pairs[k].b]));
-        destroy_answer(&answer);
     }
 }
 
@@ -310,9 +300,8 @@ TEST(test_skipped_pairs) {
             const size_t left = MANY - first, count = 1 + random_below(&random, MANY / 4);
             part.pairs = scene.pairs + first;
             part.pair_count = count < left ? count : left;
-            struct answer answer = ask_scene(&questions[q], &part, (narc_query){0});
+            AUTO(destroy_answer) struct answer answer = ask_scene(&questions[q], &part, (narc_query){0});
             sum += answer.skipped;
-            destroy_answer(&answer);
         }
         assert_int_equal(sum, expected);
         destroy_scene(&scene);
@@ -321,12 +310,11 @@ TEST(test_skipped_pairs) {
 
 /* Asks of three bodies in one place; `removed`: of the pairs with the second one there is no answer. */
 static void ask_of_three(const struct question *question, const struct scene *scene, bool removed) {
-    struct answer answer = ask_scene(question, scene, (narc_query){.margin = INFINITY});
+    AUTO(destroy_answer) struct answer answer = ask_scene(question, scene, (narc_query){.margin = INFINITY});
     assert_int_equal(answer.skipped, removed ? 3 : 0);
     assert_int_equal(answer.count, question->row_size ? 4 : 0);
     for (uint32_t k = 0; k < 4 && removed; k++)
         assert_true(k == 2 || has_none(question, &answer, k));
-    destroy_answer(&answer);
 }
 
 /* The shape of the second is removed, its block is overwritten, and it comes back. */
@@ -335,7 +323,7 @@ TEST(test_removed_shapes) {
     const struct shape box = box_of(1, 1, 0);
     struct shape large;
     assert_int_equal(narc_build_regular_polygon(64, 1, 0, large.arcs, &large.count, NULL), NARC_OK);
-    struct scene scene = create_scene(NARC_FLOAT32, 3, 3, 4);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 3, 3, 4);
     narc_shapes *const store = scene.store;
     for (uint32_t k = 0; k < 3; k++) {
         struct body body = turned_body(0, 1);
@@ -355,7 +343,6 @@ TEST(test_removed_shapes) {
         ask_of_three(&questions[q], &scene, true);
         assert_int_equal(narc_add_shape_at(store, 1, box.arcs, box.count, NULL), NARC_OK);
     }
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("bits")

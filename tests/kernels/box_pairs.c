@@ -109,9 +109,8 @@ static struct scene make_boxes(struct test_random *random, enum sizes sizes, enu
 static void check_sizes(enum sizes sizes, enum kinds kinds, const char *name) {
     struct test_random random = test_random_named(name);
     for (size_t round = 0; round < test_trials(8); round++) {
-        struct scene scene = make_boxes(&random, sizes, kinds);
+        AUTO(destroy_scene) struct scene scene = make_boxes(&random, sizes, kinds);
         check_plain_scene(&random, &scene, name);
-        destroy_scene(&scene);
     }
 }
 
@@ -171,7 +170,7 @@ TEST(test_circle_places) {
     static const double turns[] = {0, 0, PI / 2, PI, -PI / 2, 1e-7};
     struct test_random random = test_random_named("places of circles");
     for (size_t round = 0; round < test_trials(6); round++) {
-        struct scene scene = create_scene((narc_precision)(round % 2), SHAPES, 2 * PAIRS, PAIRS);
+        AUTO(destroy_scene) struct scene scene = create_scene((narc_precision)(round % 2), SHAPES, 2 * PAIRS, PAIRS);
         double half_x[SHAPES], half_y[SHAPES];
         for (size_t k = 0; k < SHAPES; k++) {
             const double width = random_log_between(&random, 0.1, 10), height = random_log_between(&random, 0.1, 10);
@@ -206,13 +205,12 @@ TEST(test_circle_places) {
                 scene_add_two(&scene, b, a);
         }
         check_plain_scene(&random, &scene, "places of circles");
-        destroy_scene(&scene);
     }
 }
 
 /* A box waits while capsules are answered, and pairs that are neither are far apart: rows stay in the order of pairs. */
 TEST(test_order_of_rows) {
-    struct scene scene = create_scene(NARC_FLOAT32, 2, 400, 200);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 2, 400, 200);
     const struct shape box = box_of(2, 2, 0), capsule = capsule_of(2, 1);
     scene_add_shape(&scene, &box);
     scene_add_shape(&scene, &capsule);
@@ -224,12 +222,11 @@ TEST(test_order_of_rows) {
     }
     struct test_random random = test_random_named("order");
     check_plain_scene(&random, &scene, "a box before capsules");
-    destroy_scene(&scene);
 }
 
 /* Capsules and boxes come seldom, among circles, and then all at once. */
 TEST(test_seldom) {
-    struct scene scene = create_scene(NARC_FLOAT32, 3, 3000, 1500);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 3, 3000, 1500);
     const struct shape circle = circle_of(1), box = box_of(2, 1, 0.25), capsule = capsule_of(2, 0.5);
     scene_add_shape(&scene, &circle);
     scene_add_shape(&scene, &box);
@@ -243,7 +240,6 @@ TEST(test_seldom) {
         scene_add_two(&scene, a, b);
     }
     check_plain_scene(&random, &scene, "seldom");
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("box_pairs")

@@ -95,7 +95,7 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
         for (int i = 0; i < 2; i++)
             motion[k][i] = (float)(random_below(random, 4) ? random_between(random, -2, 2) * size : 0);
     }
-    narc_box *const still = compute(scene, NULL, 1);
+    AUTO(guard_release_at) narc_box *const still = compute(scene, NULL, 1);
     for (int round = 0; round < 8; round++) {
         size_t skipped = 7;
         const struct body *const near = &scene->bodies[random_below(random, count)];
@@ -107,7 +107,7 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
             options.motion_x = (narc_float_column){&motion[0][0], sizeof motion[0]};
         if ((round & 3) == 2) /* either may be alone */
             options.motion_y = (narc_float_column){&motion[0][1], sizeof motion[0]};
-        narc_box *const boxes = compute(scene, &options, 1 + (unsigned)round);
+        AUTO(guard_release_at) narc_box *const boxes = compute(scene, &options, 1 + (unsigned)round);
         assert_int_equal(skipped, 0);
         for (size_t k = 0; k < count; k++) {
             const struct reference_body body = scene_reference(scene, (uint32_t)k);
@@ -118,9 +118,7 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
         }
         if (round == 0)
             assert_memory_equal(boxes, still, count * sizeof *boxes);
-        guard_release(boxes);
     }
-    guard_release(still);
     free(motion);
 }
 
@@ -131,6 +129,7 @@ TEST(holds_every_shape) {
     for (int precision = 0; precision < 2; precision++) {
         for (enum family family = 0; family < FAMILY_COUNT; family++) {
             const size_t trials = test_trials(12);
+            AUTO(destroy_scene)
             struct scene scene = create_scene((narc_precision)precision, trials, 2 * PLACES * trials, 1);
             for (size_t trial = 0; trial < trials; trial++) {
                 const struct shape shape = make_shape(&random, family);
@@ -145,7 +144,6 @@ TEST(holds_every_shape) {
                 }
             }
             check_scene(&scene, &random);
-            destroy_scene(&scene);
         }
     }
 }
@@ -203,6 +201,7 @@ TEST(rounds_outwards_wherever_a_body_is) {
     struct test_random random = test_random_named("rounding");
     for (int precision = 0; precision < 2; precision++) {
         const size_t trials = test_trials(200);
+        AUTO(destroy_scene)
         struct scene scene = create_scene((narc_precision)precision, FAMILY_COUNT, FAMILY_COUNT * trials, 1);
         for (enum family family = 0; family < FAMILY_COUNT; family++) {
             const struct shape shape = make_shape(&random, family);
@@ -223,7 +222,6 @@ TEST(rounds_outwards_wherever_a_body_is) {
             }
         }
         check_scene(&scene, &random);
-        destroy_scene(&scene);
     }
 }
 
@@ -265,17 +263,17 @@ TEST(holds_fronts_of_chains) {
     struct test_random random = test_random_named("fronts");
     enum { BODIES = 300, ENTRIES = 200 };
     for (size_t trial = 0; trial < test_trials(12); trial++) {
-        struct turtle t = walk_ground(&random, 1 + random_below(&random, 30), 1.2);
+        AUTO(free_at) struct turtle t = walk_ground(&random, 1 + random_below(&random, 30), 1.2);
         narc_chain_entry entries[ENTRIES];
         narc_body rows[BODIES];
         size_t count;
-        narc_shapes *shapes = NULL;
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
         uint32_t plain;
         assert_int_equal(narc_create_shapes(&guard_allocator, &shapes), NARC_OK);
         const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
         assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &plain, NULL), NARC_OK);
-        narc_box *const without = guard_allocate(BODIES * sizeof *without);
-        narc_box *const boxes = guard_allocate(BODIES * sizeof *boxes);
+        AUTO(guard_release_at) narc_box *const without = guard_allocate(BODIES * sizeof *without);
+        AUTO(guard_release_at) narc_box *const boxes = guard_allocate(BODIES * sizeof *boxes);
         for (size_t k = 0; k < BODIES; k++)
             rows[k] = (narc_body){random_between(&random, -9, 9),
                                   random_between(&random, -9, 9),
@@ -296,7 +294,7 @@ TEST(holds_fronts_of_chains) {
             if (random_below(&random, 3))
                 rows[k].shape = entries[random_below(&random, count)].shape;
         test_use_isa("scalar");
-        narc_box *const scalar = guard_allocate(BODIES * sizeof *scalar);
+        AUTO(guard_release_at) narc_box *const scalar = guard_allocate(BODIES * sizeof *scalar);
         assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, scalar, NULL), NARC_OK);
         test_use_isa(test_isa());
         assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
@@ -318,11 +316,6 @@ TEST(holds_fronts_of_chains) {
                     fail_msg("side %d of a front: %g too large, of %g", side, excess, extent);
             }
         }
-        narc_destroy_shapes(shapes);
-        guard_release(without);
-        guard_release(boxes);
-        guard_release(scalar);
-        free(t.arcs);
     }
 }
 
@@ -330,7 +323,7 @@ TEST(holds_fronts_of_chains) {
  * store's memory is. */
 TEST(reads_no_further_than_the_store) {
     for (int concave = 0; concave < 2; concave++) {
-        narc_shapes *shapes = NULL;
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
         narc_arc arcs[NARC_MAX_ARCS];
         narc_body rows[32];
         narc_box boxes[32];
@@ -357,7 +350,6 @@ TEST(reads_no_further_than_the_store) {
         narc_bodies bodies;
         narc_view_bodies(rows, 32, &bodies);
         assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
-        narc_destroy_shapes(shapes);
     }
 }
 
@@ -368,13 +360,13 @@ TEST(same_bits_whatever_the_split) {
     enum { MOST = 2200 };
     struct test_random random = test_random_named("splits");
     for (int precision = 0; precision < 2; precision++) {
-        struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
+        AUTO(destroy_scene) struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
         scene.bodies[1].sine = 3;
         test_use_isa("scalar");
-        narc_box *const right = compute(&scene, &(narc_box_options){.margin = 0.01f}, 1);
+        AUTO(guard_release_at) narc_box *const right = compute(&scene, &(narc_box_options){.margin = 0.01f}, 1);
         test_use_isa(test_isa());
         for (size_t count = 1; count <= MOST; count += count < 70 ? 1 : 71) {
-            narc_box *const boxes = guard_allocate(count * sizeof *boxes);
+            AUTO(guard_release_at) narc_box *const boxes = guard_allocate(count * sizeof *boxes);
             const size_t first = random_below(&random, count), rest = count - first;
             narc_workers workers;
             narc_openmp_workers((unsigned)random_below(&random, 5), &workers);
@@ -392,11 +384,8 @@ TEST(same_bits_whatever_the_split) {
             assert_true(is_junk(boxes, first * sizeof *boxes));
             assert_memory_equal(boxes + first, right + first, part * sizeof *boxes);
             assert_true(is_junk(boxes + first + part, (count - first - part) * sizeof *boxes));
-            guard_release(boxes);
         }
         scene.body_count = MOST;
-        guard_release(right);
-        destroy_scene(&scene);
     }
 }
 

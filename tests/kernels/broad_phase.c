@@ -51,10 +51,11 @@ static struct pair_list all_pairs(const narc_box *boxes, size_t count, const nar
 static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
     static const unsigned counts[] = {1, 2, 3, 7};
     struct pair_list expected = all_pairs(boxes, count, filter);
-    narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
+    AUTO(guard_release_at) narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
     for (size_t t = 0; t < sizeof counts / sizeof counts[0]; t++) {
         narc_workers workers;
         narc_openmp_workers(counts[t], &workers);
+        AUTO(guard_release_at)
         uint32_t *a = guard_allocate(expected.count * sizeof *a), *b = guard_allocate(expected.count * sizeof *b);
         size_t found = 12345;
         narc_error error;
@@ -63,10 +64,7 @@ static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t c
         assert_int_equal(found, expected.count);
         assert_memory_equal(a, expected.a, found * sizeof *a);
         assert_memory_equal(b, expected.b, found * sizeof *b);
-        guard_release(a);
-        guard_release(b);
     }
-    guard_release(guarded);
     free_list(&expected);
 }
 
@@ -99,26 +97,24 @@ TEST(finds_all_pairs) {
     struct test_random random = test_random_named("boxes");
     for (size_t round = 0; round < test_trials(5); round++)
         for (enum box_kind kind = 0; kind <= BOXES_MIXED; kind++) {
-            narc_broad_phase *const broad = create_broad_phase(NULL);
+            AUTO(narc_destroy_broad_phase_at) narc_broad_phase *const broad = create_broad_phase(NULL);
             const bool crowded = kind == BOXES_CROWD || kind == BOXES_EQUAL || kind == BOXES_SPECKS;
             for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
                 if (counts[c] > 500 && (crowded || round > 0))
                     continue;
                 if (counts[c] > 2000 && kind != BOXES_EVEN) /* they are checked one by one */
                     continue;
-                narc_box *const boxes = malloc((counts[c] + 1) * sizeof *boxes);
+                AUTO(free_at) narc_box *const boxes = malloc((counts[c] + 1) * sizeof *boxes);
                 for (size_t k = 0; k < counts[c]; k++)
                     boxes[k] = make_box(&random, kind, k, counts[c]);
                 check_pairs(broad, boxes, counts[c], NULL);
-                free(boxes);
             }
-            narc_destroy_broad_phase(broad);
         }
 }
 
 TEST(filters_pairs) {
     struct test_random random = test_random_named("filters");
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
         uint64_t category, mask;
         uint32_t owner, world;
@@ -148,7 +144,6 @@ TEST(filters_pairs) {
         for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
             check_pairs(broad, boxes, 200, &filters[f]);
     }
-    narc_destroy_broad_phase(broad);
 }
 
 /* In many worlds, sparse ones among them, boxes of all sizes and places. */
@@ -156,9 +151,9 @@ TEST(keeps_worlds_apart) {
     static const uint32_t apart[] = {1, 1000, 0x01010101, UINT32_MAX / 40};
     enum { COUNT = 1500 };
     struct test_random random = test_random_named("worlds");
-    narc_broad_phase *broad = create_broad_phase(NULL);
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    uint32_t *const world = malloc(COUNT * sizeof *world);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(free_at) uint32_t *const world = malloc(COUNT * sizeof *world);
     for (enum box_kind kind = 0; kind <= BOXES_MIXED; kind++)
         for (size_t trial = 0; trial < 4; trial++) {
             for (size_t k = 0; k < COUNT; k++) {
@@ -167,9 +162,6 @@ TEST(keeps_worlds_apart) {
             }
             check_pairs(broad, boxes, COUNT, &(narc_pair_filter){.world = NARC_ARRAY(world)});
         }
-    narc_destroy_broad_phase(broad);
-    free(boxes);
-    free(world);
 }
 
 /* ------------------------------------------------------------------------------------------------ growth */
@@ -177,7 +169,7 @@ TEST(keeps_worlds_apart) {
 /* Finds the pairs of boxes in memory that it frees. Checks that it takes no more steps than `for_box` for each box and
  * `for_pair` for each pair. */
 static void check_steps(const char *name, narc_box *boxes, size_t count, double for_box, double for_pair) {
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     size_t found = 0;
     const narc_status status = narc_find_pairs(broad, boxes, count, NULL, NULL, NULL, NULL, 0, 0, &found, NULL);
     const double most = for_box * (double)count + for_pair * (double)found;
@@ -186,7 +178,6 @@ static void check_steps(const char *name, narc_box *boxes, size_t count, double 
            (double)found / (double)count);
     if (!((double)broad->steps <= most))
         fail_msg("%s: %zu boxes with %zu pairs took %.0f steps", name, count, found, (double)broad->steps);
-    narc_destroy_broad_phase(broad);
     free(boxes);
 }
 
@@ -244,12 +235,12 @@ TEST(grows_no_faster_than_boxes_and_pairs) {
 TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
     struct ledger ledger = {0};
-    narc_broad_phase *broad = create_broad_phase(&ledger);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
     narc_workers workers;
     narc_openmp_workers(2, &workers);
     enum { COUNT = 5000, CAPACITY = 100000 };
-    narc_box *boxes = malloc(COUNT * sizeof *boxes);
-    uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b);
+    AUTO(free_at) narc_box *boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(free_at) uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b);
     size_t after_first = 0;
     for (int step = 0; step < 5; step++) {
         for (size_t k = 0; k < COUNT; k++)
@@ -262,26 +253,20 @@ TEST(allocates_nothing_once_it_has_grown) {
             after_first = ledger.allocations;
     }
     assert_int_equal(ledger.allocations, after_first);
-    narc_destroy_broad_phase(broad);
-    free(boxes);
-    free(a);
-    free(b);
 }
 
 /* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
 TEST(takes_memory_for_pairs_alone) {
     enum { COUNT = 4000 };
     struct ledger ledger = {0};
-    narc_broad_phase *broad = create_broad_phase(&ledger);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
     size_t found = 9;
-    narc_box *boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(free_at) narc_box *boxes = malloc(COUNT * sizeof *boxes);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
     assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, NULL, NULL, 0, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
     assert_true(ledger.most < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
-    narc_destroy_broad_phase(broad);
-    free(boxes);
 }
 
 TEST(survives_failing_allocations) {
@@ -291,7 +276,7 @@ TEST(survives_failing_allocations) {
     bool succeeded = false;
     for (size_t left = 0; !succeeded; left++) {
         struct ledger ledger = {.limited = true, .left = left};
-        narc_broad_phase *broad = create_broad_phase(&ledger);
+        AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
         if (broad) {
             size_t found = 77;
             const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, NULL, a, b, 0, 45000, &found, NULL);
@@ -299,7 +284,6 @@ TEST(survives_failing_allocations) {
             assert_true(succeeded || status == NARC_ERROR_MEMORY);
             assert_int_equal(found, succeeded ? 300 * 299 / 2 : 77);
         }
-        narc_destroy_broad_phase(broad);
     }
 }
 
@@ -307,7 +291,7 @@ TEST(survives_failing_allocations) {
 TEST(writes_pairs_with_gaps) {
     enum { COUNT = 60, MOST = COUNT * COUNT / 2 };
     narc_box boxes[COUNT];
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     fill_one_place(boxes, COUNT);
     uint32_t a[MOST], b[MOST], order[MOST];
     struct {
@@ -339,7 +323,6 @@ TEST(writes_pairs_with_gaps) {
     assert_int_equal(narc_copy_pairs(&listed, order, count, chosen, other, 0, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_true(chosen[k] == a[count - 1 - k] && other[k] == b[count - 1 - k]);
-    narc_destroy_broad_phase(broad);
 }
 
 TEST(tells_how_much_room_is_needed) {
@@ -347,7 +330,7 @@ TEST(tells_how_much_room_is_needed) {
     uint32_t a[10] = {7}, b[10] = {7};
     size_t found = 0;
     narc_error error;
-    narc_broad_phase *broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
     fill_one_place(boxes, 100);
     assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 0, 10, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
@@ -355,7 +338,6 @@ TEST(tells_how_much_room_is_needed) {
     assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, 0, &found, NULL),
                      NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
-    narc_destroy_broad_phase(broad);
 }
 
 TEST_MAIN("broad_phase")

@@ -74,6 +74,7 @@ static void destroy_trial(struct trial *t) {
     narc_destroy_shapes(t->store);
     free(t);
 }
+RELEASE_AT(destroy_trial)
 
 static void ask_pairs(struct trial *t) {
     static narc_contact contacts[MOST];
@@ -173,8 +174,9 @@ static void ask_scene(struct trial *t) {
     narc_view_bodies(t->both, 2 * count, &both);
     const narc_step step = {.bodies = &both};
     const narc_step_result *r = NULL;
-    narc_contacts *contacts = NULL;
+    AUTO(narc_destroy_contacts_at) narc_contacts *contacts = NULL;
     size_t broken = 0, skipped = 0;
+    AUTO(narc_destroy_index_at)
     narc_index *const index = index_bodies(t->store, &tried, NULL, boxes), *const mate_index = index_bodies(
                                                                                t->store, &mates, NULL, mate_boxes);
     assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
@@ -222,9 +224,6 @@ static void ask_scene(struct trial *t) {
     assert_int_equal(skipped, broken);
     for (size_t k = 0; k < count; k++)
         t->fine[MOVER][k] = impacts[k].count == NARC_CAST_HIT && impacts[k].body == k;
-    narc_destroy_contacts(contacts);
-    narc_destroy_index(index);
-    narc_destroy_index(mate_index);
 }
 
 static void ask_all(struct trial *t) {
@@ -275,7 +274,7 @@ static narc_body at_place(const struct trial *t, size_t k) {
 
 TEST(rotations_at_the_limit) {
     struct test_random random = test_random_named("rotations at the limit");
-    struct trial *const t = create_trial(test_trials(1200));
+    AUTO(destroy_trial_at) struct trial *const t = create_trial(test_trials(1200));
     t->reach = 2.5;
     t->from = 3 * t->reach;
     for (int round = 0; round < 4; round++) {
@@ -298,14 +297,13 @@ TEST(rotations_at_the_limit) {
                 expect_answer(t, VALIDATE, k, off < NARC_ROTATION_TOLERANCE);
         }
     }
-    destroy_trial(t);
 }
 
 /* One number of a body that is none, or a rotation without a length. */
 TEST(numbers_that_are_none) {
     static const float none[] = {NAN, INFINITY, -INFINITY};
     enum { NUMBERS = 5, WAYS = 3 * NUMBERS + 1 };
-    struct trial *const t = create_trial(4 * WAYS);
+    AUTO(destroy_trial_at) struct trial *const t = create_trial(4 * WAYS);
     t->reach = 2.5;
     t->from = 3 * t->reach;
     for (size_t k = 0; k < t->count; k++) {
@@ -322,7 +320,6 @@ TEST(numbers_that_are_none) {
     }
     ask_all(t);
     assert_int_equal(expect_agreement(t, true), 0);
-    destroy_trial(t);
 }
 
 /* The last scale of a shape that is accepted, from one that is towards one that is not. */
@@ -343,7 +340,7 @@ TEST(sizes_at_the_limits) {
     static const double limits[] = {NARC_MIN_SIZE, NARC_MAX_SIZE};
     struct test_random random = test_random_named("sizes at the limits");
     float last[SHAPES];
-    struct trial *const t = create_trial(test_trials(1200));
+    AUTO(destroy_trial_at) struct trial *const t = create_trial(test_trials(1200));
     for (int large = 0; large < 2; large++) {
         t->reach = 2 * limits[large];
         t->from = 3 * t->reach;
@@ -373,7 +370,6 @@ TEST(sizes_at_the_limits) {
                 expect_answer(t, VALIDATE, k, limits[0] < size && size < limits[1]);
         }
     }
-    destroy_trial(t);
 }
 
 /* Any finite place is one; what is beyond the floats has no box. */
@@ -381,7 +377,7 @@ TEST(places_at_the_limits) {
     static const double places[] = {0,    1e17, 1.5e17, 1e18,    1e20,     1e24, 1e30,           3e38,
                                     1e39, 1e60, 1e300,  DBL_MAX, INFINITY, NAN,  (double)FLT_MAX};
     enum { PLACES = sizeof places / sizeof *places };
-    struct trial *const t = create_trial(4 * (PLACES - 1));
+    AUTO(destroy_trial_at) struct trial *const t = create_trial(4 * (PLACES - 1));
     t->reach = 2;
     for (size_t k = 0; k < t->count; k++) {
         const double place = places[k / 4 + 1] * (k % 2 ? -1 : 1);
@@ -395,11 +391,10 @@ TEST(places_at_the_limits) {
             const double place = fabs(t->tried[k].x) + fabs(t->tried[k].y);
             expect_answer(t, (enum asked)asked, k, asked < BOX ? isfinite(place) : place < (double)FLT_MAX);
         }
-    destroy_trial(t);
 }
 
 TEST(shapes_that_were_removed) {
-    struct trial *const t = create_trial(2 * SHAPES * 8);
+    AUTO(destroy_trial_at) struct trial *const t = create_trial(2 * SHAPES * 8);
     t->reach = 2;
     t->from = 3 * t->reach;
     const uint32_t other = store_shape(t->store, circle_of(0.75));
@@ -411,7 +406,6 @@ TEST(shapes_that_were_removed) {
         assert_int_equal(narc_remove_shape(t->store, shape, NULL), NARC_OK);
     ask_all(t);
     assert_int_equal(expect_agreement(t, false), t->count / 2);
-    destroy_trial(t);
 }
 
 TEST_MAIN("broken")

@@ -21,15 +21,15 @@ struct answer {
 };
 
 static struct answer ask_bodies(const struct shape *a, struct body body_a, const struct shape *b, struct body body_b) {
-    struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
     scene_add_shape(&scene, a);
     scene_add_shape(&scene, b);
     body_b.shape = 1;
     scene_add_body(&scene, body_a);
     scene_add_body(&scene, body_b);
     scene_add_pair(&scene, 0, 1);
-    uint64_t *bits = scene_overlaps(&scene);
-    struct contacts all = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(&scene);
+    AUTO(free_at) struct contacts all = scene_contacts(&scene, INFINITY);
     struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
     struct fractions errors = {0};
     const char *wrong = check_contact(&at_a, &at_b, reference_solve_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
@@ -43,9 +43,6 @@ static struct answer ask_bodies(const struct shape *a, struct body body_a, const
     struct answer answer = {bit_is_set(bits, 0),           all.rows[0].separation,       all.rows[0].normal_x,
                             all.rows[0].normal_y,          all.rows[0].point_x,          all.rows[0].point_y,
                             arc_of_a(all.rows[0].feature), arc_of_b(all.rows[0].feature)};
-    free(all.rows);
-    free(bits);
-    destroy_scene(&scene);
     return answer;
 }
 
@@ -239,7 +236,7 @@ TEST(test_denormals) {
     static const float tiny[] = {0.0f, -0.0f, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MIN / 2, -FLT_MIN};
     struct test_random random = test_random_named("denormals");
     enum { DENORMALS = 200 };
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, DENORMALS, 5000);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, DENORMALS, 5000);
     for (size_t k = 0; k < DENORMALS; k++) {
         struct body *body = &scene.bodies[k];
         *(random_below(&random, 2) ? &body->x : &body->y) = (double)tiny[random_below(&random, 6)];
@@ -248,15 +245,13 @@ TEST(test_denormals) {
             1,       body->shape};
         round_position(body, NARC_FLOAT32);
     }
-    struct contacts all = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) struct contacts all = scene_contacts(&scene, INFINITY);
     for (size_t k = 0; k < scene.pair_count; k++) {
         struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                               b = scene_reference(&scene, scene.pairs[k].b);
         struct fractions errors = {0};
         assert_null(check_contact(&a, &b, reference_solve_gap(&a, &b).gap, &all.rows[k], &errors));
     }
-    free(all.rows);
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ corners */
@@ -318,7 +313,7 @@ TEST(test_corners_within_rounding) {
         const bool apart = k % 4 == 3;
         const struct shape a = make_shape(&random, families[random_below(&random, 5)]),
                            b = make_shape(&random, families[random_below(&random, 5)]);
-        struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
         scene_add_shape(&scene, &a);
         scene_add_shape(&scene, &b);
         double radii[PAIRS];
@@ -330,8 +325,8 @@ TEST(test_corners_within_rounding) {
                           place_corner(&random, &a, at_a, &b, random_below(&random, 9) ? way * cos(angle) : 0,
                                        random_below(&random, 9) ? way * sin(angle) : 0, &radii[pair]));
         }
-        struct contacts contacts = scene_contacts(&scene, INFINITY);
-        struct manifolds manifolds = scene_manifolds(&scene, INFINITY);
+        AUTO(free_at) struct contacts contacts = scene_contacts(&scene, INFINITY);
+        AUTO(free_at) struct manifolds manifolds = scene_manifolds(&scene, INFINITY);
         assert_true(contacts.count == PAIRS && manifolds.count == PAIRS);
         for (size_t pair = 0; pair < PAIRS; pair++) {
             const struct reference_body at_a = scene_reference(&scene, scene.pairs[pair].a),
@@ -360,9 +355,6 @@ TEST(test_corners_within_rounding) {
                 faces++;
             }
         }
-        free(contacts.rows);
-        free(manifolds.rows);
-        destroy_scene(&scene);
     }
     print_message("%zu told of faces, %zu of corners\n", faces, corners);
     assert_true(test_trials(300) < 8 || (faces > 0 && corners > 0));

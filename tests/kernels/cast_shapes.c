@@ -15,6 +15,7 @@
 TEST(test_targets_of_pairs) {
     enum { BODIES = 100, PAIRS = 2000 };
     struct test_random random = test_random_named("targets of pairs");
+    AUTO(destroy_world)
     struct world world = make_world(&random, make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS), BODIES, 0);
     world.shifted = false;
     struct everything e = view_world(&world);
@@ -38,7 +39,6 @@ TEST(test_targets_of_pairs) {
         hits += alone.count == NARC_CAST_HIT && alone.fraction > 0;
     }
     assert_true(hits > PAIRS / 100);
-    destroy_world(&world);
 }
 
 /* Movers that are broken, or whose motion is, hit nothing and are counted. */
@@ -46,12 +46,13 @@ TEST(test_broken_movers) {
     enum { BODIES = 100 };
     static const uint32_t broken[] = {3, 10, 11, 20, 21, 22, 23};
     struct test_random random = test_random_named("broken movers");
+    AUTO(destroy_world)
     struct world world = make_world(&random, make_random_scene(&random, NARC_FLOAT32, BODIES, BODIES), BODIES, 0);
     struct body movers[BODIES];
     narc_box boxes[BODIES];
     narc_impact rows[2][BODIES];
     const struct everything e = view_world(&world);
-    narc_index *const index = index_bodies(e.shapes, &e.bodies, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(e.shapes, &e.bodies, NULL, boxes);
     struct scene moving = world.scene;
     size_t skipped = 0, next = 0;
     moving.bodies = memcpy(movers, world.scene.bodies, sizeof movers);
@@ -77,15 +78,13 @@ TEST(test_broken_movers) {
         next += is_broken;
         assert_memory_equal(&rows[1][k], is_broken ? &none : &rows[0][k], sizeof none);
     }
-    narc_destroy_index(index);
-    destroy_world(&world);
 }
 
 /* ------------------------------------------------------------------------------------------------ known */
 
 /* Casts one pair of boxes, the first of which moves. */
 static narc_impact cast_boxes(struct body a, struct body b, narc_motion motion, const narc_cast_options *options) {
-    narc_shapes *const store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
     store_shape(store, box_of(2, 2, 0));
     store_shape(store, box_of(8, 0.125, 0));
     const narc_body of_a = {a.x, a.y, a.cosine, a.sine, a.scale, a.shape},
@@ -93,7 +92,6 @@ static narc_impact cast_boxes(struct body a, struct body b, narc_motion motion, 
     narc_impact impact;
     narc_error error;
     expect_ok(narc_cast_pair(store, &of_a, &motion, &of_b, NULL, options, &impact, &error), &error);
-    narc_destroy_shapes(store);
     return impact;
 }
 
@@ -124,7 +122,7 @@ TEST(test_circles_that_touch) {
 
 /* A body that turns hits what is as near as the tolerance says: whatever boxes the index has. */
 TEST(test_loose_boxes) {
-    narc_shapes *const store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
     store_shape(store, box_of(1, 1, 0));
     const narc_body body = {0, 0, 1, 0, 1, 0}, mover = {-5, 1.3, 1, 0, 1, 0};
     narc_bodies bodies, movers;
@@ -135,7 +133,7 @@ TEST(test_loose_boxes) {
     const narc_cast_options options = {.tolerance = 0.5f};
     narc_box box;
     narc_impact impact[2];
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_error error;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     expect_ok(narc_compute_boxes(store, &bodies, NULL, &box, &error), &error);
@@ -147,8 +145,6 @@ TEST(test_loose_boxes) {
         assert_int_equal(impact[k].count, NARC_CAST_HIT);
     }
     assert_memory_equal(&impact[0], &impact[1], sizeof impact[0]);
-    narc_destroy_index(index);
-    narc_destroy_shapes(store);
 }
 
 /* A box that stands a little deep in a floor: what it hits when it is let go. */
@@ -167,14 +163,14 @@ TEST(test_movers_that_touch) {
         {-4, 4, 1, NARC_CAST_MISS, 0, 0},
         {4, 0.25f, 1, NARC_CAST_HIT, FLOOR, 0}, /* its corner turns into it */
     };
-    narc_shapes *const store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
     const uint32_t box = store_shape(store, box_of(2, 2, 0)), floor = store_shape(store, box_of(80, 2, 0));
     const narc_body rows[BODIES] = {{0, -2, 1, 0, 1, floor}, {10, 0, 1, 0, 1, box}}, mover = {0, -0.001, 1, 0, 1, box};
     narc_bodies bodies, movers;
     narc_view_bodies(rows, BODIES, &bodies);
     narc_view_bodies(&mover, 1, &movers);
     narc_box boxes[BODIES];
-    narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
     const uint32_t owner[BODIES] = {7, 3}, own = 3;
     const narc_owners owners = {.owner = NARC_ARRAY(owner), .ignored = {&own, 0}};
     const narc_index_query of_wall = {.owners = &owners};
@@ -192,8 +188,6 @@ TEST(test_movers_that_touch) {
             assert_int_equal(hit.body, held ? FLOOR : passes ? 0 : casts[k].body);
             EXPECT(hit.fraction, held || passes ? 0 : casts[k].fraction, 1e-6);
         }
-    narc_destroy_index(index);
-    narc_destroy_shapes(store);
 }
 
 TEST(test_known) {
@@ -250,14 +244,14 @@ TEST(test_known) {
  * themselves stop it at the next one. */
 TEST(a_thing_lets_go_as_one) {
     enum { TILES = 20 };
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     const uint32_t box = store_shape(shapes, box_of(1, 1, 0));
     const float depth = 1e-3f, parting = 1e-4f;
     narc_body tiles[TILES + 1], mover = {0.3, 1 - (double)depth, 1, 0, 1, box};
     uint32_t owner[TILES + 1];
     narc_box boxes[TILES + 1];
     narc_bodies ground, movers;
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_error error;
     narc_impact row;
     for (uint32_t k = 0; k <= TILES; k++) {
@@ -298,8 +292,6 @@ TEST(a_thing_lets_go_as_one) {
     mover.x = 0.3;
     expect_ok(narc_cast_shapes(index, shapes, &ground, &movers, &slides, &things, &lets_go, &row, 1, &error), &error);
     assert_int_equal(row.count, NARC_CAST_HIT);
-    narc_destroy_index(index);
-    narc_destroy_shapes(shapes);
 }
 
 /* A sheet that is a little in each of a crowd of bodies slides under others of the same few things: they let it go as deep as it
@@ -307,13 +299,13 @@ TEST(a_thing_lets_go_as_one) {
 TEST(a_crowd_of_few_things_lets_go) {
     enum { BODIES = 600, HERE = 300, THINGS = 7 };
     struct test_random random = test_random_named("a crowd of few things");
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     const uint32_t box = store_shape(shapes, box_of(1, 1, 0)), sheet = store_shape(shapes, box_of(40, 2, 0));
     narc_body crowd[BODIES], mover = {0, 0, 1, 0, 1, sheet};
     uint32_t owner[BODIES], zero[BODIES] = {0}, number[BODIES];
     narc_box boxes[BODIES];
     narc_bodies bodies, movers;
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_error error;
     narc_impact row, rows[BODIES];
     float target[BODIES], separation[BODIES], deepest[THINGS] = {0};
@@ -358,8 +350,6 @@ TEST(a_crowd_of_few_things_lets_go) {
     assert_int_equal(row.count, NARC_CAST_HIT);
     assert_int_equal(row.body, number[first]);
     assert_true(row.fraction == rows[first].fraction);
-    narc_destroy_index(index);
-    narc_destroy_shapes(shapes);
 }
 
 TEST_MAIN("cast_shapes")

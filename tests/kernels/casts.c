@@ -196,11 +196,10 @@ static void check_row(const struct moving *m, size_t pair, const narc_impact *ro
 
 static void check_moving(const struct moving *m, struct summary *summary) {
     size_t skipped = 9;
-    narc_impact *rows = cast_all(m, &skipped);
+    AUTO(guard_release_at) narc_impact *rows = cast_all(m, &skipped);
     assert_int_equal(skipped, 0);
     for (size_t k = 0; k < m->scene.pair_count; k++)
         check_row(m, k, &rows[k], summary);
-    guard_release(rows);
 }
 
 static void print_summary(const char *name, const struct summary *t) {
@@ -299,11 +298,10 @@ static void check_scenes(const char *name, struct scene (*make)(struct test_rand
     struct test_random random = test_random_named(name);
     struct summary summary = {.at_start = 0};
     for (size_t k = 0; k < test_trials(trials); k++) {
-        struct moving m = set_in_motion(&random, make(&random, (narc_precision)(k % 2)), turning);
+        AUTO(destroy_moving) struct moving m = set_in_motion(&random, make(&random, (narc_precision)(k % 2)), turning);
         m.target =
             deepest > 0 ? (float)-random_log_between(&random, 0.005, deepest) : targets[random_below(&random, 5)];
         check_moving(&m, &summary);
-        destroy_moving(&m);
     }
     print_summary(name, &summary);
     assert_true(test_trials(trials) < 5 || (summary.outcomes[0] > 0 && summary.outcomes[1] > 0));
@@ -410,15 +408,13 @@ static void check_letting_go(const char *name, double turning, struct let_go *ou
     *out = (struct let_go){0};
     for (size_t k = 0; k < test_trials(turning > 0 ? 20 : 40); k++) {
         struct scene scene = k % 3 ? make_placed(&random, (narc_precision)(k % 2)) : make_deep(&random, NARC_FLOAT64);
-        struct moving m = let_move(&random, scene, turning);
+        AUTO(destroy_moving) struct moving m = let_move(&random, scene, turning);
         m.target = targets[random_below(&random, 4)];
         m.tolerance = 0.001f;
         m.parting = (float)random_log_between(&random, 1e-3, 0.1);
-        narc_impact *const rows = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++)
             check_let_go(&m, pair, &rows[pair], &summary, out);
-        guard_release(rows);
-        destroy_moving(&m);
     }
     print_message("%s: %zu let go, %zu came deeper, %zu hit again, %zu unseen\n", name, out->missed, out->deeper,
                   out->again, out->lost);
@@ -444,8 +440,9 @@ TEST(test_letting_go_turning) {
 TEST(test_quarter_turn) {
     struct test_random random = test_random_named("quarter turn");
     for (size_t k = 0; k < test_trials(60); k++) {
+        AUTO(destroy_moving)
         struct moving m = set_in_motion(&random, make_placed(&random, NARC_FLOAT64), k % 2 ? 3 : 0);
-        narc_impact *const rows = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
         for (size_t b = 0; b < m.scene.body_count; b++) {
             struct body *const body = &m.scene.bodies[b];
             const struct body was = *body;
@@ -456,7 +453,7 @@ TEST(test_quarter_turn) {
             body->sine = was.cosine;
             m.motion[b] = (narc_motion){-motion.y, motion.x, motion.angle};
         }
-        narc_impact *const turned = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const turned = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
             const narc_impact *const a = &rows[pair], *const b = &turned[pair];
             assert_true(a->count == b->count && a->feature == b->feature && a->body == b->body);
@@ -464,9 +461,6 @@ TEST(test_quarter_turn) {
             assert_true(a->normal_x == b->normal_y && a->normal_y == -b->normal_x);
             assert_true(a->point_x == b->point_y && a->point_y == -b->point_x);
         }
-        guard_release(turned);
-        guard_release(rows);
-        destroy_moving(&m);
     }
 }
 
@@ -485,17 +479,15 @@ TEST(test_thin_rods_that_turn) {
         scene_add_shape(&scene, &rod);
         scene_add_two(&scene, (struct body){.cosine = 1, .scale = 1},
                       (struct body){.y = thick[kind] + 0.03, .cosine = 1, .scale = 1});
-        struct moving m = {.scene = scene, .motion = calloc(2, sizeof *m.motion)};
+        AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2, sizeof *m.motion)};
         struct summary summary = {.at_start = 0};
         for (double turn = 1; turn > 1e-12; turn /= 3) {
             m.motion[1].angle = (float)turn;
-            narc_impact *const row = cast_all(&m, NULL);
+            AUTO(guard_release_at) narc_impact *const row = cast_all(&m, NULL);
             check_row(&m, 0, row, &summary);
             assert_int_equal(row->count, sin(turn) * 50 > 0.03 ? NARC_CAST_HIT : NARC_CAST_MISS);
             assert_true(row->separation <= 1e-5f + (float)thick[kind] / 128);
-            guard_release(row);
         }
-        destroy_moving(&m);
     }
 }
 
@@ -522,7 +514,7 @@ TEST(test_named_tolerances) {
             body.arcs[0].center_x = 0.05; /* else it is as if it did not turn */
         scene_add_shape(&scene, &wall);
         scene_add_shape(&scene, &body);
-        struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+        AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
         m.target = -(float)random_log_between(&random, 1e-4, 0.01);
         m.tolerance = (float)random_log_between(&random, 1e-6, 1e-4);
         for (size_t pair = 0; pair < PAIRS; pair++) {
@@ -542,15 +534,13 @@ TEST(test_named_tolerances) {
                 (narc_motion){(float)random_between(&random, -1, 1), (float)random_between(&random, -1, 1),
                               (float)random_between(&random, -1.5, 1.5)};
         }
-        narc_impact *const rows = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
         for (size_t pair = 0; pair < PAIRS; pair++) {
             check_row(&m, pair, &rows[pair], &summary);
             const double most = (double)m.target + (double)m.tolerance + 1e-6;
             if (rows[pair].count == NARC_CAST_HIT && (double)rows[pair].separation > most)
                 fail_cast(&m, pair, &rows[pair], "not so near", (double)rows[pair].separation, most);
         }
-        guard_release(rows);
-        destroy_moving(&m);
     }
     print_summary("named tolerances", &summary);
     assert_true(summary.outcomes[NARC_CAST_HIT] > 0 && summary.outcomes[NARC_CAST_UNFINISHED] == 0);
@@ -561,12 +551,12 @@ TEST(test_small_turns) {
     struct test_random random = test_random_named("small turns");
     size_t hits = 0, others = 0;
     for (size_t k = 0; k < test_trials(40); k++) {
-        struct moving m = set_in_motion(&random, make_placed(&random, (narc_precision)(k % 2)), 0);
+        AUTO(destroy_moving) struct moving m = set_in_motion(&random, make_placed(&random, (narc_precision)(k % 2)), 0);
         struct summary summary = {.at_start = 0};
-        narc_impact *const straight = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const straight = cast_all(&m, NULL);
         for (size_t b = 0; b < m.scene.body_count; b++)
             m.motion[b].angle = (float)(random_between(&random, -1, 1) * random_log_between(&random, 1e-30, 1e-8));
-        narc_impact *const turning = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const turning = cast_all(&m, NULL);
         for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
             const narc_impact *const a = &straight[pair], *const b = &turning[pair];
             struct way w = find_way(&m, pair);
@@ -581,9 +571,6 @@ TEST(test_small_turns) {
                             2 * bound);
             hits += a->count == NARC_CAST_HIT && b->count == NARC_CAST_HIT && b->fraction > 0;
         }
-        guard_release(straight);
-        guard_release(turning);
-        destroy_moving(&m);
     }
     print_message("%zu hits, %zu that only one of both makes\n", hits, others);
     assert_true(hits > 0 && 20 * others <= hits);
@@ -599,7 +586,7 @@ TEST(test_along_tiles) {
     struct summary summary = {.at_start = 0};
     scene_add_shape(&scene, &tile);
     scene_add_shape(&scene, &box);
-    struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+    AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
     double angle[PAIRS];
     for (size_t pair = 0; pair < PAIRS; pair++) {
         angle[pair] = pair % 4 ? random_between(&random, -4, 4) : 0;
@@ -614,7 +601,7 @@ TEST(test_along_tiles) {
         m.motion[2 * pair] = (narc_motion){(float)(c * way), (float)(s * way), 0};
         scene_add_two(&m.scene, on, next);
     }
-    narc_impact *const rows = cast_all(&m, NULL);
+    AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         const double c = cos(angle[pair]), s = sin(angle[pair]);
         const double n_x = (double)rows[pair].normal_x, n_y = (double)rows[pair].normal_y;
@@ -623,8 +610,6 @@ TEST(test_along_tiles) {
     }
     print_summary("along tiles", &summary);
     assert_true(summary.outcomes[NARC_CAST_HIT] > PAIRS / 3);
-    guard_release(rows);
-    destroy_moving(&m);
 }
 
 /* Boxes of 2 by 1 on a lattice, one of them by a quarter turn, whose times are exact: also where they meet at the very end,
@@ -635,7 +620,7 @@ TEST(test_boxes_on_a_lattice) {
     struct test_random random = test_random_named("boxes on a lattice");
     struct scene scene = create_scene(NARC_FLOAT64, 1, 2 * PAIRS, PAIRS);
     const struct shape box = box_of(2, 1, 0);
-    struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+    AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
     size_t last = 0, along = 0;
     scene_add_shape(&m.scene, &box);
     for (size_t pair = 0; pair < PAIRS; pair++) {
@@ -647,7 +632,7 @@ TEST(test_boxes_on_a_lattice) {
         m.motion[2 * pair + 1] = (narc_motion){steps[random_below(&random, 9)], steps[random_below(&random, 9)], 0};
         scene_add_two(&m.scene, a, b);
     }
-    narc_impact *const rows = cast_all(&m, NULL);
+    AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         const struct body *const b = &m.scene.bodies[2 * pair + 1];
         const narc_motion *const motion = &m.motion[2 * pair + 1];
@@ -667,8 +652,6 @@ TEST(test_boxes_on_a_lattice) {
         along += from <= to && (from == to || fabs(way[0]) == 1.5 || fabs(way[1]) == 1.5);
     }
     assert_true(last > 0 && along > 0);
-    guard_release(rows);
-    destroy_moving(&m);
 }
 
 /* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
@@ -688,26 +671,23 @@ TEST(test_circles_that_turn) {
         scene_add_shape(&scene, k % 4 < 2 ? &other : &circle);
         for (int pair = 0; pair < PAIRS; pair++)
             scene_add_placed(&random, &scene, (enum placement)random_below(&random, PLACE_COUNT), 0, 1);
-        struct moving m = set_in_motion(&random, scene, k % 2 ? 2 : 0);
+        AUTO(destroy_moving) struct moving m = set_in_motion(&random, scene, k % 2 ? 2 : 0);
         const int of = k % 4 < 2 ? 0 : 1;
         for (size_t pair = 0; pair < scene.pair_count; pair++)
             m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = (float)random_between(&random, -7, 7);
-        narc_impact *const turning = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const turning = cast_all(&m, NULL);
         struct summary summary = {.at_start = 0};
         for (size_t pair = 0; pair < scene.pair_count; pair++)
             check_row(&m, pair, &turning[pair], &summary);
         for (size_t pair = 0; pair < scene.pair_count; pair++)
             m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = 0;
-        narc_impact *const straight = cast_all(&m, NULL);
+        AUTO(guard_release_at) narc_impact *const straight = cast_all(&m, NULL);
         for (size_t pair = 0; pair < scene.pair_count; pair++) {
             const bool same = memcmp(&turning[pair], &straight[pair], sizeof *straight) == 0;
             hits += same && straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
             beside += !same;
             assert_true(same || k % 5 == 4);
         }
-        guard_release(turning);
-        guard_release(straight);
-        destroy_moving(&m);
     }
     print_message("%zu hits of circles about their positions, %zu others of those beside\n", hits, beside);
     assert_true(test_trials(60) < 10 || (hits > 0 && beside > 0));
@@ -720,15 +700,15 @@ TEST(test_sets_of_bodies) {
     for (size_t k = 0; k < 2 * test_trials(4); k++) {
         struct scene scene = make_placed_scene(&random, (narc_precision)(k % 2), random_family(&random),
                                                random_family(&random), PLACE_COUNT * 3);
-        struct moving m = set_in_motion(&random, scene, k % 3 ? 3 : 0);
+        AUTO(destroy_moving) struct moving m = set_in_motion(&random, scene, k % 3 ? 3 : 0);
         const size_t count = m.scene.pair_count, body_count = m.scene.body_count;
         struct narrow {
             float x, y, cosine, sine;
         } *const rows = guard_allocate(body_count * sizeof *rows);
-        narc_body *const wide = guard_allocate(body_count * sizeof *wide);
-        float *const shift = guard_allocate(count * sizeof *shift);
-        narc_impact *const expected = guard_allocate(count * sizeof *expected);
-        narc_impact *const found = guard_allocate(count * sizeof *found);
+        AUTO(guard_release_at) narc_body *const wide = guard_allocate(body_count * sizeof *wide);
+        AUTO(guard_release_at) float *const shift = guard_allocate(count * sizeof *shift);
+        AUTO(guard_release_at) narc_impact *const expected = guard_allocate(count * sizeof *expected);
+        AUTO(guard_release_at) narc_impact *const found = guard_allocate(count * sizeof *found);
         for (uint32_t b = 0; b < body_count; b++) {
             const struct body *const body = &m.scene.bodies[b];
             wide[b] = scene_body(&m.scene, b);
@@ -760,12 +740,7 @@ TEST(test_sets_of_bodies) {
             if (way % 9)
                 assert_memory_equal(found, expected, count * sizeof *found);
         }
-        guard_release(found);
-        guard_release(expected);
-        guard_release(shift);
-        guard_release(wide);
         guard_release(rows);
-        destroy_moving(&m);
     }
 }
 

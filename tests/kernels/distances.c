@@ -196,8 +196,8 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
     struct fractions worst[ALL_FAMILIES + POINT_PLACES] = {{0}};
     size_t wrong_count = 0, count = POINT_PLACES * test_trials(rounds);
     for (int kind = 0; kind < ALL_FAMILIES; kind++) {
-        struct point_scene scene = make_point_scene(&random, precision, kind, count);
-        narc_distance *rows = find_distances(&scene);
+        AUTO(destroy_point_scene) struct point_scene scene = make_point_scene(&random, precision, kind, count);
+        AUTO(free_at) narc_distance *rows = find_distances(&scene);
         for (size_t k = 0; k < count; k++) {
             const struct reference_body body = scene_reference(&scene.scene, scene.points[k].body);
             struct fractions errors = {0};
@@ -220,8 +220,6 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
                 print_pair(&body, &body);
             }
         }
-        free(rows);
-        destroy_point_scene(&scene);
     }
     printf("  %-11s %12s %7s %7s   (largest errors, as fractions of the bound)\n", "", "separation", "normal", "place");
     for (int k = 0; k < ALL_FAMILIES + POINT_PLACES; k++)
@@ -245,6 +243,7 @@ TEST(test_short_arcs) {
     const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, PI}, {0, 0, 1, PI, 2 * PI}}, 3};
     struct test_random random = test_random_named("points, short arcs");
     const size_t count = test_trials(1000);
+    AUTO(destroy_point_scene)
     struct point_scene scene = {create_scene(NARC_FLOAT64, 1, count, 0), calloc(count, sizeof *scene.points), count};
     assert_non_null(scene.points);
     scene_add_shape(&scene.scene, &shape);
@@ -255,7 +254,7 @@ TEST(test_short_arcs) {
         const uint32_t index = scene_add_body(&scene.scene, body);
         scene.points[k] = (struct asked_point){.x = c * x - s * y, .y = s * x + c * y, .body = index};
     }
-    narc_distance *rows = find_distances(&scene);
+    AUTO(free_at) narc_distance *rows = find_distances(&scene);
     for (size_t k = 0; k < count; k++) {
         const struct reference_body body = scene_reference(&scene.scene, scene.points[k].body);
         struct fractions errors = {0};
@@ -263,8 +262,6 @@ TEST(test_short_arcs) {
         if (wrong)
             fail_msg("%s: %g", wrong, errors.point);
     }
-    free(rows);
-    destroy_point_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ the rest */
@@ -272,7 +269,7 @@ TEST(test_short_arcs) {
 /* What has no answer: the numbers of broken bodies, and of points. */
 TEST(test_no_answer) {
     static const float broken[] = {NAN, INFINITY, -INFINITY, 2, 0};
-    struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 0);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 0);
     const struct shape box = box_of(1, 1, 0);
     scene_add_shape(&scene, &box);
     const struct body fine = turned_body(0.3, 1);
@@ -293,7 +290,7 @@ TEST(test_no_answer) {
     const float x[] = {3}, y[] = {0.1f};
     const narc_points points = {.count = count, .x = {x, 0, NARC_FLOAT32}, .y = {y, 0, NARC_FLOAT32}};
     const narc_bodies bodies = scene_bodies(&scene);
-    narc_distance *rows = make_junk(count * sizeof *rows);
+    AUTO(free_at) narc_distance *rows = make_junk(count * sizeof *rows);
     assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NULL, NULL, rows, NULL), NARC_OK);
     size_t answers = 0;
     for (size_t k = 0; k < count; k++) {
@@ -319,19 +316,17 @@ TEST(test_no_answer) {
     assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NULL, NULL, rows, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_int_equal(rows[k].count, 0);
-    free(rows);
-    destroy_scene(&scene);
 }
 
 /* The example of narc_scene.h: what is near to a body. */
 static size_t count_near_a_body(struct test_random *random) {
-    struct scene scene = make_random_scene(random, NARC_FLOAT32, 60, 1);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(random, NARC_FLOAT32, 60, 1);
     const narc_bodies bodies = scene_bodies(&scene);
     narc_box box[60];
     narc_pairs pairs;
     narc_contact contact[60], *all = make_junk(60 * sizeof *all);
     size_t found = 0, expected = 0;
-    narc_index *const index = index_bodies(scene.store, &bodies, NULL, box);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene.store, &bodies, NULL, box);
     const narc_box_options around = {.first = 7, .count = 1, .margin = 0.5f};
     const uint32_t seven = 7;
     const narc_index_query others = {.ignored = {&seven, 0}};
@@ -355,9 +350,7 @@ static size_t count_near_a_body(struct test_random *random) {
         expected++;
     }
     assert_int_equal(found, expected);
-    narc_destroy_index(index);
     free(all);
-    destroy_scene(&scene);
     return found;
 }
 
@@ -476,9 +469,10 @@ TEST(test_depth_of_things) {
     size_t within = 0, deeper = 0, corners = 0;
     for (size_t trial = 0; trial < test_trials(24); trial++) {
         uint32_t owner[PARTS];
-        struct scene scene = make_thing(&random, trial, owner);
+        AUTO(destroy_scene) struct scene scene = make_thing(&random, trial, owner);
         const narc_bodies bodies = scene_bodies(&scene);
         narc_box boxes[PARTS];
+        AUTO(narc_destroy_index_at)
         narc_index *const index = index_bodies(scene.store, &bodies, &(narc_index_options){.fast = trial % 2}, boxes);
         double x[POINTS], y[POINTS];
         for (size_t k = 0; k < POINTS; k++) {
@@ -519,14 +513,12 @@ TEST(test_depth_of_things) {
             corners += row->radius == 0;
         }
         narc_distance others[POINTS][PARTS]; /* through another tree */
+        AUTO(narc_destroy_index_at)
         narc_index *const other =
             index_bodies(scene.store, &bodies, &(narc_index_options){.fast = trial % 2 == 0}, boxes);
         expect_ok(narc_find_nearest(other, scene.store, &bodies, &points, &options, others[0], POINTS * PARTS, &error),
                   &error);
         assert_memory_equal(rows, others, sizeof rows);
-        narc_destroy_index(other);
-        narc_destroy_index(index);
-        destroy_scene(&scene);
     }
     print_message("%zu points within, %zu of them deeper than in a part, %zu nearest to where two parts meet\n", within,
                   deeper, corners);
@@ -538,7 +530,7 @@ TEST(test_ties_of_things) {
     enum { DISCS = 48, TREES = 2 };
     struct test_random random = test_random_named("points, ties");
     for (size_t trial = 0; trial < test_trials(100); trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 2, DISCS, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2, DISCS, 1);
         const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1},
                            wedge = {{{0.6, 0, 0, -1.2, 1.2},
                                      {-0.6, 1.2 / tan(1.2), 0, 1.2, PI},
@@ -562,13 +554,12 @@ TEST(test_ties_of_things) {
         narc_box boxes[DISCS];
         const narc_points points = {.count = DISCS, .x = bodies.x, .y = bodies.y};
         for (uint32_t tree = 0; tree < TREES; tree++) {
+            AUTO(narc_destroy_index_at)
             narc_index *const index = index_bodies(scene.store, &bodies, &(narc_index_options){.fast = tree}, boxes);
             assert_int_equal(narc_find_nearest(index, scene.store, &bodies, &points, &options, rows[tree], DISCS, NULL),
                              NARC_OK);
-            narc_destroy_index(index);
         }
         assert_memory_equal(rows[0], rows[1], sizeof rows[0]);
-        destroy_scene(&scene);
     }
 }
 
@@ -579,7 +570,7 @@ TEST(test_outlines_of_things) {
     struct test_random random = test_random_named("points, outlines");
     size_t within = 0;
     for (size_t trial = 0; trial < test_trials(TRIALS); trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 2, TWO, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2, TWO, 1);
         const struct shape disc = {{{0, 0, 0.5, 0, 2 * PI}}, 1}, box = box_of(1, 0.8, 0);
         scene_add_shape(&scene, &disc);
         scene_add_shape(&scene, &box);
@@ -611,15 +602,13 @@ TEST(test_outlines_of_things) {
             .count = count, .x = {x, sizeof *x, NARC_FLOAT64}, .y = {y, sizeof *y, NARC_FLOAT64}};
         narc_box boxes[TWO];
         narc_distance rows[POINTS];
-        narc_index *const index = index_bodies(scene.store, &bodies, NULL, boxes);
+        AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene.store, &bodies, NULL, boxes);
         assert_int_equal(narc_find_nearest(index, scene.store, &bodies, &points, &options, rows, POINTS, NULL),
                          NARC_OK);
         for (size_t k = 0; k < count; k++) {
             assert_true(fabsf(rows[k].separation) < 1e-5f);
             within += rows[k].separation < 0;
         }
-        narc_destroy_index(index);
-        destroy_scene(&scene);
     }
     assert_true(within > 0);
 }

@@ -33,9 +33,8 @@ static struct answers check_bits(const struct everything *e, const char *how) {
     struct answers right = ask_everything(e, NULL);
     test_use_isa(test_isa());
     for (int way = 0; way < 2; way++) {
-        struct answers found = ask_everything(e, way ? &openmp : &backwards);
+        AUTO(destroy_answers) struct answers found = ask_everything(e, way ? &openmp : &backwards);
         expect_same_answers(&right, &found, 0, how);
-        destroy_answers(&found);
     }
     return right;
 }
@@ -61,10 +60,9 @@ TEST(same_bits_of_everything_there_is) {
         struct test_random random = test_random_named(name);
         struct corpus corpus = make_corpus(name, (narc_precision)precision, 0.5, false);
         const size_t indexed = corpus.scene.body_count < INDEXED ? corpus.scene.body_count : INDEXED;
-        struct world world = make_world(&random, corpus.scene, indexed, RAYS);
+        AUTO(destroy_world) struct world world = make_world(&random, corpus.scene, indexed, RAYS);
         check_moves(&random, &world, indexed, name);
         free(corpus.pairs);
-        destroy_world(&world);
     }
 }
 
@@ -78,9 +76,8 @@ TEST(same_bits_of_a_crowd) {
             scene.bodies[k].y *= 9;
             round_position(&scene.bodies[k], scene.precision);
         }
-        struct world world = make_world(&random, scene, BODIES, RAYS);
+        AUTO(destroy_world) struct world world = make_world(&random, scene, BODIES, RAYS);
         check_moves(&random, &world, BODIES, "crowd");
-        destroy_world(&world);
     }
 }
 
@@ -89,11 +86,12 @@ TEST(each_by_itself) {
     enum { COUNT = 60 };
     struct test_random random = test_random_named("each by itself");
     for (size_t round = 0; round < test_trials(4); round++) {
+        AUTO(destroy_world)
         struct world world =
             make_world(&random, make_random_scene(&random, (narc_precision)(round % 2), COUNT, COUNT), COUNT, COUNT);
         struct everything e = view_world(&world);
         e.movers = 0;
-        struct answers all = ask_everything(&e, NULL);
+        AUTO(destroy_answers) struct answers all = ask_everything(&e, NULL);
         for (size_t k = 0; k < COUNT; k++) {
             struct everything one = e;
             one.pairs.count = one.points.count = one.rays.count = 1;
@@ -106,12 +104,9 @@ TEST(each_by_itself) {
                 one.pairs.shift_x.base = one.pairs.shift_y.base = world.shift + k;
                 one.query.margins.base = world.margins + k;
             }
-            struct answers alone = ask_everything(&one, NULL);
+            AUTO(destroy_answers) struct answers alone = ask_everything(&one, NULL);
             expect_same_row(&all, k, &alone);
-            destroy_answers(&alone);
         }
-        destroy_answers(&all);
-        destroy_world(&world);
     }
 }
 
@@ -139,12 +134,12 @@ TEST(reads_nothing_but_what_it_is_given) {
             for (size_t count = 1; count <= 44; count += count < 10 ? 1 : 7) {
                 struct scene scene = make_random_scene(&random, (narc_precision)precision, count, count);
                 suit_layout(&scene, layout);
-                struct world world = make_world(&random, scene, count, count);
+                AUTO(destroy_world) struct world world = make_world(&random, scene, count, count);
                 struct everything e = view_world(&world);
-                struct answers right = ask_everything(&e, NULL);
-                struct columns columns = create_columns(&scene, layout, 0, count);
+                AUTO(destroy_answers) struct answers right = ask_everything(&e, NULL);
+                AUTO(destroy_columns) struct columns columns = create_columns(&scene, layout, 0, count);
                 const bool backwards = layout == LAYOUT_BACKWARDS;
-                narc_shapes *const store = guard_store(&scene);
+                AUTO(narc_destroy_shapes_at) narc_shapes *const store = guard_store(&scene);
                 e.shapes = store;
                 e.bodies = columns.bodies;
                 e.pairs = columns.pairs;
@@ -164,13 +159,8 @@ TEST(reads_nothing_but_what_it_is_given) {
                     COPY(&columns, e.pairs.shift_y, count, float, backwards);
                     COPY(&columns, e.query.margins, count, float, backwards);
                 }
-                struct answers found = ask_everything(&e, NULL);
+                AUTO(destroy_answers) struct answers found = ask_everything(&e, NULL);
                 expect_same_answers(&right, &found, 0, "another layout");
-                destroy_answers(&found);
-                destroy_answers(&right);
-                narc_destroy_shapes(store);
-                destroy_columns(&columns);
-                destroy_world(&world);
             }
 }
 
@@ -189,6 +179,7 @@ TEST(answers_the_same_elsewhere) {
     const double grid = 0x1p-10;
     struct test_random random = test_random_named("elsewhere");
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
+        AUTO(destroy_world)
         struct world world =
             make_world(&random, make_random_scene(&random, moves[m].before, COUNT, COUNT), COUNT, RAYS);
         struct answers answers[2];
@@ -214,7 +205,6 @@ TEST(answers_the_same_elsewhere) {
                             "elsewhere");
         destroy_answers(&answers[0]);
         destroy_answers(&answers[1]);
-        destroy_world(&world);
     }
 }
 
@@ -226,7 +216,7 @@ static size_t keep_list(struct scene *scene, const struct body *at_home, size_t 
     const narc_bodies bodies = scene_bodies(scene);
     const narc_step moves = {.bodies = &bodies, .margin = 0.125f, .skin = 0.25f};
     const narc_step_result *r = NULL;
-    narc_contacts *contacts = NULL;
+    AUTO(narc_destroy_contacts_at) narc_contacts *contacts = NULL;
     size_t count = 0;
     assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
     for (int step = 0; step < STEPS; step++) {
@@ -238,7 +228,6 @@ static size_t keep_list(struct scene *scene, const struct body *at_home, size_t 
     for (size_t k = 0; k < r->count; k++)
         if (r->pairs.b.base[r->order[k]] < near)
             out[count++] = (struct pair){r->pairs.a.base[r->order[k]], r->pairs.b.base[r->order[k]]};
-    narc_destroy_contacts(contacts);
     return count;
 }
 
@@ -255,7 +244,7 @@ TEST(far_bodies_take_nothing_from_others) {
         }
         for (size_t k = 0; k < PAIRS; k++)
             scene.pairs[k] = (struct pair){scene.pairs[k].a % NEAR, scene.pairs[k].b % NEAR};
-        struct world world = make_world(&random, scene, NEAR, RAYS);
+        AUTO(destroy_world) struct world world = make_world(&random, scene, NEAR, RAYS);
         struct body at_home[ALL];
         memcpy(at_home, scene.bodies, sizeof at_home);
         for (size_t k = NEAR; k < ALL; k++)
@@ -274,7 +263,6 @@ TEST(far_bodies_take_nothing_from_others) {
         assert_int_equal(keep_list(&world.scene, at_home, NEAR, kept[1]), count);
         assert_memory_equal(kept[0], kept[1], count * sizeof *kept[0]);
         assert_true(count > 0);
-        destroy_world(&world);
     }
 }
 
@@ -301,6 +289,7 @@ TEST(survives_garbage) {
     enum { COUNT = 200, PAIRS = 1000, RAYS = 200 };
     struct test_random random = test_random_named("garbage");
     for (size_t round = 0; round < test_trials(16); round++) {
+        AUTO(destroy_world)
         struct world world =
             make_world(&random, make_random_scene(&random, (narc_precision)(round % 2), COUNT, PAIRS), COUNT, RAYS);
         narc_box boxes[COUNT];
@@ -331,10 +320,8 @@ TEST(survives_garbage) {
         e.query.margin = INFINITY;
         e.query.margins.base = NULL;
         e.boxes = round % 4 < 2 ? boxes : NULL; /* an index of any boxes at all */
-        struct answers right = check_bits(&e, "garbage");
+        AUTO(destroy_answers) struct answers right = check_bits(&e, "garbage");
         expect_sane_answers(&e, &right);
-        destroy_answers(&right);
-        destroy_world(&world);
     }
 }
 

@@ -147,7 +147,7 @@ TEST(a_large_polygon_is_a_plane) {
         const double size = sizes[k % 4], angle = k % 8 < 4 ? 0 : random_between(&random, -PI, PI);
         const narc_point corners[] = {{size, 0}, {-size, 0}, {-size, -size}, {size, -size}};
         struct shape plane = {.count = 0};
-        narc_shapes *const shapes = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
         narc_error error;
         expect_ok(narc_build_polygon(corners, 4, 0, plane.arcs, &plane.count, &error), &error);
         const narc_body ground = {0, 0, (float)cos(angle), (float)sin(angle), 1, store_shape(shapes, plane)};
@@ -165,16 +165,15 @@ TEST(a_large_polygon_is_a_plane) {
         for (int i = 0; i < 2; i++)
             assert_true(fabs((double)row.point[i].separation - gap) <= bound);
         assert_true(fabs((double)row.normal_x + s) <= 1e-6 && fabs((double)row.normal_y - c) <= 1e-6);
-        narc_destroy_shapes(shapes);
     }
 }
 
 /* An origin that is none is refused, and nothing is written. */
 TEST(origins_are_finite) {
     const narc_point bad[] = {{NAN, 0}, {0, INFINITY}};
-    narc_shapes *const shapes = empty_store();
-    narc_contacts *contacts;
-    narc_index *index;
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_contacts_at) narc_contacts *contacts;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_error error;
     const narc_bodies none = {.count = 0};
     const narc_step_result *r = NULL;
@@ -191,9 +190,6 @@ TEST(origins_are_finite) {
         assert_non_null(strstr(error.message, "step.origin"));
         assert_null(r);
     }
-    narc_destroy_contacts(contacts);
-    narc_destroy_index(index);
-    narc_destroy_shapes(shapes);
 }
 
 TEST_MAIN("far")

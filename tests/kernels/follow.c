@@ -128,7 +128,7 @@ static narc_status ask(const narc_shapes *shapes, const narc_bodies *bodies, con
 static void check_frame(const struct world *world, const struct question *q, narc_entry *entries, narc_entry_ends *ends,
                         struct counts *counts) {
     const size_t size = q->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact), stride = size + q->more;
-    struct columns columns = create_columns(&world->scene, q->layout, 0, PAIRS);
+    AUTO(destroy_columns) struct columns columns = create_columns(&world->scene, q->layout, 0, PAIRS);
     const narc_shapes *const shapes = world->scene.store;
     narc_pairs *const pairs = &columns.pairs;
     if (q->shifted) {
@@ -149,7 +149,7 @@ static void check_frame(const struct world *world, const struct question *q, nar
     }
     narc_error error;
     const size_t room = (PAIRS - 1) * stride + size;
-    char *const right = guard_allocate(room), *const rows = guard_allocate(room);
+    AUTO(guard_release_at) char *const right = guard_allocate(room), *const rows = guard_allocate(room);
     test_use_isa("scalar");
     expect_ok(ask(shapes, &columns.bodies, pairs, &query, q->manifolds, right, &found, &error), &error);
     test_use_isa(test_isa());
@@ -196,9 +196,6 @@ static void check_frame(const struct world *world, const struct question *q, nar
     }
     assert_int_equal(next, count);
     narc_make_entries(&batch, 0, count, left, rows, (ptrdiff_t)stride, entries, ends);
-    guard_release(right);
-    guard_release(rows);
-    destroy_columns(&columns);
 }
 
 static void check_world(struct world *world, struct test_random *random, struct question q, double step,
@@ -353,9 +350,9 @@ TEST(test_made_up_rows) {
 static void keep_rows(const narc_kernel_table *kernels, const narc_batch *batch, const narc_rows *rows,
                       narc_kept_row *kept) {
     const size_t count = batch->count, size = batch->row_size;
-    uint32_t *const item = guard_allocate((count + 1) * sizeof *item);
-    narc_kept_row *const others = guard_allocate((count + 1) * sizeof *others);
-    char *const copies = guard_allocate((count + 1) * size);
+    AUTO(guard_release_at) uint32_t *const item = guard_allocate((count + 1) * sizeof *item);
+    AUTO(guard_release_at) narc_kept_row *const others = guard_allocate((count + 1) * sizeof *others);
+    AUTO(guard_release_at) char *const copies = guard_allocate((count + 1) * size);
     const narc_rows from = {.base = copies, .stride = (ptrdiff_t)size};
     for (size_t first = 0, part; first < count; first += part) {
         part = first == 0 && count > 11 ? 11 : count - first;
@@ -368,9 +365,6 @@ static void keep_rows(const narc_kernel_table *kernels, const narc_batch *batch,
     kernels->keep(batch, 0, count, item, &from, others);
     for (size_t i = 0; i < count; i++)
         assert_memory_equal(&others[item[i]], &kept[narc_pair_at(batch, i)], sizeof *kept);
-    guard_release(item);
-    guard_release(others);
-    guard_release(copies);
 }
 
 /* Lets rows follow their bodies, in any split; returns how many do not. */
@@ -395,7 +389,9 @@ TEST(test_rows_are_kept) {
         const size_t size = q.manifolds ? sizeof(narc_manifold) : sizeof(narc_contact), stride = size + q.more;
         make_world(&world, &random, random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32, SMOOTH_AND_OTHERS, 1,
                    random_below(&random, 2), 0);
+        AUTO(guard_release_at)
         char *const rows = guard_allocate(PAIRS * stride), *const same = guard_allocate(PAIRS * stride);
+        AUTO(guard_release_at)
         narc_kept_row *const kept = guard_allocate(PAIRS * sizeof *kept), *const right =
                                                                               guard_allocate(PAIRS * sizeof *kept);
         uint32_t list[PAIRS], left[PAIRS], right_left[PAIRS];
@@ -444,10 +440,6 @@ TEST(test_rows_are_kept) {
             destroy_columns(&columns);
             scene_move_bodies(&world.scene, &random, 0.005);
         }
-        guard_release(rows);
-        guard_release(same);
-        guard_release(kept);
-        guard_release(right);
         destroy_scene(&world.scene);
     }
     printf("%zu rows followed their bodies, %zu did not\n", followed, all_left);

@@ -34,8 +34,8 @@ static const uint64_t golden_poses[] = {0x04246f5f8f209554u, 0x8b6998bde9bc55d9u
 
 static uint64_t hash_answers(const struct scene *scene, int way) {
     (void)way;
-    uint64_t *bits = scene_overlaps(scene);
-    struct contacts all = scene_contacts(scene, INFINITY), colliding = scene_contacts(scene, 0);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(scene);
+    AUTO(free_at) struct contacts all = scene_contacts(scene, INFINITY), colliding = scene_contacts(scene, 0);
     uint64_t hash = test_hash_items(TEST_HASH_START, bits, NARC_BIT_WORDS(PAIRS), sizeof(uint64_t));
     assert_int_equal(all.count, PAIRS);
     hash = hash_contacts(hash, all);
@@ -43,9 +43,6 @@ static uint64_t hash_answers(const struct scene *scene, int way) {
     printf("  %zu of %d pairs collide\n", colliding.count, (int)PAIRS);
     /* Were all or none to collide, the hash would say little. */
     assert_true(colliding.count > PAIRS / 4 && colliding.count < PAIRS * 3 / 4);
-    free(all.rows);
-    free(colliding.rows);
-    free(bits);
     return hash;
 }
 
@@ -82,13 +79,12 @@ static uint64_t hash_manifolds(const struct scene *scene, int reaches) {
     const float margins[] = {0, INFINITY};
     uint64_t hash = TEST_HASH_START;
     for (size_t m = 0; m < 2; m++) {
-        struct manifolds list = scene_manifolds(scene, margins[m]);
+        AUTO(free_at) struct manifolds list = scene_manifolds(scene, margins[m]);
         size_t two = 0;
         hash = reaches ? hash_reach_rows(hash, list) : hash_manifold_rows(hash, list);
         for (size_t k = 0; k < list.count; k++)
             two += list.rows[k].count == 2;
         assert_true(two > list.count / 20);
-        free(list.rows);
     }
     return hash;
 }
@@ -161,18 +157,15 @@ static uint64_t hash_separations(const struct scene *scene, int way) {
 /* Overlaps, contacts and manifolds. */
 static uint64_t hash_query(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
                            const narc_query *query) {
-    uint64_t *bits = find_overlaps(store, bodies, pairs, query);
+    AUTO(free_at) uint64_t *bits = find_overlaps(store, bodies, pairs, query);
     uint64_t hash = test_hash_items(TEST_HASH_START, bits, NARC_BIT_WORDS(pairs->count), sizeof *bits);
-    struct contacts contacts = find_contacts(store, bodies, pairs, query);
+    AUTO(free_at) struct contacts contacts = find_contacts(store, bodies, pairs, query);
     HASH_FIELD(hash, contacts, pair);
     hash = hash_contacts(hash, contacts);
     HASH_FIELD(hash, contacts, radius_a);
     HASH_FIELD(hash, contacts, radius_b);
-    struct manifolds manifolds = find_manifolds(store, bodies, pairs, query);
+    AUTO(free_at) struct manifolds manifolds = find_manifolds(store, bodies, pairs, query);
     hash = hash_reach_rows(hash_manifold_rows(hash, manifolds), manifolds);
-    free(manifolds.rows);
-    free(contacts.rows);
-    free(bits);
     return hash;
 }
 
@@ -183,7 +176,7 @@ TEST(test_options) {
                                          {.margin = 1, .flat_angle = 0.0625f, .second_margin = 1}};
     enum { COUNT = sizeof options / sizeof *options };
     static const uint32_t flat[] = {2, 4, 5, 7}; /* a capsule, boxes, a triangle */
-    struct scene scene = make_golden_scene(NARC_FLOAT32);
+    AUTO(destroy_scene) struct scene scene = make_golden_scene(NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     uint64_t hashes[2 * COUNT];
@@ -195,7 +188,6 @@ TEST(test_options) {
         hashes[COUNT + k] = hash_query(scene.store, &bodies, &pairs, &options[k]);
     for (size_t k = 0; k < 2 * COUNT; k++)
         check_hash("options", hashes[k], golden_options[k]);
-    destroy_scene(&scene);
 }
 
 struct impacts {
@@ -228,12 +220,10 @@ static uint64_t hash_casts(const struct scene *scene, int way) {
     const narc_motions motions = {
         .x = column, .y = {motion + BODIES - 1, -column.stride}, .angle = {way ? motion : NULL, column.stride}};
     const narc_cast_options options = {.parting = way == 2 ? 0x1p-6f : 0};
-    struct impacts list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
+    AUTO(free_at) struct impacts list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
     assert_int_equal(narc_cast_pairs(scene->store, &bodies, &motions, &pairs, NULL, &options, list.rows, PAIRS, NULL),
                      NARC_OK);
-    const uint64_t hash = hash_impacts(list);
-    free(list.rows);
-    return hash;
+    return hash_impacts(list);
 }
 
 static uint64_t hash_boxes(const struct scene *scene, int way) {
@@ -271,7 +261,7 @@ static uint64_t hash_points(const struct scene *scene, int things) {
     narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
     if (things)
         options.search = (narc_index_query){.owners = &owners};
-    narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
     assert_int_equal(narc_find_distances(scene->store, &bodies, &points, &NARC_ARRAY(other), NULL, rows, NULL),
                      NARC_OK);
     assert_int_equal(narc_find_nearest(index, scene->store, &bodies, &points, &options, rows + count, 2 * count, NULL),
@@ -282,7 +272,6 @@ static uint64_t hash_points(const struct scene *scene, int things) {
         hash = test_hash_items(hash, &rows[k].feature, 2, sizeof rows[k].feature);
         hash = test_hash_items(hash, &rows[k].separation, 6, sizeof rows[k].separation);
     }
-    narc_destroy_index(index);
     return hash;
 }
 
@@ -305,7 +294,7 @@ static uint64_t hash_rays(const struct scene *scene, int inside) {
                             .y = bodies.y,
                             .motion_x = NARC_ARRAY(motion),
                             .motion_y = {motion + BODIES + 1, -(ptrdiff_t)sizeof *motion}};
-    narc_index *const index = index_bodies(scene->store, &bodies, &seen, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene->store, &bodies, &seen, boxes);
     struct {
         narc_ray_hit rows[ROWS];
         size_t count;
@@ -327,7 +316,6 @@ static uint64_t hash_rays(const struct scene *scene, int inside) {
         hits += list.rows[k].count;
     printf("  %zu hits of %d\n", hits, (int)ROWS);
     assert_true(hits > ROWS / 4 && hits < ROWS);
-    narc_destroy_index(index);
     return hash;
 }
 
@@ -337,7 +325,7 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     const narc_bodies bodies = scene_bodies(scene);
     narc_box boxes[BODIES];
     uint32_t world[BODIES], changed[BODIES];
-    narc_broad_phase *broad = NULL;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = NULL;
     size_t count = 0;
     (void)way;
     for (size_t k = 0; k < BODIES; k++) {
@@ -348,7 +336,7 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     const narc_index_query asked = {.world = NARC_ARRAY(world)};
     const narc_pair_filter filter = {.world = NARC_ARRAY(world)};
     const narc_index_column list = NARC_ARRAY(changed);
-    narc_index *const index = index_bodies(scene->store, &bodies, &seen, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene->store, &bodies, &seen, boxes);
     narc_pairs found;
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     narc_find_pairs(broad, boxes, BODIES, &filter, NULL, NULL, NULL, 0, 0, &count, NULL);
@@ -367,8 +355,6 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     assert_int_equal(narc_query_index(index, boxes, BODIES, &asked, &found, NULL), NARC_OK);
     hash = test_hash_items(hash, found.a.base, found.count, sizeof(uint32_t));
     hash = test_hash_items(hash, found.b.base, found.count, sizeof(uint32_t));
-    narc_destroy_broad_phase(broad);
-    narc_destroy_index(index);
     return hash;
 }
 
@@ -398,10 +384,9 @@ TEST(test_scenes) {
         {"alone", hash_alone, NARC_INSIDE_LEAVES, {0x9008dfea5b72d305u, 0x9008dfea5b72d305u}},
     };
     for (int precision = 0; precision < 2; precision++) {
-        struct scene scene = make_golden_scene((narc_precision)precision);
+        AUTO(destroy_scene) struct scene scene = make_golden_scene((narc_precision)precision);
         for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
             check_hash(rows[k].name, rows[k].hash(&scene, rows[k].way), rows[k].golden[precision]);
-        destroy_scene(&scene);
     }
 }
 
@@ -428,21 +413,18 @@ static size_t add_ground(narc_shapes *store, narc_chain_entry *out_entries, size
 
 /* The bits of overlaps are those of contacts. */
 static void check_bits(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs) {
-    uint64_t *bits = find_overlaps(store, bodies, pairs, &(narc_query){0});
-    struct contacts contacts = find_contacts(store, bodies, pairs, &(narc_query){0});
-    uint64_t *of_contacts = calloc(NARC_BIT_WORDS(pairs->count), sizeof *of_contacts);
+    AUTO(free_at) uint64_t *bits = find_overlaps(store, bodies, pairs, &(narc_query){0});
+    AUTO(free_at) struct contacts contacts = find_contacts(store, bodies, pairs, &(narc_query){0});
+    AUTO(free_at) uint64_t *of_contacts = calloc(NARC_BIT_WORDS(pairs->count), sizeof *of_contacts);
     for (size_t k = 0; k < contacts.count; k++)
         of_contacts[contacts.rows[k].pair / 64] |= UINT64_C(1) << contacts.rows[k].pair % 64;
     assert_memory_equal(bits, of_contacts, NARC_BIT_WORDS(pairs->count) * sizeof *bits);
-    free(of_contacts);
-    free(contacts.rows);
-    free(bits);
 }
 
 /* Bodies on ground and on a few others: contacts, what is left of them when they are merged, casts, rays and points. */
 TEST(test_ground) {
     enum { MOST = 64, GUESTS = 120, OTHERS = 4 };
-    struct scene scene = make_golden_scene(NARC_FLOAT32);
+    AUTO(destroy_scene) struct scene scene = make_golden_scene(NARC_FLOAT32);
     narc_chain_entry entries[MOST];
     const size_t pieces_count = add_ground(scene.store, entries, MOST - OTHERS), count = pieces_count + OTHERS,
                  pair_count = count * GUESTS;
@@ -488,15 +470,14 @@ TEST(test_ground) {
                                       .y = {motion + GUESTS, -(ptrdiff_t)sizeof *motion},
                                       .angle = {turning ? motion : NULL, sizeof *motion}};
         const narc_cast_options options = {.target = turning ? 0.0625f : 0, .tolerance = turning ? 0x1p-8f : 0};
-        struct impacts list = {make_junk(pair_count * sizeof *list.rows), pair_count};
+        AUTO(free_at) struct impacts list = {make_junk(pair_count * sizeof *list.rows), pair_count};
         assert_int_equal(
             narc_cast_pairs(scene.store, &bodies, &motions, &pairs, NULL, &options, list.rows, pair_count, NULL),
             NARC_OK);
         hashes[2 + turning] = hash_impacts(list);
-        free(list.rows);
     }
     narc_box boxes[MOST];
-    narc_index *const index = index_bodies(scene.store, &pieces, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene.store, &pieces, NULL, boxes);
     const narc_rays rays = {.count = GUESTS,
                             .x = bodies.x,
                             .y = bodies.y,
@@ -521,17 +502,15 @@ TEST(test_ground) {
     }
     for (size_t k = 0; k < 6; k++)
         check_hash("ground", hashes[k], golden_ground[k]);
-    narc_destroy_index(index);
     free(a);
     free(b);
-    destroy_scene(&scene);
 }
 #endif
 
 #ifndef NARC_SMALL
 /* Every seventh body is a half-plane. */
 TEST(test_half_planes) {
-    struct scene scene = make_golden_scene(NARC_FLOAT64);
+    AUTO(destroy_scene) struct scene scene = make_golden_scene(NARC_FLOAT64);
     uint32_t plane;
     assert_int_equal(narc_add_half_plane(scene.store, &plane, NULL), NARC_OK);
     for (size_t k = 0; k < BODIES; k += 7)
@@ -547,7 +526,6 @@ TEST(test_half_planes) {
                                hash_alone(&scene, NARC_INSIDE_LEAVES)};
     for (size_t k = 0; k < sizeof hashes / sizeof *hashes; k++)
         check_hash("half-planes", hashes[k], golden_planes[k]);
-    destroy_scene(&scene);
 }
 
 /* Of clouds of points of a lattice, with a skin and without. */

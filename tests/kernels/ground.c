@@ -131,8 +131,8 @@ static void check_forms(const struct ground_bodies *g, const struct contacts *ri
     }
 
     /* margins of their own, a selection, and one pair at a time */
-    float *margins = malloc(count * sizeof *margins);
-    uint32_t *selection = malloc(count * sizeof *selection);
+    AUTO(free_at) float *margins = malloc(count * sizeof *margins);
+    AUTO(free_at) uint32_t *selection = malloc(count * sizeof *selection);
     for (size_t k = 0; k < count; k++) {
         margins[k] = margin;
         selection[k] = (uint32_t)(count - 1 - k);
@@ -167,7 +167,7 @@ static void check_forms(const struct ground_bodies *g, const struct contacts *ri
     /* dense rows, the formula alone, and bits */
     const narc_query dense = {.margin = margin, .dense = 1};
     assert_int_equal(ask_contacts(scene, &dense, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
-    uint64_t *bits = scene_overlaps(scene);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(scene);
     size_t deepest_count = 0;
     row = 0;
     for (uint32_t k = 0; k < count; k++) {
@@ -182,13 +182,9 @@ static void check_forms(const struct ground_bodies *g, const struct contacts *ri
     }
     assert_int_equal(found, deepest_count);
     test_use_isa("scalar");
-    uint64_t *others = scene_overlaps(scene);
+    AUTO(free_at) uint64_t *others = scene_overlaps(scene);
     test_use_isa(test_isa());
     assert_memory_equal(bits, others, NARC_BIT_WORDS(count) * sizeof *bits);
-    free(others);
-    free(bits);
-    free(selection);
-    free(margins);
     free(rows.rows);
 }
 
@@ -205,7 +201,7 @@ static void check_formula(const struct ground_bodies *g, const struct contacts *
                               .query = &query,
                               .count = pairs.count,
                               .asked = pairs.count};
-    narc_contact *rows = make_junk(NARC_ROW_GROUP * sizeof *rows);
+    AUTO(free_at) narc_contact *rows = make_junk(NARC_ROW_GROUP * sizeof *rows);
     size_t skipped = 0, more = 0, row = 0, all = 0;
     for (size_t first = 0; first < pairs.count; first += NARC_ROW_GROUP) {
         const size_t left = pairs.count - first;
@@ -224,12 +220,10 @@ static void check_formula(const struct ground_bodies *g, const struct contacts *
     }
     assert_int_equal(row, right->count);
     assert_int_equal(all + more, right->count);
+    AUTO(free_at)
     uint64_t *bits = scene_overlaps(&g->scene), *plain = make_junk(NARC_BIT_WORDS(pairs.count) * sizeof *plain);
     narc_kernels_plain.overlap(&batch, 0, pairs.count, &skipped, plain);
     assert_memory_equal(bits, plain, NARC_BIT_WORDS(pairs.count) * sizeof *bits);
-    free(bits);
-    free(plain);
-    free(rows);
 }
 
 /* The same pairs with both bodies exchanged: the same rows, but where rounding decides which there are. */
@@ -410,7 +404,7 @@ TEST(test_sides_on_edges) {
 TEST(test_last_shape_beside_runs) {
     enum { PAIRS = 64 };
     const narc_arc hill[] = {{0, -2, 2, 0.8, 1.2}, {0, -2, 2, 1.2, 2}, {0, -2, 2, 2, 2.3}};
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_chain_entry entry;
     size_t count, found;
     uint32_t last = 0;
@@ -430,7 +424,6 @@ TEST(test_last_shape_beside_runs) {
     const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, NULL, contacts, PAIRS, &found, NULL), NARC_OK);
     assert_int_equal(found, PAIRS);
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays and points */
@@ -445,8 +438,8 @@ TEST(test_rays) {
             continue;
         }
         const narc_bodies bodies = view_columns(g->bodies, g->count);
-        narc_box *boxes = malloc(g->count * sizeof *boxes);
-        narc_index *index = index_bodies(g->store, &bodies, NULL, boxes);
+        AUTO(free_at) narc_box *boxes = malloc(g->count * sizeof *boxes);
+        AUTO(narc_destroy_index_at) narc_index *index = index_bodies(g->store, &bodies, NULL, boxes);
         double x[RAYS], y[RAYS];
         float motion_x[RAYS], motion_y[RAYS];
         for (size_t k = 0; k < RAYS; k++) {
@@ -516,8 +509,6 @@ TEST(test_rays) {
         }
         if (!(hit_count > RAYS / 4 && doubts < RAYS / 5))
             fail_msg("of %d rays %zu hit, and %zu are doubtful", RAYS, hit_count, doubts);
-        narc_destroy_index(index);
-        free(boxes);
         destroy_ground_scene(g);
     }
 }
@@ -579,9 +570,9 @@ TEST(test_nearest) {
             x[i] = there.x;
             y[i] = there.y;
         }
-        narc_box *boxes = malloc(scene->count * sizeof *boxes);
+        AUTO(free_at) narc_box *boxes = malloc(scene->count * sizeof *boxes);
         const narc_bodies bodies = view_columns(scene->bodies, scene->count);
-        narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
+        AUTO(narc_destroy_index_at) narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
         const narc_points points = {POINTS, NARC_POSITION_ARRAY(x), NARC_POSITION_ARRAY(y), {NULL}};
         const narc_nearest_options two = {.most = 2};
         expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, &two, rows, 2 * POINTS, &error), &error);
@@ -610,8 +601,6 @@ TEST(test_nearest) {
                 EXPECT(fabsf(others[i].separation), fabs((double)rows[2 * i].separation), 4e-6 * size);
             }
         }
-        narc_destroy_index(index);
-        free(boxes);
         destroy_ground_scene(scene);
     }
     assert_true(behind > all / 8 && behind < all && alone > all / 2);
@@ -621,7 +610,7 @@ TEST(test_nearest) {
 TEST(test_nearest_to_cut_corners) {
     enum { POINTS = 64 };
     for (int sides = 3; sides <= 5; sides++) {
-        struct ground_scene *scene = create_ground_scene();
+        AUTO(destroy_ground_scene_at) struct ground_scene *scene = create_ground_scene();
         struct turtle t = create_turtle(0, 0, PI / 2);
         narc_error error;
         for (int k = 0; k < sides; k++) {
@@ -631,9 +620,9 @@ TEST(test_nearest_to_cut_corners) {
         scene->place = turned_body(0.3, 1);
         expect_ok(add_ground(scene, end_walk(&t, true), (narc_chain_options){0}, &error), &error);
         const narc_point corner = chain_point(&scene->chain.arcs[0], 0);
-        narc_box *boxes = malloc(scene->count * sizeof *boxes);
+        AUTO(free_at) narc_box *boxes = malloc(scene->count * sizeof *boxes);
         const narc_bodies bodies = view_columns(scene->bodies, scene->count);
-        narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
+        AUTO(narc_destroy_index_at) narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
         for (double away = 1e-3; away < 4; away *= 2)
             for (int i = 0; i < POINTS; i++) {
                 const double angle = 2 * PI * (i + 0.3) / POINTS;
@@ -648,9 +637,6 @@ TEST(test_nearest_to_cut_corners) {
                 expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, NULL, &row, 1, &error), &error);
                 check_nearest(scene, point, &row, 1);
             }
-        narc_destroy_index(index);
-        free(boxes);
-        destroy_ground_scene(scene);
     }
 }
 
@@ -709,13 +695,11 @@ static narc_manifold merge_one(const struct scene *scene, const uint32_t *runs, 
         pairs[e] = (struct pair){(uint32_t)entries, e};
     const narc_pairs list = {.count = entries, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
     const narc_bodies bodies = scene_bodies(scene);
-    struct manifolds rows = find_manifolds(scene->store, &bodies, &list, &(narc_query){.margin = margin});
+    AUTO(free_at) struct manifolds rows = find_manifolds(scene->store, &bodies, &list, &(narc_query){.margin = margin});
     const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
     if (left != 1)
         fail_msg("%zu rows of %zu", left, rows.count);
-    const narc_manifold row = rows.rows[0];
-    free(rows.rows);
-    return row;
+    return rows.rows[0];
 }
 
 /* A box as wide as a quarter of `weld`, or less, has the same manifold on a line that is cut as on one that is not,
@@ -839,6 +823,7 @@ static double find_corner(struct ground_bodies *g, const uint32_t *runs, uint32_
         pairs[e] = (struct pair){mover, e};
     const narc_pairs list = {.count = g->entry_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
     const narc_bodies bodies = scene_bodies(&g->scene);
+    AUTO(free_at)
     struct manifolds rows = find_manifolds(g->scene.store, &bodies, &list, &(narc_query){.margin = margin});
     const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
     double best = INFINITY;
@@ -846,7 +831,6 @@ static double find_corner(struct ground_bodies *g, const uint32_t *runs, uint32_
         for (uint32_t i = 0; i < rows.rows[k].count; i++)
             if (fabs((double)rows.rows[k].point[i].separation + deep) < fabs(best + deep))
                 best = (double)rows.rows[k].point[i].separation;
-    free(rows.rows);
     return best;
 }
 

@@ -73,11 +73,12 @@ TEST(test_scaled) {
     const double factor = 0x1p10;
     size_t seen = 0;
     for (size_t round = 0; round < test_trials(10 * CHAIN_FAMILIES); round++) {
+        AUTO(destroy_ground_scene_at)
         struct ground_scene *s = lay_random_ground(&random, (enum chain_family)(round % CHAIN_FAMILIES));
         struct chain chain = {malloc(s->chain.count * sizeof *chain.arcs), s->chain.count, s->chain.closed};
         memcpy(chain.arcs, s->chain.arcs, chain.count * sizeof *chain.arcs);
         scale_arcs(chain.arcs, chain.count, factor);
-        struct ground_scene *other = lay_ground(chain, (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *other = lay_ground(chain, (narc_chain_options){0});
         assert_int_equal(other->count, s->count);
         for (int k = 0; k < 40; k++) {
             struct flyer flyer = choose_flyer(&random, s);
@@ -99,8 +100,6 @@ TEST(test_scaled) {
             assert_memory_equal(large, rows, count * sizeof *rows);
             seen += count;
         }
-        destroy_ground_scene(other);
-        destroy_ground_scene(s);
     }
     print_message("  %zu rows\n", seen);
     assert_true(seen > test_trials(100 * CHAIN_FAMILIES) || test_trials(100) < 10);
@@ -138,7 +137,7 @@ TEST(test_chains_in_chains) {
         struct turtle t = gear ? walk_gear(6 + random_below(&random, 10), 0.3) : create_turtle(0, 0, 0);
         if (!gear)
             walk_turn(&t, 1, 2 * PI);
-        struct ground_scene *s = lay_ground(end_walk(&t, true), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, true), (narc_chain_options){0});
         const size_t inner = s->count;
         const narc_point middle = find_middle(&s->chain);
         const double far = find_reach_of(&s->chain, middle), thickness = random_between(&random, 0.05, 0.5) * far;
@@ -157,7 +156,6 @@ TEST(test_chains_in_chains) {
                     fail_msg("round %zu, entry %zu: told of %g", round, k, deepest);
             }
         assert_true(told > 0 || gear); /* a gear may have a gap there */
-        destroy_ground_scene(s);
     }
 }
 
@@ -191,7 +189,7 @@ static void ask_casts(const void *question, const narc_workers *workers, void *o
     const uint32_t zero = 0;
     const narc_bodies mover = view_columns(q->mover, 1), entries = view_columns(s->bodies, s->count);
     const narc_motions motion = {.x = {&q->flight->x, 0}, .y = {&q->flight->y, 0}, .angle = {&q->flight->angle, 0}};
-    uint32_t *entry = malloc(s->count * sizeof *entry);
+    AUTO(free_at) uint32_t *entry = malloc(s->count * sizeof *entry);
     for (size_t k = 0; k < s->count; k++)
         entry[k] = (uint32_t)k;
     const narc_index_column all = NARC_ARRAY(entry), one = {&zero, 0};
@@ -205,7 +203,6 @@ static void ask_casts(const void *question, const narc_workers *workers, void *o
     expect_ok(narc_cast_pairs(s->store, q->ground_first ? &entries : &mover, q->ground_first ? NULL : &motion, &pairs,
                               q->ground_first ? &motion : NULL, &options, out_rows, s->count, &error),
               &error);
-    free(entry);
 }
 
 /* Casts of the mover with all entries, A or B, on every instruction set; the first hit, or a miss, or what is not finished
@@ -371,10 +368,9 @@ static void fly_all(const char *name, bool turns) {
     struct counts counts = {0};
     for (size_t round = 0; round < test_trials(14 * CHAIN_FAMILIES); round++) {
         const enum chain_family kind = (enum chain_family)(round % CHAIN_FAMILIES);
-        struct ground_scene *s = lay_random_ground(&random, kind);
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_random_ground(&random, kind);
         for (int k = 0; k < 10; k++)
             fly(&random, s, chain_family_name(kind), turns, &counts);
-        destroy_ground_scene(s);
     }
     print_message("%zu flights: %zu hits, %zu of them as contacts there, %zu misses, %zu unfinished, %zu past an end, "
                   "%zu doubtful\n",
@@ -461,6 +457,7 @@ TEST(test_letting_go) {
     struct test_random random = test_random_named("letting go of ground");
     size_t counts[3] = {0};
     for (size_t round = 0; round < test_trials(20 * CHAIN_FAMILIES); round++) {
+        AUTO(destroy_ground_scene_at)
         struct ground_scene *s = lay_random_ground(&random, (enum chain_family)(round % CHAIN_FAMILIES));
         for (int k = 0; k < 8; k++) {
             struct flyer flyer;
@@ -473,16 +470,13 @@ TEST(test_letting_go) {
             const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)),
                                           random_below(&random, 2) ? (float)random_between(&random, -1, 1) : 0};
             const struct cast_question question = {s, &flyer.body, &flight, 0, 0.005f, random_below(&random, 2)};
-            narc_impact *const rows = ask_everywhere(ask_casts, &question, s->count * sizeof *rows, NULL);
-            narc_impact *const held = malloc(s->count * sizeof *held);
+            AUTO(free_at) narc_impact *const rows = ask_everywhere(ask_casts, &question, s->count * sizeof *rows, NULL);
+            AUTO(free_at) narc_impact *const held = malloc(s->count * sizeof *held);
             ask_casts(&(struct cast_question){s, &flyer.body, &flight, 0, 0, question.ground_first}, NULL, held);
             for (size_t i = 0; i < s->count; i++)
                 if (held[i].count == NARC_CAST_HIT && held[i].fraction == 0)
                     check_let_go(s, &flyer, &flight, &rows[i], 0.005, counts);
-            free(held);
-            free(rows);
         }
-        destroy_ground_scene(s);
     }
     print_message("%zu let go, %zu came deeper, %zu hit again\n", counts[0], counts[1], counts[2]);
     assert_true(test_trials(20) < 10 || (counts[0] > 0 && counts[1] > 0 && counts[2] > 0));
@@ -498,7 +492,7 @@ TEST(test_turns_onto_a_corner) {
     walk_arc(&t, 0, PI / 2);
     walk_line(&t, 0.5);
     walk_arc(&t, 0, PI / 2);
-    struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
     const narc_arc *const corner = &s->chain.arcs[1];
     for (size_t round = 0; round < test_trials(2000); round++) {
         const double width = random_between(&random, 0.3, 1), thickness = random_between(&random, 0.05, 0.3);
@@ -528,7 +522,6 @@ TEST(test_turns_onto_a_corner) {
     }
     print_message("  %zu flights\n", flights);
     assert_true(20 * flights > test_trials(2000) || test_trials(2000) < 100);
-    destroy_ground_scene(s);
 }
 
 /* A concave arc that stands alone, and bodies beside and behind it of which an arc comes into its sector: they hit
@@ -540,7 +533,7 @@ TEST(test_flights_past_a_concave_arc) {
         const double turn = random_log_between(&random, 0.02, 1.5), radius = random_log_between(&random, 0.3, 3);
         struct turtle t = create_turtle(0, 0, PI / 2 + turn / 2);
         walk_arc(&t, radius, -turn);
-        struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
         for (int k = 0; k < 20; k++) {
             struct flyer flyer = choose_flyer(&random, s);
             const double size = (double)flyer.body.scale, way = random_between(&random, 0, 3) * size,
@@ -563,7 +556,6 @@ TEST(test_flights_past_a_concave_arc) {
                 fail_msg("round %zu: met at %g with separation %g, but nothing is told there", round,
                          (double)hit.fraction, (double)hit.separation);
         }
-        destroy_ground_scene(s);
     }
     assert_true(hits > test_trials(300));
 }
@@ -582,7 +574,7 @@ TEST(test_flight_out_of_a_sector) {
     const struct flight flight = {-0.125418f, 0.409105f, 0};
     struct turtle t = create_turtle(0, 0, PI / 2 + 0.610032035);
     walk_arc(&t, 0.624064951, -1.22006407);
-    struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
     memcpy(flyer.shape.arcs, outline, sizeof outline);
     flyer.shape.count = sizeof outline / sizeof *outline;
     flyer.body.shape = store_shape(s->store, flyer.shape);
@@ -591,7 +583,6 @@ TEST(test_flight_out_of_a_sector) {
     assert_true(ground_separation(s, &told, (narc_query){0}) < 0);
     for (int first = 0; first < 2; first++)
         assert_int_equal(cast(s, &flyer.body, &flight, 0, first).count, NARC_CAST_MISS);
-    destroy_ground_scene(s);
 }
 
 /* A circle that flies along the normal at an end of a concave arc, from its centre or from anywhere on the way: by
@@ -602,7 +593,7 @@ TEST(test_flights_along_an_end) {
     const size_t rounds = 20 + test_trials(200);
     size_t hits = 0;
     for (size_t round = 0; round < rounds; round++) {
-        struct ground_scene *s = create_ground_scene();
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = create_ground_scene();
         const bool at_start = round % 2;
         const double radius = 1 + random_unit(&random), size = 0.25 + random_unit(&random) / 2;
         struct turtle t = create_turtle(0, 0, at_start ? PI / 2 : PI / 2 + 1);
@@ -627,7 +618,6 @@ TEST(test_flights_along_an_end) {
             assert_true(fabs(2 * length * (double)hit.fraction - (radius - size - from * length)) < 1e-5);
             assert_true(fabs((double)hit.separation) < 1e-5);
         }
-        destroy_ground_scene(s);
     }
     print_message("  %zu flights along an end, %zu hits\n", rounds, hits);
     assert_true(4 * hits > rounds);

@@ -533,6 +533,7 @@ static void check_setting(const struct setting *setting, struct counts *counts) 
         motion[k] = (float)(k % 16) / 64 - 0.1f;
     find_near_pairs(setting, &near);
     const narc_motions motions = {.x = NARC_ARRAY(motion), .y = {&motion[5], 0}};
+    AUTO(free_at)
     const struct ground_answers answers =
         ask_ground(scene, &near.movers, &motions, &near.list, (narc_query){.margin = (float)setting->margin});
     for (size_t k = 0; k < near.list.count; k++) {
@@ -565,7 +566,6 @@ static void check_setting(const struct setting *setting, struct counts *counts) 
         }
     }
     assert_int_equal(row, count); /* none of what is far away */
-    free(answers.counts);
 }
 
 static void check_kind(const struct kind *kind) {

@@ -221,7 +221,7 @@ TEST(contacts_are_those_of_a_boundary_without_end) {
 TEST(lists_of_all_kinds_have_the_answers_of_each_pair) {
     enum { BODIES = 64, LISTED = 300 };
     struct test_random random = test_random_named("half-planes among others");
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     narc_error error;
     uint32_t shape[4];
     expect_ok(narc_add_half_plane(shapes, &shape[0], &error), &error);
@@ -263,12 +263,11 @@ TEST(lists_of_all_kinds_have_the_answers_of_each_pair) {
         }
         assert_int_equal(count, kept);
     }
-    narc_destroy_shapes(shapes);
 }
 
 /* Deeper than 1e12 there is no answer, and none of broken numbers; two half-planes have no contact. */
 TEST(what_has_no_answer) {
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     narc_error error;
     uint32_t plane;
     expect_ok(narc_add_half_plane(shapes, &plane, &error), &error);
@@ -303,7 +302,6 @@ TEST(what_has_no_answer) {
     assert_int_equal(skipped, 0);
     expect_ok(narc_find_overlaps(shapes, &view, &planes, NULL, &bits, &error), &error);
     assert_int_equal(bits, 0);
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ casts */
@@ -389,7 +387,7 @@ TEST(casts_meet_the_boundary) {
 
 /* One that turns has no answer. Casts over an index meet it, and a body that rests on one goes along it. */
 TEST(casts_of_movers_over_ground_without_end) {
-    narc_shapes *const shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
     narc_error error;
     uint32_t plane;
     expect_ok(narc_add_half_plane(shapes, &plane, &error), &error);
@@ -399,7 +397,7 @@ TEST(casts_of_movers_over_ground_without_end) {
     const float x[] = {100, 400000, 1}, y[] = {-6, 0, -1}, spin[] = {1, 0};
     narc_bodies bodies, moved;
     narc_box boxes[3];
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_impact rows[3];
     narc_view_bodies(ground, 3, &bodies);
     narc_view_bodies(movers, 3, &moved);
@@ -426,8 +424,6 @@ TEST(casts_of_movers_over_ground_without_end) {
     expect_ok(narc_cast_pairs(shapes, &bodies, &turning, &pair, &motions, &counts, rows, 1, &error), &error);
     assert_int_equal(rows[0].count, NARC_CAST_MISS);
     assert_int_equal(skipped, 1);
-    narc_destroy_index(index);
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ rays and points */
@@ -536,9 +532,9 @@ TEST(steps_and_regions_over_ground_without_end) {
         struct site site = make_site(&random);
         narc_body bodies[BODIES];
         narc_bodies view;
-        narc_contacts *contacts;
-        narc_index *index;
-        narc_broad_phase *broad;
+        AUTO(narc_destroy_contacts_at) narc_contacts *contacts;
+        AUTO(narc_destroy_index_at) narc_index *index;
+        AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad;
         narc_error error;
         size_t touching = 0;
         make_scene(&random, &site, bodies);
@@ -588,9 +584,6 @@ TEST(steps_and_regions_over_ground_without_end) {
                 }
         }
         assert_true(touching > 0);
-        narc_destroy_broad_phase(broad);
-        narc_destroy_index(index);
-        narc_destroy_contacts(contacts);
         narc_destroy_shapes(site.shapes);
     }
 }

@@ -74,7 +74,7 @@ static struct holding check_node(const narc_index *index, unsigned level, size_t
 
 static void check_index(const narc_index *index, const narc_box *boxes, size_t count, const uint64_t *category,
                         const uint32_t *world) {
-    unsigned char *const seen = calloc(count + 1, 1);
+    AUTO(free_at) unsigned char *const seen = calloc(count + 1, 1);
     assert_int_equal(index->count, count);
     if (count > 0) {
         assert_int_equal(index->masks != NULL, category != NULL);
@@ -87,7 +87,6 @@ static void check_index(const narc_index *index, const narc_box *boxes, size_t c
         assert_int_equal(seen[k], !is_empty(&boxes[k]));
         assert_int_equal(index->place[k] == NARC_NO_PLACE, is_empty(&boxes[k]));
     }
-    free(seen);
 }
 
 static const size_t counts[] = {0, 1, 2, 7, 8, 9, 63, 64, 65, 511, 512, 513, 3000, 30000};
@@ -95,12 +94,12 @@ enum { COUNTS = sizeof counts / sizeof counts[0] };
 
 TEST(holds_every_box_once) {
     struct test_random random = test_random_named("boxes of an index");
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (uint32_t trial = 0; trial < 4 * COUNTS; trial++) {
         const size_t count = counts[trial / 4];
-        narc_box *const boxes = malloc((count + 1) * sizeof *boxes);
-        uint64_t *const category = malloc((count + 1) * sizeof *category);
+        AUTO(free_at) narc_box *const boxes = malloc((count + 1) * sizeof *boxes);
+        AUTO(free_at) uint64_t *const category = malloc((count + 1) * sizeof *category);
         for (size_t k = 0; k < count; k++) {
             boxes[k] = random_box(&random, 100, 0, 3);
             category[k] = (uint64_t)1 << random_below(&random, 64);
@@ -122,10 +121,7 @@ TEST(holds_every_box_once) {
         assert_int_equal(narc_update_index(index, guarded, count, NULL, 0, &other, NULL), NARC_OK);
         guard_release(guarded);
         check_index(index, boxes, count, masks ? NULL : category, NULL);
-        free(boxes);
-        free(category);
     }
-    narc_destroy_index(index);
 }
 
 /* ------------------------------------------------------------------------------------------------ histories */
@@ -187,9 +183,9 @@ static void live(struct test_random *random, struct history *h, bool quiet) {
 /* After each update the index holds what it would if it were new. */
 TEST(lives_as_its_boxes_do) {
     struct test_random random = test_random_named("histories of an index");
-    struct history *const h = calloc(1, sizeof *h);
+    AUTO(free_at) struct history *const h = calloc(1, sizeof *h);
     for (uint32_t trial = 0; trial < 8; trial++) {
-        narc_index *index = NULL;
+        AUTO(narc_destroy_index_at) narc_index *index = NULL;
         assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
         h->count = 0;
         for (uint32_t step = 0; step < 150; step++) {
@@ -209,9 +205,7 @@ TEST(lives_as_its_boxes_do) {
             guard_release(changed);
             check_index(index, h->boxes, h->count, masks ? h->category : NULL, worlds ? h->world : NULL);
         }
-        narc_destroy_index(index);
     }
-    free(h);
 }
 
 /* ------------------------------------------------------------------------------------------------ what all agree on */
@@ -249,10 +243,11 @@ static void fill_boxes(struct test_random *random, narc_box *boxes, size_t count
 TEST(is_the_same_for_all_workers_and_instruction_sets) {
     enum { COUNT = 40000 };
     struct test_random random = test_random_named("workers of an index");
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes), *const moved = malloc(COUNT * sizeof *moved);
-    uint64_t *const category = malloc(COUNT * sizeof *category);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes), *const moved = malloc(COUNT * sizeof *moved);
+    AUTO(free_at) uint64_t *const category = malloc(COUNT * sizeof *category);
+    AUTO(free_at)
     uint32_t *const changed = malloc(COUNT * sizeof *changed), *const world = malloc(COUNT * sizeof *world);
-    narc_index *const expected = create_index(NULL), *const index = create_index(NULL);
+    AUTO(narc_destroy_index_at) narc_index *const expected = create_index(NULL), *const index = create_index(NULL);
     fill_boxes(&random, boxes, COUNT);
     fill_boxes(&random, moved, COUNT);
     for (size_t k = 0; k < COUNT; k++)
@@ -287,13 +282,6 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
                 expect_same_index(expected, index);
             }
         }
-    narc_destroy_index(expected);
-    narc_destroy_index(index);
-    free(boxes);
-    free(moved);
-    free(category);
-    free(changed);
-    free(world);
 }
 
 /* ------------------------------------------------------------------------------------------------ what it is worth */
@@ -323,8 +311,8 @@ static void check_order(const narc_index_node *node, unsigned order) {
 TEST(knows_how_halves_lie) {
     enum { COUNT = 4096 };
     struct test_random random = test_random_named("order of an index");
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    narc_index *const index = create_index(NULL);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     for (uint32_t fast = 0; fast < 2; fast++) {
         for (size_t k = 0; k < COUNT; k++)
             boxes[k] = random_box(&random, 100, 0, 1);
@@ -336,8 +324,6 @@ TEST(knows_how_halves_lie) {
     assert_int_equal(narc_find_flips(0, 0, 7), 0);
     assert_int_equal(narc_find_flips(0, 7, 7), 7);
     assert_int_equal(narc_find_flips(NARC_ORDER_ALONG_Y(1) | NARC_ORDER_DOWNWARD(2), 0, 7), 6);
-    narc_destroy_index(index);
-    free(boxes);
 }
 
 static narc_index_statistics describe(const narc_index *index) {
@@ -353,8 +339,8 @@ TEST(has_tight_nodes) {
     enum { SIDE = 64, COUNT = SIDE * SIDE };
     static const double expected[] = {COUNT / 6.0 * 5 + COUNT / 48.0 * 14 + COUNT / 384.0 * 40 + 192 + 128,
                                       COUNT / 8.0 * 6 + COUNT / 64.0 * 16 + COUNT / 512.0 * 48 + 128};
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    narc_index *const index = create_index(NULL);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     const uint32_t seven = 7;
     for (size_t k = 0; k < COUNT; k++) {
         const float x = (float)(k * 37 % COUNT % SIDE), y = (float)(k * 37 % COUNT / SIDE);
@@ -377,8 +363,6 @@ TEST(has_tight_nodes) {
     boxes[7].max_x = 2;
     assert_int_equal(narc_update_index(index, boxes, COUNT, &(narc_index_column){&seven, 4}, 1, NULL, NULL), NARC_OK);
     assert_true(isinf(describe(index).slack));
-    narc_destroy_index(index);
-    free(boxes);
 }
 
 /* The boxes of nodes are those of what is below them, level by level, after building and after updates. */
@@ -386,7 +370,7 @@ TEST(copies_boxes_of_nodes) {
     enum { ROOM = 600, STRIDE = 24 };
     struct test_random random = test_random_named("boxes of nodes");
     narc_box boxes[ROOM], below[ROOM];
-    narc_index *const index = create_index(NULL);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     size_t count, below_count = 0;
     assert_int_equal(narc_copy_nodes(index, 0, NULL, 0, 0, &count, NULL), NARC_OK);
     assert_int_equal(count, 0);
@@ -399,7 +383,7 @@ TEST(copies_boxes_of_nodes) {
         size_t nodes = 0;
         for (size_t level = 0; level < s.depth; level++) {
             const size_t held = index->node_count[level], size = (held - 1) * STRIDE + sizeof *boxes;
-            unsigned char *const out = guard_allocate(size);
+            AUTO(guard_release_at) unsigned char *const out = guard_allocate(size);
             assert_int_equal(narc_copy_nodes(index, level, (narc_box *)(void *)out, STRIDE, held, &count, NULL),
                              NARC_OK);
             nodes += count;
@@ -419,12 +403,10 @@ TEST(copies_boxes_of_nodes) {
             assert_int_equal(narc_copy_nodes(index, level, below, 0, count - 1, &again, NULL), NARC_ERROR_CAPACITY);
             assert_int_equal(again, count);
             assert_int_equal(narc_copy_nodes(index, level, below, 0, ROOM, &below_count, NULL), NARC_OK);
-            guard_release(out);
         }
         assert_true(nodes == s.nodes && narc_copy_nodes(index, s.depth, NULL, 0, 0, &count, NULL) == NARC_OK &&
                     count == 0);
     }
-    narc_destroy_index(index);
 }
 
 /* Bodies that go anywhere, one after the other, until each has gone a hundred times: then nodes are hardly larger than
@@ -432,8 +414,8 @@ TEST(copies_boxes_of_nodes) {
 TEST(stays_tight) {
     enum { SIDE = 50, COUNT = SIDE * SIDE, STEPS = 2500, LISTED = 100 };
     struct test_random random = test_random_named("wear of an index");
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    narc_index *const index = create_index(NULL), *const new = create_index(NULL);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL), *const new = create_index(NULL);
     uint32_t changed[LISTED];
     const narc_index_column list = NARC_ARRAY(changed);
     for (uint32_t creeps = 0; creeps < 2; creeps++) {
@@ -455,19 +437,16 @@ TEST(stays_tight) {
         assert_true(worn.mean_perimeter * (double)worn.nodes <= 1.15 * fresh.mean_perimeter * (double)fresh.nodes);
         check_index(index, boxes, COUNT, NULL, NULL);
     }
-    narc_destroy_index(index);
-    narc_destroy_index(new);
-    free(boxes);
 }
 
 /* Of many worlds that lie over each other, who asks for one goes through few nodes: those with slots that have it. */
 TEST(keeps_worlds_apart) {
     enum { WORLDS = 512, EACH = 32, COUNT = WORLDS * EACH };
     struct test_random random = test_random_named("worlds of an index");
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    uint32_t *const world = malloc(COUNT * sizeof *world), *const all = malloc(COUNT * sizeof *all);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(free_at) uint32_t *const world = malloc(COUNT * sizeof *world), *const all = malloc(COUNT * sizeof *all);
     const narc_index_column changed = NARC_ARRAY(all);
-    narc_index *const index = create_index(NULL);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     for (size_t k = 0; k < COUNT; k++) {
         all[k] = (uint32_t)k;
         boxes[k] = random_box(&random, 6, 1, 1);
@@ -495,17 +474,13 @@ TEST(keeps_worlds_apart) {
     }
     assert_int_equal(narc_update_index(index, boxes, COUNT, &changed, COUNT, NULL, NULL), NARC_OK);
     assert_null(index->worlds);
-    narc_destroy_index(index);
-    free(boxes);
-    free(world);
-    free(all);
 }
 
 /* Boxes in a row, far from the origin, stand in leaves in the order of the row. */
 TEST(keeps_a_row_in_order) {
     enum { COUNT = 32768, OFFSET = 2 * COUNT };
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
-    narc_index *const index = create_index(NULL);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     for (uint32_t way = 0; way < 4; way++) {
         for (size_t k = 0; k < COUNT; k++) {
             const float place = (float)(k * 4097 % COUNT + OFFSET), x = way & 2 ? 0 : place, y = way & 2 ? place : 0;
@@ -518,19 +493,16 @@ TEST(keeps_a_row_in_order) {
                 assert_int_equal((size_t)index->body[k] * 4097 % COUNT, next++);
         assert_int_equal(next, COUNT);
     }
-    narc_destroy_index(index);
-    free(boxes);
 }
 
 /* What was built before it has no part in how slack an index of no boxes is. */
 TEST(has_no_slack_when_emptied) {
     const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};
-    narc_index *const index = create_index(NULL);
+    AUTO(narc_destroy_index_at) narc_index *const index = create_index(NULL);
     assert_int_equal(narc_build_index(index, boxes, 2, NULL, NULL), NARC_OK);
     assert_int_equal(narc_update_index(index, NULL, 0, NULL, 0, NULL, NULL), NARC_OK);
     const narc_index_statistics s = describe(index);
     assert_true(s.slack == 1 && s.boxes == 0 && s.bodies == 0 && s.nodes == 0 && s.depth == 0 && s.mean_perimeter == 0);
-    narc_destroy_index(index);
 }
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
@@ -540,8 +512,8 @@ TEST(survives_failing_allocations) {
     struct test_random random = test_random_named("memory of an index");
     struct ledger ledger = {.limited = true};
     const narc_allocator allocator = ledger_allocator(&ledger);
-    narc_box *const boxes = malloc(5000 * sizeof *boxes);
-    uint64_t *const category = malloc(5000 * sizeof *category);
+    AUTO(free_at) narc_box *const boxes = malloc(5000 * sizeof *boxes);
+    AUTO(free_at) uint64_t *const category = malloc(5000 * sizeof *category);
     narc_index *index = NULL, *const same = create_index(NULL);
     narc_error error;
     size_t failures = 0;
@@ -589,8 +561,6 @@ TEST(survives_failing_allocations) {
     narc_destroy_index(same);
     narc_destroy_index(NULL);
     assert_int_equal(ledger.live, 0);
-    free(boxes);
-    free(category);
 }
 
 TEST_MAIN("index")

@@ -62,8 +62,8 @@ static double case_bound(const struct scene *scene, size_t k) {
  * along n is at most the distance d times the cosine between both: one that is less than d by the bound at most has
  * 1 - cos <= bound / d. Of others that collide, the gap says all. */
 static void check_answers(const struct known *known, const struct scene *scene) {
-    uint64_t *bits = scene_overlaps(scene);
-    struct contacts all = scene_contacts(scene, INFINITY);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(scene);
+    AUTO(free_at) struct contacts all = scene_contacts(scene, INFINITY);
     assert_int_equal(all.count, scene->pair_count);
     for (size_t k = 0; k < all.count; k++) {
         const narc_contact *c = &all.rows[k];
@@ -79,13 +79,11 @@ static void check_answers(const struct known *known, const struct scene *scene) 
                      known->name, k, bit_is_set(bits, k), (double)c->separation, known->gap, (double)c->normal_x,
                      (double)c->normal_y, x, y);
     }
-    free(bits);
-    free(all.rows);
 }
 
 /* The pairs A - B and B - A in all frames; the reference has its say first. */
 static void check_known(const struct known *known) {
-    struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * FRAMES, 2 * FRAMES);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * FRAMES, 2 * FRAMES);
     const uint32_t shape_a = scene_add_shape(&scene, &known->a), shape_b = scene_add_shape(&scene, &known->b);
     for (size_t f = 0; f < FRAMES; f++) {
         struct body a = into_frame(&frames[f], 0, 0, 0, known->scale_a == 0 ? 1 : known->scale_a);
@@ -104,7 +102,6 @@ static void check_known(const struct known *known) {
             fail_msg("%s: the reference says %.12g, not %.12g", known->name, gap, known->gap);
     }
     check_answers(known, &scene);
-    destroy_scene(&scene);
 }
 
 /* Of two convex shapes with a middle of symmetry each, at one place, the depth is the least of the widths together,

@@ -35,11 +35,9 @@ static void put(struct scene *scene, uint32_t index, double x, double y, double 
 
 /* The manifold of a scene's only pair. */
 static narc_manifold find_one(const struct scene *scene, float margin) {
-    struct manifolds list = scene_manifolds(scene, margin);
+    AUTO(free_at) struct manifolds list = scene_manifolds(scene, margin);
     assert_int_equal(list.count, 1);
-    const narc_manifold m = list.rows[0];
-    free(list.rows);
-    return m;
+    return list.rows[0];
 }
 
 static size_t find_deeper(const narc_manifold *m) {
@@ -63,7 +61,7 @@ TEST(test_box_on_box) {
     for (size_t round = 0; round < 4; round++) {
         const double rounding = round % 2 ? 0.1 : 0, width = round < 2 ? 2 : 1;
         const struct shape below = box_of(2, 1, 0), above = box_of(width, 1, rounding);
-        struct scene scene = make_duo(&below, &above);
+        AUTO(destroy_scene) struct scene scene = make_duo(&below, &above);
         const unsigned up = find_edge_with(&below, PI / 2), down = find_edge_with(&above, -PI / 2);
         const unsigned up_arc = up & 0x3f, down_arc = down & 0x3f; /* counter-clockwise behind these edges */
         const unsigned first = (round == 0 ? (up_arc + 3) % 4 : up) | down_arc << 8;
@@ -84,7 +82,6 @@ TEST(test_box_on_box) {
             assert_true(fabs((double)m.point[1].x + half) < reach + rounding);
             assert_true(fabs((double)m.point[0].y - 0.495) < 0.06);
         }
-        destroy_scene(&scene);
     }
 }
 
@@ -92,7 +89,7 @@ TEST(test_box_on_box) {
 TEST(test_corner_on_corner) {
     struct test_random random = test_random_named("corner on corner");
     const struct shape box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&box, &box);
+    AUTO(destroy_scene) struct scene scene = make_duo(&box, &box);
     scene_add_pair(&scene, 1, 0);
     size_t one = 0, two = 0;
     for (size_t trial = 0; trial < test_trials(2000); trial++) {
@@ -125,13 +122,12 @@ TEST(test_corner_on_corner) {
         free(list.rows);
     }
     assert_true(one > two / 100);
-    destroy_scene(&scene);
 }
 
 /* A rounded box that rocks through a tilt of zero: ids stay, and both points and separations are continuous. */
 TEST(test_rocking) {
     const struct shape ground = box_of(20, 1, 0), rocker = box_of(2, 1, 0.2);
-    struct scene scene = make_duo(&ground, &rocker);
+    AUTO(destroy_scene) struct scene scene = make_duo(&ground, &rocker);
     const double step = 1e-4, largest = 0.1;
     float last[2][3] = {{0}};
     unsigned id[2] = {0};
@@ -151,7 +147,6 @@ TEST(test_rocking) {
         }
     }
     assert_true(frames > 1000);
-    destroy_scene(&scene);
 }
 
 /* How many points a query tells of, 0 without a row; they are those of a query without a margin, and one is the deeper. */
@@ -159,7 +154,7 @@ static void expect_points(const struct scene *scene, const narc_query *query, si
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     const narc_manifold all = find_one(scene, INFINITY);
-    struct manifolds found = find_manifolds(scene->store, &bodies, &pairs, query);
+    AUTO(free_at) struct manifolds found = find_manifolds(scene->store, &bodies, &pairs, query);
     assert_int_equal(found.count, points > 0);
     if (points > 0)
         assert_int_equal(found.rows[0].count, points);
@@ -170,13 +165,12 @@ static void expect_points(const struct scene *scene, const narc_query *query, si
     }
     if (points == 2)
         assert_memory_equal(found.rows, &all, sizeof all);
-    free(found.rows);
 }
 
 /* Points are listed exactly if their separations are below their margins, of which a second one may be larger; and the flat angle decides which edges face each other. */
 TEST(test_second_margin_and_flat_angle) {
     const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
-    struct scene scene = make_duo(&ground, &box);
+    AUTO(destroy_scene) struct scene scene = make_duo(&ground, &box);
     for (int side = -1; side <= 1; side += 2) {
         put(&scene, 1, 0, 1.02, side * 0.05);
         const narc_manifold all = find_one(&scene, INFINITY);
@@ -207,7 +201,6 @@ TEST(test_second_margin_and_flat_angle) {
     static const size_t points[] = {2, 2, 1, 1, 2, 1};
     for (size_t k = 0; k < 6; k++)
         expect_points(&scene, &(narc_query){.margin = INFINITY, .flat_angle = angles[k]}, points[k]);
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ ids */
@@ -238,7 +231,7 @@ TEST(test_doubled_corner) {
     size_t two = 0, near_joint = 0;
     for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
         const double normal = -random_between(&random, 0.3, 1.3);
-        struct scene scene = create_scene(NARC_FLOAT32, 3, 2, 2);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 3, 2, 2);
         scene_add_shape(&scene, &ground);
         for (int moved = 0; moved < 2; moved++) {
             const struct shape shape = doubled_corner(moved, moved, gaps[g], normal);
@@ -257,7 +250,7 @@ TEST(test_doubled_corner) {
                 const double x = moved, y = moved;
                 scene.bodies[1].shape = 1 + moved;
                 put(&scene, 1, place - c * x + s * y, 0.49 - s * x - c * y, tilt);
-                struct manifolds list = scene_manifolds(&scene, 1);
+                AUTO(free_at) struct manifolds list = scene_manifolds(&scene, 1);
                 assert_int_equal(list.count, 2);
                 assert_int_equal(list.rows[0].count, list.rows[1].count);
                 ids[moved] = find_ids(&list, 0);
@@ -270,12 +263,10 @@ TEST(test_doubled_corner) {
                     assert_true(point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
                 const size_t deep = both && point[1].separation < point[0].separation;
                 assert_true(!isinf(list.rows[0].radius_b) || point[deep].feature >> 8 & NARC_FEATURE_EDGE);
-                free(list.rows);
             }
             assert_int_equal(ids[0], ids[1]);
             near_joint += fabs(-PI / 2 - normal - tilt) < 0.4;
         }
-        destroy_scene(&scene);
     }
     assert_true(two > test_trials(400) / 4 && near_joint > test_trials(400) / 4);
 }
@@ -294,12 +285,11 @@ TEST(test_least_edge) {
                                          {-h, h, 0, 0.5 * PI, PI - right}},
                                         4};
             const struct shape ground = box_of(8 * h, 2 * h, 0);
-            struct scene scene = make_duo(&ground, &wedge);
+            AUTO(destroy_scene) struct scene scene = make_duo(&ground, &wedge);
             put(&scene, 0, 0, -h, 0);
             put(&scene, 1, 0, 0.25 * h, 0);
             const narc_manifold m = find_one(&scene, INFINITY);
             assert_int_equal(m.count, 1 + longer);
-            destroy_scene(&scene);
         }
     }
 }
@@ -316,16 +306,14 @@ TEST(test_short_edges_swapped) {
         struct shape shape = doubled_corner(1, 1, 0, normal);
         shape.arcs[0].center_x -= cut;
         shape.arcs[1].center_y += cut;
-        struct scene scene = make_duo(&ground, &shape);
+        AUTO(destroy_scene) struct scene scene = make_duo(&ground, &shape);
         scene_add_pair(&scene, 1, 0);
         const double tilt = -PI / 2 - normal + random_between(&random, -0.4, 0.4), c = cos(tilt), s = sin(tilt);
         put(&scene, 1, random_between(&random, -0.2, 0.2) - c + s, 0.49 - s - c, tilt);
-        struct manifolds list = scene_manifolds(&scene, 1);
+        AUTO(free_at) struct manifolds list = scene_manifolds(&scene, 1);
         assert_int_equal(list.count, 2);
         differ += list.rows[0].count != list.rows[1].count;
         two += list.rows[0].count == 2;
-        free(list.rows);
-        destroy_scene(&scene);
     }
     printf("  %zu of %zu differ, %zu with two points\n", differ, trials, two);
     assert_true(differ <= trials / 100 && two > trials / 20);
@@ -352,19 +340,17 @@ TEST(test_far_origin) {
             const double out_x = cos(joint), out_y = sin(joint), top_x = x + 0.7 + first * out_x;
             const double top_y = y + 0.7 + first * out_y;
             for (int edged = 0; edged < 2; edged++) {
-                struct scene scene = make_duo(edged ? &flat : &ball, &shape);
+                AUTO(destroy_scene) struct scene scene = make_duo(edged ? &flat : &ball, &shape);
                 /* The other body's right side, turned round to the joint. */
                 const double reach = edged ? 1 : 0.5;
                 put(&scene, 0, 0, 0, joint + PI);
                 put(&scene, 1, -top_x - reach * out_x, -top_y - reach * out_y, 0);
                 scene_add_pair(&scene, 1, 0);
-                struct manifolds list = scene_manifolds(&scene, INFINITY);
+                AUTO(free_at) struct manifolds list = scene_manifolds(&scene, INFINITY);
                 for (size_t i = 0; i < list.rows[0].count; i++)
                     assert_true(list.rows[0].point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
                 for (size_t i = 0; i < list.rows[1].count; i++)
                     assert_true((list.rows[1].point[i].feature & 0xff) != (1 | NARC_FEATURE_EDGE));
-                free(list.rows);
-                destroy_scene(&scene);
             }
         }
     }
@@ -378,7 +364,7 @@ TEST(test_leaning) {
     for (int rounded = 0; rounded < 2; rounded++) {
         const double radius = rounded ? 0.2 : 0;
         const struct shape box = box_of(2, 1, radius);
-        struct scene scene = make_duo(&ground, &box);
+        AUTO(destroy_scene) struct scene scene = make_duo(&ground, &box);
         size_t one = 0, two = 0;
         const unsigned corner = (find_edge_with(&box, 0) & 0x3f) - 1 + (unsigned)box.count; /* the lower right arc */
         for (double tilt = -89; tilt < -1; tilt += 0.01) {
@@ -391,7 +377,6 @@ TEST(test_leaning) {
             two += count == 2;
         }
         assert_true(one > 1000 && two > 1000);
-        destroy_scene(&scene);
     }
 }
 
@@ -413,15 +398,16 @@ TEST(test_ids_at_all_flat_angles) {
     struct test_random random = test_random_named("ids at all flat angles");
     size_t compared = 0, come_and_go = 0;
     for (int family = 0; family < FAMILY_COUNT * FAMILY_COUNT; family++) {
+        AUTO(destroy_scene)
         struct scene scene = make_placed_scene(&random, NARC_FLOAT32, (enum family)(family / FAMILY_COUNT),
                                                (enum family)(family % FAMILY_COUNT), count);
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
-        struct contacts contacts = scene_contacts(&scene, INFINITY);
-        struct manifolds usual = scene_manifolds(&scene, INFINITY);
+        AUTO(free_at) struct contacts contacts = scene_contacts(&scene, INFINITY);
+        AUTO(free_at) struct manifolds usual = scene_manifolds(&scene, INFINITY);
         for (size_t a = 1; a < ANGLES; a++) {
             const narc_query query = {.margin = INFINITY, .flat_angle = angles[a]};
-            struct manifolds list = find_manifolds(scene.store, &bodies, &pairs, &query);
+            AUTO(free_at) struct manifolds list = find_manifolds(scene.store, &bodies, &pairs, &query);
             for (size_t k = 0; k < count; k++) {
                 const size_t i = find_deepest(&usual, &contacts, k), j = find_deepest(&list, &contacts, k);
                 if (i == usual.rows[k].count || j == list.rows[k].count)
@@ -430,11 +416,7 @@ TEST(test_ids_at_all_flat_angles) {
                 compared++;
                 come_and_go += usual.rows[k].count != list.rows[k].count;
             }
-            free(list.rows);
         }
-        free(contacts.rows);
-        free(usual.rows);
-        destroy_scene(&scene);
     }
     printf("  %zu points compared, %zu where the second one comes or goes\n", compared, come_and_go);
     assert_true(compared > 25 * count && come_and_go > 2 * count);

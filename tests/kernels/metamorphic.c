@@ -37,11 +37,11 @@ static double bound_of(const struct scene *scene, size_t k) {
 /* By any angle. Turning the rounded positions rounds them again, hence doubles. Both answers are within one bound of the
  * same exact value. */
 TEST(test_rotate) {
-    struct scene scene = make_scene("rotate");
+    AUTO(destroy_scene) struct scene scene = make_scene("rotate");
     struct test_random random = test_random_named("angle");
     const double angle = random_between(&random, -PI, PI), c = cos(angle), s = sin(angle);
-    struct contacts before = scene_contacts(&scene, INFINITY);
-    uint64_t *const bits = scene_overlaps(&scene);
+    AUTO(free_at) struct contacts before = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *const bits = scene_overlaps(&scene);
     scene.precision = NARC_FLOAT64;
     for (size_t k = 0; k < scene.body_count; k++) {
         struct body *const body = &scene.bodies[k], was = *body;
@@ -50,27 +50,22 @@ TEST(test_rotate) {
         body->cosine = (float)(c * (double)was.cosine - s * (double)was.sine);
         body->sine = (float)(s * (double)was.cosine + c * (double)was.sine);
     }
-    struct contacts after = scene_contacts(&scene, INFINITY);
-    uint64_t *const turned = scene_overlaps(&scene);
+    AUTO(free_at) struct contacts after = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *const turned = scene_overlaps(&scene);
     assert_int_equal(before.count, after.count);
     for (size_t k = 0; k < after.count; k++) {
         const double gap = (double)before.rows[k].separation, bound = 2 * bound_of(&scene, k);
         assert_true(fabs(gap - (double)after.rows[k].separation) <= bound);
         assert_true(bit_is_set(bits, k) == bit_is_set(turned, k) || fabs(gap) <= bound);
     }
-    free(before.rows);
-    free(after.rows);
-    free(bits);
-    free(turned);
-    destroy_scene(&scene);
 }
 
 /* A power of two changes exponents only: lengths follow, directions stay to the last bit. `world`: of all; else a scale says
  * the same as a shape that is so much larger. */
 static void check_scaled(const char *name, float factor, bool world) {
-    struct scene scene = make_scene(name);
-    struct contacts before = scene_contacts(&scene, INFINITY);
-    uint64_t *const bits = scene_overlaps(&scene);
+    AUTO(destroy_scene) struct scene scene = make_scene(name);
+    AUTO(free_at) struct contacts before = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *const bits = scene_overlaps(&scene);
     narc_shapes *const larger = empty_store(), *const usual = scene.store;
     for (uint32_t k = 0; k < scene.shape_count; k++) {
         struct shape shape = scene.shapes[k];
@@ -89,8 +84,8 @@ static void check_scaled(const char *name, float factor, bool world) {
         body->scale *= factor;
         round_position(body, NARC_FLOAT32);
     }
-    struct contacts after = scene_contacts(&scene, INFINITY);
-    uint64_t *const scaled = scene_overlaps(&scene);
+    AUTO(free_at) struct contacts after = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) uint64_t *const scaled = scene_overlaps(&scene);
     assert_int_equal(before.count, after.count);
     for (size_t k = 0; k < after.count && world; k++) {
         narc_contact *const row = &after.rows[k];
@@ -102,12 +97,7 @@ static void check_scaled(const char *name, float factor, bool world) {
     }
     assert_memory_equal(bits, scaled, 8 * NARC_BIT_WORDS(after.count));
     assert_memory_equal(before.rows, after.rows, after.count * sizeof *after.rows);
-    free(before.rows);
-    free(after.rows);
-    free(bits);
-    free(scaled);
     narc_destroy_shapes(usual);
-    destroy_scene(&scene);
 }
 
 TEST(test_scale) {

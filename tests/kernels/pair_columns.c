@@ -19,7 +19,7 @@ static void check_same_rows(const narc_contact *found, const narc_contact *right
 TEST(test_selected_margins) {
     static const float margins[] = {0, 0.25f, -0.1f};
     struct test_random random = test_random_named("margins");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     struct margin {
@@ -32,18 +32,15 @@ TEST(test_selected_margins) {
     for (uint32_t k = 0; k < PAIRS / 2; k++)
         selection[k] = PAIRS - 1 - 2 * k;
     narc_query query = {.margins = NARC_COLUMN(margin, margin)};
-    struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
+    AUTO(free_at) struct contacts all = find_contacts(scene.store, &bodies, &pairs, &query);
     query.selection = NARC_ARRAY(selection);
     query.selection_count = PAIRS / 2;
-    struct contacts found = find_contacts(scene.store, &bodies, &pairs, &query);
+    AUTO(free_at) struct contacts found = find_contacts(scene.store, &bodies, &pairs, &query);
     size_t at = 0;
     for (size_t k = all.count; k-- > 0;)
         if (all.rows[k].pair % 2)
             check_same_rows(&found.rows[at++], &all.rows[k], 1);
     assert_int_equal(at, found.count);
-    free(all.rows);
-    free(found.rows);
-    destroy_scene(&scene);
 }
 
 /* Of the same shapes, each pair's bodies anew: A in the origin, B where the difference of the positions and the shift
@@ -71,7 +68,8 @@ static struct scene place_differences(const struct scene *scene, const float *sh
 TEST(test_shifts) {
     struct test_random random = test_random_named("shifts");
     for (int precision = 0; precision < 2; precision++) {
-        struct scene scene = make_random_scene(&random, (narc_precision)precision, BODIES, PAIRS);
+        AUTO(destroy_scene) struct scene scene = make_random_scene(&random, (narc_precision)precision, BODIES, PAIRS);
+        AUTO(guard_release_at)
         float *const shift_x = guard_allocate(PAIRS * sizeof *shift_x), *const shift_y =
                                                                             guard_allocate(PAIRS * sizeof *shift_y);
         for (size_t k = 0; k < BODIES && precision; k++) {
@@ -83,33 +81,27 @@ TEST(test_shifts) {
             shift_y[k] = (float)random_between(&random, -1, 1);
         }
         struct scene placed = place_differences(&scene, shift_x, shift_y);
-        struct contacts right = scene_contacts(&placed, 0.3f);
-        uint64_t *const right_bits = scene_overlaps(&placed);
+        AUTO(free_at) struct contacts right = scene_contacts(&placed, 0.3f);
+        AUTO(free_at) uint64_t *const right_bits = scene_overlaps(&placed);
         const narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
         pairs.shift_x = (narc_float_column){shift_x, sizeof *shift_x};
         pairs.shift_y = (narc_float_column){shift_y, sizeof *shift_y};
+        AUTO(free_at)
         struct contacts found = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.3f});
-        uint64_t *const bits = find_overlaps(scene.store, &bodies, &pairs, NULL);
+        AUTO(free_at) uint64_t *const bits = find_overlaps(scene.store, &bodies, &pairs, NULL);
         assert_int_equal(found.count, right.count);
         check_same_rows(found.rows, right.rows, right.count);
         assert_memory_equal(bits, right_bits, NARC_BIT_WORDS(PAIRS) * sizeof *bits);
-        free(found.rows);
-        free(right.rows);
-        free(bits);
-        free(right_bits);
         free(placed.bodies);
         free(placed.pairs);
-        guard_release(shift_x);
-        guard_release(shift_y);
-        destroy_scene(&scene);
     }
 }
 
 /* A column may be left out. Where a shift is NaN or infinite there is no answer. */
 TEST(test_one_shift) {
     struct test_random random = test_random_named("one shift");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     const narc_bodies bodies = scene_bodies(&scene);
     narc_pairs pairs = scene_pairs(&scene);
     static float shift[PAIRS], zeros[PAIRS];
@@ -122,16 +114,13 @@ TEST(test_one_shift) {
         pairs.shift_x = along_y ? (narc_float_column){0} : NARC_ARRAY(shift);
         pairs.shift_y = along_y ? NARC_ARRAY(shift) : (narc_float_column){0};
         const narc_query query = {.margin = INFINITY, .out_skipped = &skipped};
-        struct contacts found = find_contacts(scene.store, &bodies, &pairs, &query);
+        AUTO(free_at) struct contacts found = find_contacts(scene.store, &bodies, &pairs, &query);
         *(along_y ? &pairs.shift_x : &pairs.shift_y) = NARC_ARRAY(zeros);
-        struct contacts right = find_contacts(scene.store, &bodies, &pairs, &query);
+        AUTO(free_at) struct contacts right = find_contacts(scene.store, &bodies, &pairs, &query);
         check_same_rows(found.rows, right.rows, PAIRS);
         assert_int_equal(skipped, 2);
         assert_true(found.rows[17].count == 0 && found.rows[18].count == 0);
-        free(found.rows);
-        free(right.rows);
     }
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("pair_columns")

@@ -175,9 +175,9 @@ static void check_all_families(const char *name, narc_precision precision, size_
     struct report report = {0};
     for (int k = 0; k < FAMILY_COUNT * FAMILY_COUNT; k++) {
         const enum family a = (enum family)(k / FAMILY_COUNT), b = (enum family)(k % FAMILY_COUNT);
+        AUTO(destroy_scene)
         struct scene scene = make_placed_scene(&random, precision, a, b, PLACE_COUNT * test_trials(rounds));
         check_scene(&scene, a, b, &report);
-        destroy_scene(&scene);
     }
     print_report(&report);
     const size_t pairs = report.manifolds.pairs;

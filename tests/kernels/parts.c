@@ -59,20 +59,17 @@ static narc_body *place_all(const struct compounds *c) {
 /* Without cosines, sines and scales it is as with those of a part that is not turned. */
 TEST(what_is_left_out_is_not_turned) {
     struct test_random random = test_random_named("unturned parts");
-    struct compounds c = make_compounds(&random, 20, 300, false);
+    AUTO(destroy_compounds) struct compounds c = make_compounds(&random, 20, 300, false);
     for (size_t k = 0; k < c.parts.body_count; k++) {
         c.parts.bodies[k].cosine = c.parts.bodies[k].scale = 1;
         c.parts.bodies[k].sine = 0;
     }
-    narc_body *const right = place_all(&c);
+    AUTO(guard_release_at) narc_body *const right = place_all(&c);
     const narc_bodies owners = scene_bodies(&c.owners);
     narc_bodies parts = scene_bodies(&c.parts);
     parts.cosine.base = parts.sine.base = parts.scale.base = NULL;
-    narc_body *const rows = place(&owners, &parts, c.owner, NULL);
+    AUTO(guard_release_at) narc_body *const rows = place(&owners, &parts, c.owner, NULL);
     assert_memory_equal(rows, right, parts.count * sizeof *rows);
-    guard_release(rows);
-    guard_release(right);
-    destroy_compounds(&c);
 }
 
 /* ------------------------------------------------------------------------------------------------ places */
@@ -85,8 +82,8 @@ static double number_of(const struct scene *scene, const struct body *body, bool
 TEST(parts_are_in_their_places) {
     struct test_random random = test_random_named("places of parts");
     for (size_t trial = 0; trial < test_trials(40); trial++) {
-        struct compounds c = make_compounds(&random, 1 + random_below(&random, 40), 200, false);
-        narc_body *const rows = place_all(&c);
+        AUTO(destroy_compounds) struct compounds c = make_compounds(&random, 1 + random_below(&random, 40), 200, false);
+        AUTO(guard_release_at) narc_body *const rows = place_all(&c);
         for (size_t k = 0; k < c.parts.body_count; k++) {
             const struct body *const part = &c.parts.bodies[k], *const at = &c.owners.bodies[c.owner[k]];
             const double turn = atan2((double)at->sine, (double)at->cosine), scale = (double)at->scale;
@@ -100,8 +97,6 @@ TEST(parts_are_in_their_places) {
                         fabs((double)rows[k].sine - sin(angle)) <= 0x1p-24 * 0.51);
             assert_true(rows[k].scale == at->scale * part->scale && rows[k].shape == part->shape);
         }
-        guard_release(rows);
-        destroy_compounds(&c);
     }
 }
 
@@ -125,12 +120,11 @@ TEST(unturned_parts_keep_their_rotation) {
         narc_view_bodies(&plain[drifted], COUNT, &parts);
         parts.x.stride = parts.y.stride = parts.cosine.stride = parts.sine.stride = parts.scale.stride = 0;
         parts.shape.stride = 0;
-        narc_body *const rows = place(&owners, &parts, owner, NULL);
+        AUTO(guard_release_at) narc_body *const rows = place(&owners, &parts, owner, NULL);
         for (size_t k = 0; k < COUNT; k++)
             assert_memory_equal(&rows[k].cosine, &bodies[k].cosine, 2 * sizeof(float));
         if (!drifted)
             assert_memory_equal(rows, bodies, sizeof bodies);
-        guard_release(rows);
     }
 }
 
@@ -154,7 +148,7 @@ TEST(moved_shapes_are_placed_parts) {
         const double angle = random_between(&random, -4, 4), scale = random_between(&random, 0.5, 2);
         const float cosine = (float)cos(angle), sine = (float)sin(angle);
         struct shape moved = {.count = shape.count};
-        narc_shapes *const store = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
         narc_body part = {random_between(&random, -2, 2), random_between(&random, -2, 2), cosine, sine, (float)scale,
                           store_shape(store, shape)};
         const struct body turned = turned_body(random_between(&random, -4, 4), 1.5);
@@ -181,7 +175,6 @@ TEST(moved_shapes_are_placed_parts) {
                          NARC_OK);
         assert_int_equal(row[0].count + row[1].count, 2);
         assert_true(fabsf(row[0].separation - row[1].separation) <= 40 * (float)NARC_ERROR_BOUND);
-        narc_destroy_shapes(store);
     }
 }
 
@@ -214,7 +207,7 @@ TEST(moved_shapes_meet_when_parts_do) {
         const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
         const float turn = (float)random_between(&random, -3, 3);
         const struct body at = turned_body(random_between(&random, -4, 4), 1);
-        narc_shapes *const store = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
         const uint32_t stored = store_shape(store, shape);
         const narc_body part = {random_between(&random, -2, 2), 1, at.cosine, at.sine, 1, stored};
         struct shape moved = {.count = shape.count};
@@ -235,7 +228,6 @@ TEST(moved_shapes_meet_when_parts_do) {
                 assert_true(here <= tolerance + rounding);
         }
         hits += row.count == NARC_CAST_HIT && row.fraction > 0;
-        narc_destroy_shapes(store);
     }
     assert_true(hits > test_trials(200) / 4);
 }
@@ -247,8 +239,8 @@ TEST(parts_of_one_body_form_no_pair) {
     enum { BODIES = 60, PARTS = 4 * BODIES };
     struct test_random random = test_random_named("pairs of parts");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
-        struct compounds c = make_compounds(&random, BODIES, PARTS, false);
-        narc_broad_phase *const broad = create_broad_phase(NULL);
+        AUTO(destroy_compounds) struct compounds c = make_compounds(&random, BODIES, PARTS, false);
+        AUTO(narc_destroy_broad_phase_at) narc_broad_phase *const broad = create_broad_phase(NULL);
         uint32_t a[9000], b[9000];
         for (size_t k = 0; k < PARTS; k++) {
             struct body *const part = &c.parts.bodies[k];
@@ -259,7 +251,7 @@ TEST(parts_of_one_body_form_no_pair) {
             at->x = at->x_single = (float)random_between(&random, -9, 9);
             at->y = at->y_single = (float)random_between(&random, -9, 9);
         }
-        narc_body *const rows = place_all(&c);
+        AUTO(guard_release_at) narc_body *const rows = place_all(&c);
         narc_bodies bodies;
         narc_view_bodies(rows, PARTS, &bodies);
         const narc_pair_filter filter = {.owner = {c.owner, sizeof *c.owner}};
@@ -274,9 +266,6 @@ TEST(parts_of_one_body_form_no_pair) {
             assert_true(c.owner[a[k]] != c.owner[b[k]] && overlap(&boxes[a[k]], &boxes[b[k]]));
         assert_int_equal(count, expected);
         assert_true(own > 0 && expected > 0); /* or nothing was tested */
-        narc_destroy_broad_phase(broad);
-        guard_release(rows);
-        destroy_compounds(&c);
     }
 }
 

@@ -150,9 +150,8 @@ static struct scene make_polygons(struct test_random *random, enum kinds kind) {
 static void check_kind(enum kinds kind, const char *name) {
     struct test_random random = test_random_named(name);
     for (size_t round = 0; round < test_trials(6); round++) {
-        struct scene scene = make_polygons(&random, kind);
+        AUTO(destroy_scene) struct scene scene = make_polygons(&random, kind);
         check_plain_scene(&random, &scene, name);
-        destroy_scene(&scene);
     }
 }
 
@@ -176,7 +175,7 @@ TEST(test_others) { check_kind(OTHERS, "polygons among others"); }
 TEST(test_piles) {
     struct test_random random = test_random_named("piles");
     for (size_t round = 0; round < test_trials(4); round++) {
-        struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * PAIRS, PAIRS);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * PAIRS, PAIRS);
         for (size_t k = 0; k < SHAPES; k++) {
             const struct shape shape = make_polygon(&random, ROUND);
             scene_add_shape(&scene, &shape);
@@ -195,7 +194,6 @@ TEST(test_piles) {
             check_plain_scene(&random, &scene, "piles");
             scene_move_bodies(&scene, &random, 0.01);
         }
-        destroy_scene(&scene);
     }
 }
 

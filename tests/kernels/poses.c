@@ -51,6 +51,7 @@ static float random_angle(struct test_random *random) {
 TEST(test_accuracy) {
     struct test_random random = test_random_named("pose accuracy");
     size_t count = test_trials(200000);
+    AUTO(free_at)
     float *angles = malloc(count * sizeof(float)), *cosines = malloc(count * sizeof(float)),
           *sines = malloc(count * sizeof(float));
     for (size_t k = 0; k < count; k++)
@@ -66,9 +67,6 @@ TEST(test_accuracy) {
                      sine);
         }
     }
-    free(angles);
-    free(cosines);
-    free(sines);
 }
 
 /* Any NaN is as good as any other. */
@@ -80,8 +78,9 @@ static void check_same_numbers(const float *expected, const float *values, size_
 
 static void check_count(struct test_random *random, size_t count) {
     size_t size = count * sizeof(float);
+    AUTO(guard_release_at)
     float *angles = guard_allocate(size), *cosines = guard_allocate(size), *sines = guard_allocate(size);
-    float *expected_cosines = guard_allocate(size), *expected_sines = guard_allocate(size);
+    AUTO(guard_release_at) float *expected_cosines = guard_allocate(size), *expected_sines = guard_allocate(size);
     for (size_t k = 0; k < count; k++)
         angles[k] = random_angle(random);
     test_use_isa("scalar");
@@ -91,19 +90,13 @@ static void check_count(struct test_random *random, size_t count) {
     check_same_numbers(expected_cosines, cosines, count);
     check_same_numbers(expected_sines, sines, count);
     /* In place, either way round. */
-    float *copy = guard_copy(angles, size);
+    AUTO(guard_release_at) float *copy = guard_copy(angles, size);
     assert_int_equal(narc_compute_poses(copy, count, copy, sines, NULL), NARC_OK);
     check_same_numbers(expected_cosines, copy, count);
     check_same_numbers(expected_sines, sines, count);
     assert_int_equal(narc_compute_poses(angles, count, cosines, angles, NULL), NARC_OK);
     check_same_numbers(expected_cosines, cosines, count);
     check_same_numbers(expected_sines, angles, count);
-    guard_release(angles);
-    guard_release(cosines);
-    guard_release(sines);
-    guard_release(expected_cosines);
-    guard_release(expected_sines);
-    guard_release(copy);
 }
 
 TEST(test_counts) {

@@ -76,12 +76,11 @@ static struct spans find_spans(const struct room *room, const struct test_ray *r
         narc_box box;
         alone.boxes = &box;
         index_room(&alone, false, false);
-        narc_ray_hit *const hits = cast_in_room(&alone, &view, NULL);
+        AUTO(guard_release_at) narc_ray_hit *const hits = cast_in_room(&alone, &view, NULL);
         spans.meets[b] = hits[0].count && hits[1].count;
         spans.starts[b] = spans.meets[b] && hits[0].normal_x == 0 && hits[0].normal_y == 0;
         spans.from[b] = (double)hits[0].fraction;
         spans.to[b] = 64 - (double)hits[1].fraction;
-        guard_release(hits);
     }
     return spans;
 }
@@ -113,7 +112,7 @@ TEST(things_are_met_as_wholes) {
     enum { BODIES = THINGS * PARTS };
     for (size_t trial = 0; trial < test_trials(12); trial++) {
         uint32_t owner[BODIES];
-        struct room room = create_things(&random, owner);
+        AUTO(destroy_room) struct room room = create_things(&random, owner);
         for (size_t k = 0; k < THING_RAYS; k++) {
             const struct body *const body = &room.scene.bodies[random_below(&random, BODIES)];
             const double along = atan2((double)body->sine, (double)body->cosine);
@@ -138,7 +137,7 @@ TEST(things_are_met_as_wholes) {
                     .search = {.mask = {&mask, 0}, .ignored = {&ignored, 0}, .owners = &owners},
                     .inside = inside,
                     .most = BODIES};
-                narc_ray_hit *const rows = cast_in_room(&room, &view, &options);
+                AUTO(guard_release_at) narc_ray_hit *const rows = cast_in_room(&room, &view, &options);
                 for (size_t i = 0; i < BODIES && rows[i].count; i++) {
                     const uint32_t thing = owner[rows[i].body];
                     assert_true(found[rows[i].body] && (i == 0 || rows[i - 1].fraction <= rows[i].fraction));
@@ -170,13 +169,10 @@ TEST(things_are_met_as_wholes) {
                 }
                 narc_ray_options first = options;
                 first.most = 1;
-                narc_ray_hit *const row = cast_in_room(&room, &view, &first);
+                AUTO(guard_release_at) narc_ray_hit *const row = cast_in_room(&room, &view, &first);
                 assert_memory_equal(row, rows, sizeof *row);
-                guard_release(row);
-                guard_release(rows);
             }
         }
-        destroy_room(&room);
     }
 }
 
@@ -185,7 +181,7 @@ TEST(things_are_met_as_wholes) {
 TEST(skips_rays_without_an_answer) {
     struct test_random random = test_random_named("skipped rays");
     enum { COUNT = 50, RAYS = 12 };
-    struct room room = create_room(&random, NARC_FLOAT64, COUNT, 10);
+    AUTO(destroy_room) struct room room = create_room(&random, NARC_FLOAT64, COUNT, 10);
     for (size_t k = 0; k < RAYS; k++) {
         struct test_ray rays[RAYS];
         size_t skipped = 99;
@@ -202,6 +198,7 @@ TEST(skips_rays_without_an_answer) {
         else
             rays[k].fraction = INFINITY;
         const narc_rays view = view_rays(rays, RAYS);
+        AUTO(guard_release_at)
         narc_ray_hit *const hits = cast_in_room(&room, &view, &(narc_ray_options){.out_skipped = &skipped});
         assert_int_equal(skipped, k < 8);
         for (size_t i = 0; i < RAYS; i++) {
@@ -211,16 +208,14 @@ TEST(skips_rays_without_an_answer) {
             else
                 assert_int_equal(hits[i].count, 1);
         }
-        guard_release(hits);
     }
-    destroy_room(&room);
 }
 
 /* Scenes of any size, far from anything, with rays from beyond and of any length. */
 TEST(finds_bodies_of_any_size_from_anywhere) {
     struct test_random random = test_random_named("any size");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
         const struct shape disc = circle_of(1);
         const double size = random_log_between(&random, 1e-8, 1e8), away = size * random_log_between(&random, 1, 1e9);
         const double angle = trial % 4 ? random_between(&random, -4, 4) : 1.5707963267948966 * (double)(trial / 4 % 4);
@@ -240,15 +235,14 @@ TEST(finds_bodies_of_any_size_from_anywhere) {
         ray.x = scene.bodies[0].x - away * ((double)ray.motion_x / unit);
         ray.y = -away * ((double)ray.motion_y / unit);
         const narc_rays view = view_rays(&ray, 1);
+        AUTO(guard_release_at)
         narc_ray_hit *const hit = cast_in_room(&room, &view, &(narc_ray_options){.inside = NARC_INSIDE_LEAVES});
         if (away > 1.001 * size && away / unit < 1e38) {
             assert_int_equal(hit->count, 1);
             assert_true(fabs((double)hit->fraction * unit - (away - size)) <= 1e-6 * away);
             assert_true(fabs(hypot((double)hit->point_x, (double)hit->point_y) - size) <= 1e-6 * size);
         }
-        guard_release(hit);
         narc_destroy_index(room.index);
-        destroy_scene(&scene);
     }
 }
 
@@ -256,16 +250,14 @@ TEST(finds_bodies_of_any_size_from_anywhere) {
 TEST(meets_nobody) {
     const struct test_ray ray = {0, 0, 1, 0, 1};
     const narc_rays view = view_rays(&ray, 1);
-    narc_shapes *const store = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *const store = empty_store();
     narc_ray_hit hit;
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     narc_error error;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     expect_ok(narc_build_index(index, NULL, 0, NULL, &error), &error);
     expect_ok(narc_cast_rays(index, store, &(narc_bodies){0}, &view, NULL, &hit, 1, &error), &error);
     assert_true(hit.ray == 0 && hit.count == 0);
-    narc_destroy_index(index);
-    narc_destroy_shapes(store);
 }
 
 TEST_MAIN("ray_scenes")

@@ -46,11 +46,10 @@ static void meet(const struct scene *scene, const narc_rays *rays, const narc_ra
     narc_box boxes[2];
     narc_error error;
     assert_true(bodies.count <= 2);
-    narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(scene->store, &bodies, NULL, boxes);
     expect_ok(narc_cast_rays(index, scene->store, &bodies, rays, options, hits,
                              rays->count * (options->most ? options->most : 1), &error),
               &error);
-    narc_destroy_index(index);
 }
 
 static void check_body(struct test_random *random, const struct scene *scene, enum ray_kind kind,
@@ -89,14 +88,13 @@ static void check_family(const char *name, bool hard, int family, size_t trials)
     struct test_random random = test_random_named(name);
     struct statistics all = {0};
     for (size_t trial = 0; trial < trials; trial++) {
-        struct scene scene = create_scene((narc_precision)(trial % 2), 1, 1, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene((narc_precision)(trial % 2), 1, 1, 1);
         const struct shape shape =
             hard ? make_hard_shape(&random, (enum hard_family)family) : make_shape(&random, (enum family)family);
         scene_add_shape(&scene, &shape);
         scene_add_body(&scene, place_body(&random, scene.precision));
         for (enum ray_kind kind = 0; kind < RAY_KINDS; kind++)
             check_body(&random, &scene, kind, &all);
-        destroy_scene(&scene);
     }
     printf("  %-9s %zu rays, %.0f %% hit, %.0f %% from inside; worst, of the bound: outline %.3f, ray %.3f, early "
            "%.3f, normal %.3f\n",
@@ -118,7 +116,7 @@ TEST(meets_hard_shapes) {
 /* Where rays meet two bodies with exact numbers, one at the origin and one at (2, 0), both 2 wide and high. */
 static narc_ray_hit *meet_two(double radius, const struct test_ray *rays, size_t count, narc_ray_options options) {
     static narc_ray_hit hits[32];
-    struct scene scene = create_scene(NARC_FLOAT32, 1, 2, 1);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 1, 2, 1);
     const struct shape box = box_of(2, 2, radius);
     const narc_rays view = view_rays(rays, count);
     assert_true(count * (options.most ? options.most : 1) <= sizeof hits / sizeof *hits);
@@ -127,7 +125,6 @@ static narc_ray_hit *meet_two(double radius, const struct test_ray *rays, size_t
     scene_add_body(&scene, turned_body(0, 1));
     scene.bodies[1].x = scene.bodies[1].x_single = 2;
     meet(&scene, &view, &options, hits);
-    destroy_scene(&scene);
     return hits;
 }
 
@@ -188,7 +185,7 @@ static struct scene make_neighbours(struct test_random *random) {
 TEST(nothing_slips_between_bodies_that_touch) {
     struct test_random random = test_random_named("between neighbours");
     for (size_t trial = 0; trial < test_trials(400); trial++) {
-        struct scene scene = make_neighbours(&random);
+        AUTO(destroy_scene) struct scene scene = make_neighbours(&random);
         struct test_ray rays[RAYS];
         narc_ray_hit hits[2 * RAYS];
         for (size_t k = 0; k < RAYS; k++) { /* exactly through the origin: the double of a float is the motion */
@@ -211,7 +208,6 @@ TEST(nothing_slips_between_bodies_that_touch) {
             assert_true(hit->fraction >= 0 && hit->fraction <= 2 && fabs(hypot(nx, ny) - 1) < 1e-6);
             assert_true(nx * motion_x + ny * motion_y < 1e-6 * hypot(motion_x, motion_y));
         }
-        destroy_scene(&scene);
     }
 }
 
@@ -227,7 +223,7 @@ TEST(a_touch_counts_in_a_fan_as_alone) {
     struct test_random random = test_random_named("touches in fans");
     size_t hits = 0, misses = 0;
     for (size_t trial = 0; trial < test_trials(400); trial++) {
-        struct scene scene = make_neighbours(&random);
+        AUTO(destroy_scene) struct scene scene = make_neighbours(&random);
         struct test_ray rays[RAYS];
         narc_ray_hit together[RAYS], alone;
         const double x = random_between(&random, -5, 5), y = random_between(&random, -5, 5);
@@ -253,7 +249,6 @@ TEST(a_touch_counts_in_a_fan_as_alone) {
             hits += alone.count;
             misses += !alone.count;
         }
-        destroy_scene(&scene);
     }
     assert_true(hits > 0 && misses > 0);
 }
@@ -263,7 +258,7 @@ TEST(a_touch_counts_in_a_fan_as_alone) {
 TEST(meets_the_ends_of_segments) {
     struct test_random random = test_random_named("along segments");
     for (size_t trial = 0; trial < test_trials(1000); trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 1, 1, 1);
         const double angle = random_between(&random, -4, 4), turn = random_between(&random, -4, 4);
         const double half = random_log_between(&random, 0.1, 10), c = half * cos(turn), s = half * sin(turn);
         const double bound = NARC_ERROR_BOUND * half;
@@ -288,7 +283,6 @@ TEST(meets_the_ends_of_segments) {
         assert_true(fabs((double)hit.fraction - (side * half - start)) < 4 * bound);
         assert_true(fabs((double)hit.point_x - side * half * (double)x) < 4 * bound && hit.radius == 0);
         assert_true(side * (double)(hit.normal_x * x + hit.normal_y * y) > 1 - 1e-6);
-        destroy_scene(&scene);
     }
 }
 
@@ -319,10 +313,10 @@ TEST(finds_the_same_beside_a_far_body) {
     const uint32_t other = 1;
     const narc_ray_options options = {.search.ignored = {&other, 0}};
     const narc_rays view = view_rays(rays, COUNT);
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (int trial = 0; trial < 16; trial++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
         struct body body = turned_body(0, 1);
         const struct shape box = box_of(2, 2, 0);
         narc_error error;
@@ -358,9 +352,7 @@ TEST(finds_the_same_beside_a_far_body) {
             hits += beside[k].count;
         assert_memory_equal(alone, beside, sizeof alone);
         assert_true(hits > COUNT / 8);
-        destroy_scene(&scene);
     }
-    narc_destroy_index(index);
 }
 
 TEST_MAIN("rays")

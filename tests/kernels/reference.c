@@ -44,6 +44,7 @@ TEST(test_pieces) {
     static const double steps = 1e-11;
     double worst = 0;
     for (int precision = 0; precision < 2; precision++) {
+        AUTO(destroy_corpus)
         struct corpus corpus = make_corpus("pieces", precision ? NARC_FLOAT64 : NARC_FLOAT32, 0.5, false);
         solve_corpus(&corpus);
         for (size_t k = 0; k < corpus.scene.pair_count; k++) {
@@ -55,7 +56,6 @@ TEST(test_pieces) {
             worst = fmax(worst, difference);
         }
         printf("  %zu pairs, largest difference %.3g of their reach\n", corpus.scene.pair_count, worst);
-        destroy_corpus(&corpus);
     }
 }
 
@@ -127,11 +127,11 @@ TEST(test_ground_of_shapes) {
 TEST(test_ground_under_discs) {
     struct test_random random = test_random_named("ground under discs");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
-        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
+        AUTO(free_at) const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
         const struct shape disc = circle_of(random_log_between(&random, 0.1, 1));
         const struct body body = ride_chain(&random, &chain, &disc, 0.1);
         const struct reference_body posed = pose_shape(&disc, &body);
-        struct ground *ground = make_ground(&chain);
+        AUTO(destroy_ground_at) struct ground *ground = make_ground(&chain);
         struct ground_search *search = search_ground(ground, &posed, 0.5, 0.02, 0.2);
         const double middle = ground_distance(ground, (narc_point){body.x, body.y}).distance;
         const double radius = disc.arcs[0].radius * hypot(posed.cosine, posed.sine);
@@ -150,8 +150,6 @@ TEST(test_ground_under_discs) {
             fail_msg("%s: least distance %.12g instead of %.12g",
                      chain_family_name((enum chain_family)(trial % CHAIN_FAMILIES)), least, middle - radius);
         destroy_search(search);
-        destroy_ground(ground);
-        free(chain.arcs);
     }
 }
 
@@ -162,9 +160,9 @@ TEST(test_clearance_of_ground) {
     struct test_random random = test_random_named("clearance of ground");
     size_t in_air = 0, met = 0;
     for (size_t trial = 0; trial < test_trials(20 * CHAIN_FAMILIES); trial++) {
-        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
+        AUTO(free_at) const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES));
         const struct shape shape = make_rider(&random, &chain, (enum chain_family)(trial % CHAIN_FAMILIES));
-        struct ground *ground = make_ground(&chain);
+        AUTO(destroy_ground_at) struct ground *ground = make_ground(&chain);
         const double gap = random_between(&random, -0.1, 0.3);
         const struct body body = approach_chain(&random, &chain, ground, &shape, gap);
         const struct reference_body posed = pose_shape(&shape, &body);
@@ -199,8 +197,6 @@ TEST(test_clearance_of_ground) {
                      found.in_air ? "in" : "not in", least, lowest);
         in_air += found.in_air;
         met += !(found.distance > 0);
-        destroy_ground(ground);
-        free(chain.arcs);
     }
     print_message("  %zu in the air, %zu meet the ground\n", in_air, met);
     assert_true(test_trials(100) < 100 || (in_air > test_trials(100) && met > test_trials(20)));

@@ -59,10 +59,10 @@ enum { BODIES = 600 };
 /* Bodies of two sets, pair k of body k of both, with rotations and shifts of which the batch has floats. */
 TEST(test_double_rotations_and_shifts) {
     struct test_random random = test_random_named("refine, double");
-    struct scene scene = create_scene(NARC_FLOAT64, BODIES, 2 * BODIES, 1);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, BODIES, 2 * BODIES, 1);
     static double cosine[2][BODIES], sine[2][BODIES], shift[2][BODIES];
     static float near_shift[2][BODIES];
-    const narc_arc **arcs = malloc(BODIES * sizeof *arcs);
+    AUTO(free_at) const narc_arc **arcs = malloc(BODIES * sizeof *arcs);
     for (uint32_t k = 0; k < BODIES; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         scene_add_shape(&scene, &shape);
@@ -101,7 +101,7 @@ TEST(test_double_rotations_and_shifts) {
                             .other_sine = NARC_POSITION_ARRAY(sine[1]),
                             .shift_x = NARC_POSITION_ARRAY(shift[0]),
                             .shift_y = NARC_POSITION_ARRAY(shift[1])};
-    struct contacts rows = find_contacts(scene.store, &all, &pairs, &(narc_query){.margin = INFINITY});
+    AUTO(free_at) struct contacts rows = find_contacts(scene.store, &all, &pairs, &(narc_query){.margin = INFINITY});
     static narc_refined_contact fine[BODIES], again[BODIES];
     assert_int_equal(narc_refine_contacts(scene.store, &all, &pairs, &with, rows.rows, rows.count, fine, NULL),
                      NARC_OK);
@@ -129,9 +129,6 @@ TEST(test_double_rotations_and_shifts) {
     assert_true(again[0].separation == INFINITY && again[0].normal_x == 0 && again[0].point_y == 0);
     assert_true(again[1].separation == (double)rows.rows[1].separation && again[1].normal_x == 0);
     assert_memory_equal(&fine[2], &again[2], (rows.count - 2) * sizeof *fine);
-    free(rows.rows);
-    free(arcs);
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ ground */

@@ -253,7 +253,7 @@ TEST(refuses_indices_and_regions) {
     const narc_index_options taken = {.reserved = {&out}};
     const narc_index_query query = {.reserved = {&out}};
     narc_pairs pairs = {.count = 7};
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     const narc_index_column none = {0};
     static const uint32_t listed[] = {1, 2};
     const narc_index_column changed = NARC_ARRAY(listed);
@@ -294,7 +294,6 @@ TEST(refuses_indices_and_regions) {
     assert_int_equal(pairs.count, 0);
     expect_ok(narc_query_index(index, boxes, 2, NULL, &pairs, &error), &error); /* it is as it was */
     assert_int_equal(pairs.count, 2);
-    narc_destroy_index(index);
 }
 
 /* ------------------------------------------------------------------------------------------------ without one */
@@ -402,8 +401,8 @@ TEST(refuses_boxes) {
  * is no matter. */
 TEST(names_the_first_wrong_shape) {
     enum { COUNT = 200000 };
-    uint32_t *const shape = calloc(COUNT, sizeof *shape);
-    narc_box *const boxes = make_junk(COUNT * sizeof *boxes);
+    AUTO(free_at) uint32_t *const shape = calloc(COUNT, sizeof *shape);
+    AUTO(free_at) narc_box *const boxes = make_junk(COUNT * sizeof *boxes);
     narc_bodies many = bodies;
     many.count = COUNT;
     many.x.stride = many.y.stride = many.cosine.stride = many.sine.stride = many.scale.stride = 0;
@@ -420,14 +419,12 @@ TEST(names_the_first_wrong_shape) {
         assert_true(is_junk(boxes, COUNT * sizeof *boxes));
     }
     expect_ok(FIND(store, &many, &(narc_box_options){.count = 70000}, boxes), &error);
-    free(shape);
-    free(boxes);
 #undef FIND
 }
 
 TEST(refuses_parts) {
     enum { PARTS = 90000 };
-    uint32_t *const owners = calloc(PARTS, sizeof *owners);
+    AUTO(free_at) uint32_t *const owners = calloc(PARTS, sizeof *owners);
     const narc_index_column owner = NARC_ARRAY(first_body), of_many = {owners, sizeof *owners};
     narc_bodies many = bodies;
 #define PLACE(owners, parts, owner, rows) narc_place_parts(owners, parts, &owner, NULL, rows, &error)
@@ -453,7 +450,7 @@ TEST(refuses_parts) {
 #endif
     expect_untouched();
     expect_ok(PLACE(&(narc_bodies){0}, &(narc_bodies){0}, (narc_index_column){0}, NULL), &error);
-    narc_body *const rows = make_junk(PARTS * sizeof *rows);
+    AUTO(free_at) narc_body *const rows = make_junk(PARTS * sizeof *rows);
     many.count = PARTS;
     many.x.stride = many.y.stride = many.cosine.stride = many.sine.stride = many.scale.stride = many.shape.stride = 0;
     owners[80000] = UINT32_MAX;
@@ -466,13 +463,11 @@ TEST(refuses_parts) {
         assert_int_equal(error.index, 70000);
     }
     assert_true(is_junk(rows, PARTS * sizeof *rows));
-    free(rows);
-    free(owners);
 #undef PLACE
 }
 
 TEST(refuses_lists_of_pairs) {
-    narc_broad_phase *const broad = create_broad_phase(NULL);
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *const broad = create_broad_phase(NULL);
     const narc_box box = {0, 0, 1, 1};
     uint32_t *const a = out.numbers[0], *const b = out.numbers[1];
 #define FIND(broad, boxes, count, a, b, found)                                                                         \
@@ -495,7 +490,6 @@ TEST(refuses_lists_of_pairs) {
     assert_int_equal(narc_copy_pairs(&own, NULL, 0, NULL, NULL, 0, &error), NARC_OK);
     assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
     expect_untouched();
-    narc_destroy_broad_phase(broad);
     narc_destroy_broad_phase(NULL);
 }
 

@@ -12,10 +12,10 @@
 
 TEST(counts_pairs_that_are_too_many) {
     enum { COUNT = 66000 };
-    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes);
     narc_pairs pairs = {.count = 7};
     narc_error error;
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     struct ledger ledger = {0};
     const narc_allocator allocator = ledger_allocator(&ledger);
     narc_workers workers;
@@ -31,8 +31,6 @@ TEST(counts_pairs_that_are_too_many) {
     assert_true(ledger.most < (size_t)20 << 20); /* none of it for pairs */
     assert_int_equal(narc_query_index(index, boxes, 1, NULL, &pairs, NULL), NARC_OK);
     assert_int_equal(pairs.count, COUNT);
-    narc_destroy_index(index);
-    free(boxes);
 }
 
 TEST_MAIN("region_count")

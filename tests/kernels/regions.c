@@ -104,7 +104,7 @@ TEST(finds_what_all_pairs_find) {
     static narc_box boxes[MOST], queries[QUERIES];
     static uint64_t category[MOST], mask[QUERIES];
     static uint32_t ignored[QUERIES], owner[MOST], ignored_owner[QUERIES], world[MOST], asked_world[QUERIES];
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t trial = 0; trial < KINDS * COUNTS * 2; trial++) {
         const size_t kind = trial % KINDS, count = counts[trial / KINDS % COUNTS], options = trial % 4;
@@ -135,7 +135,6 @@ TEST(finds_what_all_pairs_find) {
                                           options > 0 && trial / KINDS % 2 ? owner : NULL, ignored_owner,
                                           trial % 3 ? NULL : world, trial % 3 ? NULL : asked_world});
     }
-    narc_destroy_index(index);
 }
 
 /* One query that finds all, between others: more than a chunk, and sorted by digits. The order of rows does not depend
@@ -144,7 +143,7 @@ TEST(finds_more_than_there_was_room_for) {
     enum { COUNT = 20000, ASKED = 300 };
     struct test_random random = test_random_named("many in a region");
     narc_box *const boxes = malloc(COUNT * sizeof *boxes), queries[ASKED];
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = random_box(&random, 1, 0, 1);
@@ -155,7 +154,6 @@ TEST(finds_more_than_there_was_room_for) {
     }
     check_question(index,
                    &(struct question){.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = ASKED});
-    narc_destroy_index(index);
     free(boxes);
 }
 
@@ -164,7 +162,7 @@ TEST(orders_any_number_of_bodies) {
     enum { COUNT = 300 };
     struct test_random random = test_random_named("order of regions");
     narc_box boxes[COUNT], queries[COUNT];
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     for (size_t k = 0; k < COUNT; k++) {
         const float x = (float)(k * 7 % COUNT);
@@ -177,7 +175,6 @@ TEST(orders_any_number_of_bodies) {
         boxes[k].min_x = (float)random_below(&random, COUNT);
     check_question(index,
                    &(struct question){.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = COUNT});
-    narc_destroy_index(index);
 }
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
@@ -232,6 +229,7 @@ TEST(reads_columns_with_any_stride) {
     static narc_box boxes[COUNT], queries[ASKED];
     static uint64_t category[COUNT], mask[ASKED];
     static uint32_t ignored[ASKED];
+    AUTO(guard_release_at)
     struct row *const bodies = guard_allocate(COUNT * sizeof *bodies), *const asked =
                                                                            guard_allocate(ASKED * sizeof *asked);
     for (size_t k = 0; k < COUNT; k++) {
@@ -247,7 +245,7 @@ TEST(reads_columns_with_any_stride) {
     const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
     const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
     struct pair_list expected = find_all(&q);
-    narc_index *index;
+    AUTO(narc_destroy_index_at) narc_index *index;
     narc_pairs pairs;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     assert_int_equal(narc_build_index(index, boxes, COUNT, &options, NULL), NARC_OK);
@@ -255,9 +253,6 @@ TEST(reads_columns_with_any_stride) {
     assert_true(expected.count > 50);
     check_rows(&expected, &pairs);
     free_list(&expected);
-    guard_release(bodies);
-    guard_release(asked);
-    narc_destroy_index(index);
 }
 
 TEST_MAIN("regions")

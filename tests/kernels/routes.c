@@ -41,19 +41,17 @@ static void check_all(struct test_random *random, const struct scene *scene, con
     static const float margins[] = {0, 0.3f, -0.1f, INFINITY};
     check_plain_scene(random, scene, name);
     for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
-        struct contacts whole = find_part(scene, 0, scene->pair_count, margins[m]);
+        AUTO(free_at) struct contacts whole = find_part(scene, 0, scene->pair_count, margins[m]);
         size_t found = 0;
         for (size_t first = 0, count; first < scene->pair_count; first += count) {
             count = 1 + random_below(random, 40);
             count = count < scene->pair_count - first ? count : scene->pair_count - first;
-            struct contacts part = find_part(scene, first, count, margins[m]);
+            AUTO(free_at) struct contacts part = find_part(scene, first, count, margins[m]);
             assert_true(found + part.count <= whole.count);
             assert_memory_equal(part.rows, whole.rows + found, part.count * sizeof *part.rows);
             found += part.count;
-            free(part.rows);
         }
         assert_int_equal(found, whole.count);
-        free(whole.rows);
     }
 }
 
@@ -65,9 +63,8 @@ TEST(test_discs) {
                  {0, 5, PAIRS}, {150, 0, PAIRS}, {40, 50, PAIRS}, {3, 0, PAIRS}};
     struct test_random random = test_random_named("discs");
     for (size_t k = 0; k < sizeof mixes / sizeof *mixes; k++) {
-        struct scene scene = make_discs(&random, mixes[k].pairs, mixes[k].other, mixes[k].broken);
+        AUTO(destroy_scene) struct scene scene = make_discs(&random, mixes[k].pairs, mixes[k].other, mixes[k].broken);
         check_all(&random, &scene, "discs");
-        destroy_scene(&scene);
     }
 }
 
@@ -75,6 +72,7 @@ TEST(test_discs) {
 TEST(test_one_other) {
     enum { FEW = 50 };
     struct test_random random = test_random_named("one other");
+    AUTO(destroy_scene)
     struct scene scene = make_discs(&random, FEW, BODIES - 1, 0); /* bodies 0 and BODIES - 1 are others */
     for (size_t k = 0; k < FEW; k++)
         scene.pairs[k] = (struct pair){1 + (uint32_t)k, 2 + (uint32_t)k};
@@ -88,14 +86,13 @@ TEST(test_one_other) {
         }
         scene.bodies[0].sine = NAN;
     }
-    destroy_scene(&scene);
 }
 
 /* Discs whose gap is about what the first proofs that they are apart need. Circles that lie off their origins: of
  * others the bounding circles know. */
 TEST(test_discs_at_the_limit) {
     struct test_random random = test_random_named("limit");
-    struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     const struct shape left = {{{-0.6, -0.8, 1, -PI, PI}}, 1}, right = {{{0.6, 0.8, 1, -PI, PI}}, 1};
     const struct shape box = box_of(2, 2, 0.2);
     scene_add_shape(&scene, &left);
@@ -110,13 +107,12 @@ TEST(test_discs_at_the_limit) {
         scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "limit");
-    destroy_scene(&scene);
 }
 
 /* Blocks of boxes that rest on each other, and blocks that lie anywhere. */
 TEST(test_resting_edges) {
     struct test_random random = test_random_named("resting");
-    struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     const struct shape sharp = box_of(2, 1, 0), round = box_of(2, 1, 0.2);
     struct shape ellipse;
     assert_int_equal(narc_build_ellipse(1, 0.5, 8, ellipse.arcs, &ellipse.count, NULL, NULL), NARC_OK);
@@ -135,7 +131,6 @@ TEST(test_resting_edges) {
         scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "resting");
-    destroy_scene(&scene);
 }
 
 /* ------------------------------------------------------------------------------------------------ early proofs */
@@ -144,7 +139,7 @@ TEST(test_resting_edges) {
 TEST(test_vanishing_axes) {
     struct test_random random = test_random_named("vanishing axes");
     enum { SHAPES = 24, CLOSE = 4000 };
-    struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * CLOSE, CLOSE);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * CLOSE, CLOSE);
     for (size_t k = 0; k < SHAPES; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         if (k % 3 == 0) {
@@ -166,7 +161,6 @@ TEST(test_vanishing_axes) {
         scene_add_two(&scene, a, b);
     }
     check_plain_scene(&random, &scene, "vanishing axes");
-    destroy_scene(&scene);
 }
 
 /* A flat rhombus with rounded corners; its upper corner is two arcs whose centres are `overlap` too far to their own
@@ -186,7 +180,7 @@ TEST(test_loose_joins) {
     struct test_random random = test_random_named("loose joins");
     enum { CLOSE = 1000 };
     for (size_t round = 0; round < test_trials(40); round++) {
-        struct scene scene = create_scene(NARC_FLOAT32, 2, 2 * CLOSE, CLOSE);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, 2, 2 * CLOSE, CLOSE);
         const double slope = random_between(&random, 0.03, 0.35), radius = random_between(&random, 0.015, 0.055);
         const double small = random_between(&random, 0.005, 0.015);
         const struct shape rhombus = make_loose_rhombus(slope, radius, random_between(&random, 0.2e-5, 0.99e-5));
@@ -204,7 +198,6 @@ TEST(test_loose_joins) {
             scene_add_two(&scene, a, b);
         }
         check_plain_scene(&random, &scene, "loose joins");
-        destroy_scene(&scene);
     }
 }
 

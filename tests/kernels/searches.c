@@ -108,16 +108,13 @@ static narc_status ask_body_for_movers(const struct search *s, uint32_t body, na
                                        narc_error *error) {
     const narc_bodies movers = movers_of(s), bodies = scene_bodies(&s->room.scene);
     const narc_motions motions = view_motions(s->motion);
-    uint32_t *const numbers = guard_allocate(s->count * sizeof *numbers);
+    AUTO(guard_release_at) uint32_t *const numbers = guard_allocate(s->count * sizeof *numbers);
     for (uint32_t k = 0; k < s->count; k++)
         numbers[k] = k;
     const narc_pairs pairs = {.count = s->count, .a = NARC_ARRAY(numbers), .b = {&body, 0}, .other_bodies = &bodies};
     const narc_cast_options options = {.targets = {s->targets, sizeof *s->targets}};
     (void)inside;
-    const narc_status status =
-        narc_cast_pairs(s->room.scene.store, &movers, &motions, &pairs, NULL, &options, rows, s->count, error);
-    guard_release(numbers);
-    return status;
+    return narc_cast_pairs(s->room.scene.store, &movers, &motions, &pairs, NULL, &options, rows, s->count, error);
 }
 
 static const struct kind {
@@ -206,8 +203,8 @@ static bool touches_at_start(const struct search *s, size_t item, const char *ro
 
 static void check_rows(const struct search *s, const struct kind *kind, const struct options *o, bool categories,
                        const char *all, const char *rows) {
-    struct candidate *const list = calloc(s->room.scene.body_count + 1, sizeof *list);
-    char *const none = calloc(1, kind->size);
+    AUTO(free_at) struct candidate *const list = calloc(s->room.scene.body_count + 1, sizeof *list);
+    AUTO(free_at) char *const none = calloc(1, kind->size);
     assert_true(list && none);
     for (uint32_t k = 0; k < s->count; k++) {
         const size_t count = list_candidates(s, kind, o, categories, all, k, list);
@@ -231,15 +228,13 @@ static void check_rows(const struct search *s, const struct kind *kind, const st
                 fail_msg("row %zu of %s %u differs", i, kind->name, k);
         }
     }
-    free(list);
-    free(none);
 }
 
 /* Builds the index, well, fast, from other boxes and then updated, or with boxes that have grown. */
 static void build(struct test_random *random, struct search *s, size_t way, bool categories, bool worlds) {
     static const uint32_t first[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     const size_t count = s->room.scene.body_count;
-    narc_box *const boxes = calloc(count + 1, sizeof *boxes);
+    AUTO(free_at) narc_box *const boxes = calloc(count + 1, sizeof *boxes);
     narc_index_options options = {.fast = way == 1};
     narc_error error;
     if (categories)
@@ -261,7 +256,6 @@ static void build(struct test_random *random, struct search *s, size_t way, bool
                                         k || count < 9 ? 0 : 9, &options, &error),
                       &error);
         }
-    free(boxes);
 }
 
 static const struct options options[] = {
@@ -317,11 +311,10 @@ static void check_kind(struct test_random *random, struct search *s, const struc
         o.worlds = worlds && k % 3;
         if (o.worlds)
             search.world = (narc_index_column){s->asked_world, sizeof *s->asked_world};
-        char *const rows = guard_allocate(s->count * o.most * kind->size);
+        AUTO(guard_release_at) char *const rows = guard_allocate(s->count * o.most * kind->size);
         build(random, s, k % 4, categories, worlds);
         expect_ok(kind->ask(s, &bodies, &o, &search, rows, &error), &error);
         check_rows(s, kind, &o, categories, all, rows);
-        guard_release(rows);
     }
     free(all);
 }
@@ -401,11 +394,11 @@ TEST(finds_what_asking_every_body_finds) {
     for (size_t trial = 0; trial < test_trials(2 * COUNTS); trial++) {
         const size_t bodies = counts[trial % COUNTS];
         const double side = sqrt((double)bodies) * random_between(&random, 0.5, 4);
+        AUTO(destroy_search)
         struct search s = make_search(&random, (narc_precision)(trial / COUNTS % 2 ^ trial % 2), bodies,
                                       bodies < 100 ? 120 : 40, side);
         for (int kind = 0; kind < KINDS; kind++)
             check_kind(&random, &s, &kinds[kind]);
-        destroy_search(&s);
     }
 }
 
@@ -417,7 +410,7 @@ TEST(longest_ways_go_by_number) {
     struct test_random random = test_random_named("longest ways");
     size_t same = 0;
     for (size_t trial = 0; trial < test_trials(4); trial++) {
-        struct search s = make_search(&random, (narc_precision)(trial % 2), BODIES, ITEMS, 9);
+        AUTO(destroy_search) struct search s = make_search(&random, (narc_precision)(trial % 2), BODIES, ITEMS, 9);
         s.longest = true;
         for (size_t b = 0; b < BODIES; b++) {
             struct body *const body = &s.room.scene.bodies[b];
@@ -450,7 +443,6 @@ TEST(longest_ways_go_by_number) {
             free(all);
             check_kind(&random, &s, &kinds[kind]);
         }
-        destroy_search(&s);
     }
     assert_true(same > 0);
 }
@@ -460,9 +452,9 @@ TEST(rays_go_in_any_company) {
     enum { COUNT = 700, RAYS_OF_ALL = 1500, MOST = 3 };
     struct test_random random = test_random_named("company");
     const size_t ray_count = test_trials(10) < 10 ? 400 : RAYS_OF_ALL;
-    struct room room = create_room(&random, NARC_FLOAT64, COUNT, 40);
-    struct test_ray *const rays = make_rays(&random, &room, ray_count, 40);
-    struct test_ray *const mixed = calloc(ray_count, sizeof *mixed);
+    AUTO(destroy_room) struct room room = create_room(&random, NARC_FLOAT64, COUNT, 40);
+    AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, ray_count, 40);
+    AUTO(free_at) struct test_ray *const mixed = calloc(ray_count, sizeof *mixed);
     uint32_t owner[COUNT];
     size_t order[RAYS_OF_ALL];
     for (size_t k = 0; k < COUNT; k++)
@@ -483,24 +475,19 @@ TEST(rays_go_in_any_company) {
     for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
         const size_t most = ways[way].most;
         const narc_rays view = view_rays(rays, ray_count);
-        narc_ray_hit *const right = cast_in_room(&room, &view, &ways[way]);
+        AUTO(guard_release_at) narc_ray_hit *const right = cast_in_room(&room, &view, &ways[way]);
         for (size_t size = 1; size < ray_count; size = size < 10 ? size + 1 : 3 * size)
             for (size_t first = 0; first < ray_count; first += size) {
                 const size_t left = ray_count - first, count = left < size ? left : size;
                 const narc_rays part = view_rays(mixed + first, count);
-                narc_ray_hit *const found = cast_in_room(&room, &part, &ways[way]);
+                AUTO(guard_release_at) narc_ray_hit *const found = cast_in_room(&room, &part, &ways[way]);
                 for (size_t k = 0; k < count * most; k++) {
                     const size_t ray = order[first + k / most];
                     found[k].ray = (uint32_t)ray;
                     assert_memory_equal(&found[k], &right[ray * most + k % most], sizeof *found);
                 }
-                guard_release(found);
             }
-        guard_release(right);
     }
-    free(rays);
-    free(mixed);
-    destroy_room(&room);
 }
 
 /* With room for an order, each ray is asked once, world by world, and its rows are those that it has without. */
@@ -510,15 +497,16 @@ TEST(rays_are_put_in_order) {
     size_t moved = 0;
     for (size_t trial = 0; trial < test_trials(12); trial++) {
         const narc_precision precision = trial % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+        AUTO(destroy_room)
         struct room room = create_room(&random, precision, trial % 6 ? COUNT : random_below(&random, 9) + 1, 40);
         const size_t count = trial % 4 < 3 ? 1 + random_below(&random, MOST_RAYS) : random_below(&random, 40);
-        struct test_ray *const rays = make_rays(&random, &room, count, 40);
+        AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, count, 40);
         uint32_t owner[COUNT], world_of[COUNT];
-        uint64_t *const mask = calloc(count + 1, sizeof *mask);
-        uint32_t *const world = calloc(count + 1, sizeof *world);
+        AUTO(free_at) uint64_t *const mask = calloc(count + 1, sizeof *mask);
+        AUTO(free_at) uint32_t *const world = calloc(count + 1, sizeof *world);
         const bool few_worlds = trial % 2;
-        uint32_t *const order = guard_allocate(count * sizeof *order);
-        bool *const asked = calloc(count + 1, sizeof *asked);
+        AUTO(guard_release_at) uint32_t *const order = guard_allocate(count * sizeof *order);
+        AUTO(free_at) bool *const asked = calloc(count + 1, sizeof *asked);
         for (size_t k = 0; k < COUNT; k++)
             owner[k] = (uint32_t)k / 4;
         const uint32_t far = few_worlds ? 1 : UINT32_MAX / (WORLDS - 1);
@@ -551,10 +539,10 @@ TEST(rays_are_put_in_order) {
             size_t skipped = 0, skipped_too = 1;
             narc_ray_options chosen = ways[way];
             chosen.out_skipped = &skipped;
-            narc_ray_hit *const right = cast_in_room(&room, &view, &chosen);
+            AUTO(guard_release_at) narc_ray_hit *const right = cast_in_room(&room, &view, &chosen);
             chosen.out_skipped = &skipped_too;
             chosen.out_order = order;
-            narc_ray_hit *const found = cast_in_room(&room, &view, &chosen);
+            AUTO(guard_release_at) narc_ray_hit *const found = cast_in_room(&room, &view, &chosen);
             assert_memory_equal(found, right, count * (chosen.most ? chosen.most : 1) * sizeof *found);
             assert_int_equal(skipped, skipped_too);
             memset(asked, 0, count * sizeof *asked);
@@ -565,15 +553,7 @@ TEST(rays_are_put_in_order) {
                 if (k > 0 && chosen.search.world.base && few_worlds && count >= 2 * WORLDS)
                     assert_true(world[order[k - 1]] <= world[order[k]]);
             }
-            guard_release(right);
-            guard_release(found);
         }
-        free(rays);
-        free(mask);
-        free(world);
-        free(asked);
-        guard_release(order);
-        destroy_room(&room);
     }
     assert_true(moved > 0);
 }

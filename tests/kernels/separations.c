@@ -19,11 +19,10 @@ static float *find_expected(const narc_shapes *store, const narc_bodies *bodies,
                             const narc_query *query) {
     narc_query dense = *query;
     dense.dense = 1;
-    struct contacts contacts = find_contacts(store, bodies, pairs, &dense);
+    AUTO(free_at) struct contacts contacts = find_contacts(store, bodies, pairs, &dense);
     float *out = malloc(pairs->count * sizeof *out);
     for (size_t k = 0; k < pairs->count; k++)
         out[k] = contacts.rows[k].count ? contacts.rows[k].separation : INFINITY;
-    free(contacts.rows);
     return out;
 }
 
@@ -31,13 +30,13 @@ static float *find_expected(const narc_shapes *store, const narc_bodies *bodies,
 static size_t check_separations(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
                                 narc_query query) {
     enum { STRIDE = 3 };
-    float *const expected = find_expected(store, bodies, pairs, &query);
-    float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
+    AUTO(free_at) float *const expected = find_expected(store, bodies, pairs, &query);
+    AUTO(guard_release_at) float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
     size_t told = 0, skipped = 0, contacts_skipped = 0;
     for (unsigned threads = 1; threads <= 3; threads++) {
         narc_workers workers;
         narc_openmp_workers(threads, &workers);
-        float *const found = guard_allocate(pairs->count * sizeof *found);
+        AUTO(guard_release_at) float *const found = guard_allocate(pairs->count * sizeof *found);
         query.workers = &workers;
         query.row_stride = 0;
         query.out_skipped = &skipped;
@@ -52,7 +51,6 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
             assert_memory_equal(place, &expected[k], sizeof *place);
             assert_true(is_junk(place + 1, (STRIDE - 1) * sizeof *place));
         }
-        guard_release(found);
     }
     query.workers = NULL;
     query.row_stride = 0;
@@ -61,8 +59,6 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
     assert_int_equal(skipped, contacts_skipped);
     for (size_t k = 0; k < pairs->count; k++)
         told += expected[k] < INFINITY;
-    guard_release(strided);
-    free(expected);
     return told;
 }
 
@@ -70,10 +66,11 @@ TEST(test_contacts) {
     static const float margins[] = {0, 0.25f, INFINITY, -0.25f};
     struct test_random random = test_random_named("separations of contacts");
     for (size_t trial = 0; trial < test_trials(8); trial++) {
+        AUTO(destroy_scene)
         struct scene scene = make_random_scene(&random, (narc_precision)(trial % 2), 300, trial % 5 ? 500 : 3000);
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
-        float *const own = malloc(pairs.count * sizeof *own);
+        AUTO(free_at) float *const own = malloc(pairs.count * sizeof *own);
         for (size_t k = 0; k < scene.body_count; k += 17) /* broken ones */
             *(k % 2 ? &scene.bodies[k].sine : &scene.bodies[k].scale) = NAN;
         for (size_t k = 0; k < pairs.count; k++)
@@ -81,8 +78,6 @@ TEST(test_contacts) {
         for (size_t m = 0; m < sizeof margins / sizeof margins[0]; m++)
             check_separations(scene.store, &bodies, &pairs, (narc_query){.margin = margins[m]});
         check_separations(scene.store, &bodies, &pairs, (narc_query){.margins = {own, sizeof *own}});
-        free(own);
-        destroy_scene(&scene);
     }
 }
 
@@ -94,8 +89,8 @@ TEST(test_ground) {
         const enum chain_family family = (enum chain_family)(trial % CHAIN_FAMILIES);
         static narc_chain_entry entries[MOST];
         static narc_body pieces[MOST];
-        const struct chain chain = make_chain(&random, family);
-        narc_shapes *store = NULL;
+        AUTO(free_at) const struct chain chain = make_chain(&random, family);
+        AUTO(narc_destroy_shapes_at) narc_shapes *store = NULL;
         narc_error error;
         size_t count = 0, told = 0;
         assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
@@ -104,6 +99,7 @@ TEST(test_ground) {
         for (size_t k = 0; k < count; k++)
             pieces[k] =
                 (narc_body){.x = entries[k].x, .y = entries[k].y, .cosine = 1, .scale = 1, .shape = entries[k].shape};
+        AUTO(free_at)
         uint32_t *const a = malloc(RIDERS * count * sizeof *a), *const b = malloc(RIDERS * count * sizeof *b);
         narc_body riders[RIDERS];
         for (uint32_t k = 0; k < RIDERS; k++) {
@@ -124,20 +120,17 @@ TEST(test_ground) {
         told += check_separations(store, &bodies, &pairs, (narc_query){.margin = 0.125f});
         told += check_separations(store, &bodies, &pairs, (narc_query){.margin = INFINITY, .front_only = 1});
         assert_true(told > 0);
-        free(a);
-        free(b);
-        free(chain.arcs);
-        narc_destroy_shapes(store);
     }
 }
 
 TEST(test_some_of_a_batch) {
     enum { CHOSEN = 300 };
     struct test_random random = test_random_named("separations of some");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 3000);
+    AUTO(destroy_scene) struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 3000);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    float *const all = find_expected(scene.store, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+    AUTO(free_at) float *const all = find_expected(scene.store, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+    AUTO(free_at)
     float *const found = make_junk(pairs.count * sizeof *found), *const junk = make_junk(pairs.count * sizeof *junk);
     uint32_t chosen[CHOSEN];
     for (uint32_t k = 0; k < CHOSEN; k++)
@@ -161,10 +154,6 @@ TEST(test_some_of_a_batch) {
         assert_int_equal(narc_find_separations(scene.store, &bodies, &pairs, &one, found, NULL), NARC_OK);
         assert_memory_equal(&found[10 * k], &all[10 * k], sizeof *all);
     }
-    free(found);
-    free(junk);
-    free(all);
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("separations")

@@ -14,7 +14,7 @@
 /* All answers of a scene in one layout: with the usual margins, and with margins beside the separation of one pair,
  * which the others must not mind. */
 static void check_scene(struct test_random *random, const struct scene *scene, enum layout layout, const char *name) {
-    struct columns columns = create_columns(scene, layout, 0, scene->pair_count);
+    AUTO(destroy_columns) struct columns columns = create_columns(scene, layout, 0, scene->pair_count);
     const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, &columns.pairs, name);
     const float some = batch.right[random_below(random, columns.pairs.count)].separation;
     const float margins[] = {0, INFINITY, 0.25f, 1e-4f, -1e-4f, -0.25f, some, nextafterf(some, INFINITY), -FLT_MAX};
@@ -22,7 +22,6 @@ static void check_scene(struct test_random *random, const struct scene *scene, e
     for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
         check_plain_contacts(&batch, &(narc_query){.margin = margins[k]});
     free(batch.right);
-    destroy_columns(&columns);
 }
 
 /* Every family against every other, in all kinds of places. */
@@ -31,9 +30,8 @@ TEST(test_all_places) {
     for (int round = 0; round < 20; round++) {
         char name[32];
         snprintf(name, sizeof name, "all places, round %d", round);
-        struct corpus corpus = make_corpus(name, (narc_precision)(round % 2), 2, false);
+        AUTO(destroy_corpus) struct corpus corpus = make_corpus(name, (narc_precision)(round % 2), 2, false);
         check_scene(&random, &corpus.scene, any_layout(&random), name);
-        destroy_corpus(&corpus);
     }
 }
 
@@ -61,7 +59,7 @@ TEST(test_faces_at_x) {
     struct test_random random = test_random_named("faces at x");
     enum { SHAPES = 40 };
     const size_t count = test_trials(20000);
-    struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * count, count);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * count, count);
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape shape = make_faced(&random);
         scene_add_shape(&scene, &shape);
@@ -84,7 +82,6 @@ TEST(test_faces_at_x) {
         scene_add_two(&scene, a, b);
     }
     check_scene(&random, &scene, LAYOUT_STRUCTURES, "faces at x");
-    destroy_scene(&scene);
 }
 
 /* Many random pairs of few shapes, packed, so that every answer of a batch is spread over all stages and vectors. */
@@ -93,12 +90,12 @@ TEST(test_crowds) {
     enum { BODIES = 2000, PAIRS = 40000 };
     const enum layout layouts[] = {LAYOUT_STRUCTURES, LAYOUT_ARRAYS, LAYOUT_SHARED, LAYOUT_UNSCALED};
     for (size_t round = 0; round < test_trials(4); round++) {
+        AUTO(destroy_scene)
         struct scene scene = make_random_scene(&random, round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, BODIES, PAIRS);
         for (size_t k = 1; k < BODIES; k += 1 + random_below(&random, 100)) /* some with no answer */
             *(k % 2 ? &scene.bodies[k].sine : &scene.bodies[k].scale) = k % 2 ? NAN : 1e12f;
         suit_layout(&scene, layouts[round % 4]);
         check_scene(&random, &scene, layouts[round % 4], "crowd");
-        destroy_scene(&scene);
     }
 }
 
@@ -107,6 +104,7 @@ TEST(test_runs) {
     struct test_random random = test_random_named("runs");
     enum { KINDS = 16, PAIRS = 12000, LONGEST = 320 };
     for (size_t round = 0; round < test_trials(24); round++) {
+        AUTO(destroy_scene)
         struct scene scene =
             create_scene(NARC_FLOAT32, 2 * KINDS, HARD_BODIES * KINDS, HARD_BODIES / 2 * KINDS + PAIRS);
         for (size_t k = 0; k < KINDS; k++) {
@@ -127,7 +125,6 @@ TEST(test_runs) {
             scene_add_pair(&scene, pair.a, pair.b);
         }
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "runs");
-        destroy_scene(&scene);
     }
 }
 
@@ -191,7 +188,7 @@ static struct way add_way(struct test_random *random, struct scene *scene) {
  * right about the last bit. Bisection finds these places, checks are made around them. */
 static void check_changes(struct test_random *random, enum change change) {
     enum { PAIRS = 500, STEPS = 44, POINTS = 20 };
-    struct scene scene = create_scene(NARC_FLOAT64, 2 * PAIRS, 2 * PAIRS, PAIRS);
+    AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, 2 * PAIRS, 2 * PAIRS, PAIRS);
     struct way ways[PAIRS];
     for (size_t k = 0; k < PAIRS; k++) {
         ways[k] = add_way(random, &scene);
@@ -199,11 +196,11 @@ static void check_changes(struct test_random *random, enum change change) {
     }
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct contacts first = find_plain_contacts(scene.store, &bodies, &pairs);
+    AUTO(free_at) struct contacts first = find_plain_contacts(scene.store, &bodies, &pairs);
     for (int step = 0; step <= STEPS; step++) { /* at first the other end, to see if there is a change at all */
         for (size_t k = 0; k < PAIRS; k++)
             walk(&scene, k, &ways[k], step ? (ways[k].low + ways[k].high) / 2 : 1);
-        struct contacts there = find_plain_contacts(scene.store, &bodies, &pairs);
+        AUTO(free_at) struct contacts there = find_plain_contacts(scene.store, &bodies, &pairs);
         for (size_t k = 0; k < PAIRS; k++) {
             const bool changed = is_change(change, &first.rows[k], &there.rows[k]);
             if (step == 0)
@@ -211,7 +208,6 @@ static void check_changes(struct test_random *random, enum change change) {
             else if (ways[k].changes)
                 *(changed ? &ways[k].high : &ways[k].low) = (ways[k].low + ways[k].high) / 2;
         }
-        free(there.rows);
     }
     for (size_t point = 0; point < POINTS; point++) {
         const double beside = point ? (point % 2 ? 1 : -1) * 1e-13 * pow(4, (double)point) : 0;
@@ -223,8 +219,6 @@ static void check_changes(struct test_random *random, enum change change) {
         check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
         free(batch.right);
     }
-    free(first.rows);
-    destroy_scene(&scene);
 }
 
 TEST(test_changes) {
@@ -239,7 +233,7 @@ TEST(test_specks) {
     enum { PAIRS = 6000, SHAPES = 60 };
     struct test_random random = test_random_named("specks");
     for (size_t round = 0; round < test_trials(2); round++) {
-        struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
+        AUTO(destroy_scene) struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
         const struct shape half = {
             .count = 3, .arcs = {{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 3 * PI / 2}}};
         const uint32_t disc = scene_add_shape(&scene, &half);
@@ -265,16 +259,14 @@ TEST(test_specks) {
             scene_add_two(&scene, a, b);
         }
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "specks");
-        destroy_scene(&scene);
     }
 }
 
 TEST(test_far_from_origin) {
     struct test_random random = test_random_named("far from origin");
     for (int decade = FIRST_FAR; decade <= LAST_FAR; decade++) {
-        struct scene scene = make_far_scene(&random, decade);
+        AUTO(destroy_scene) struct scene scene = make_far_scene(&random, decade);
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "far from origin");
-        destroy_scene(&scene);
     }
 }
 

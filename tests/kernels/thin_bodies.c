@@ -85,14 +85,14 @@ TEST(test_leaning_bodies_keep_contacts) {
     struct test_random random = test_random_named("leaning bodies");
     size_t lost = 0, placed = 0;
     for (size_t round = 0; round < test_trials(1000); round++) {
-        narc_shapes *store = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *store = empty_store();
         narc_chain_entry entries[ENTRIES];
         narc_body bodies[ENTRIES + 1];
         narc_arc arcs[NARC_MAX_ARCS];
         size_t waves, count, entry_count;
         uint32_t shape;
         narc_error error = {0};
-        narc_arc *ground = walk_waves(&random, &waves);
+        AUTO(free_at) narc_arc *ground = walk_waves(&random, &waves);
         expect_ok(narc_add_chain(store, ground, waves, NULL, entries, ENTRIES, &entry_count, &error), &error);
         for (size_t k = 0; k < entry_count; k++)
             bodies[k] =
@@ -111,8 +111,6 @@ TEST(test_leaning_bodies_keep_contacts) {
                 print_error("kind %zu, depth %g: nothing told\n", round % KINDS, depth);
             }
         }
-        free(ground);
-        narc_destroy_shapes(store);
     }
     print_message("%zu bodies, %zu lost\n", placed, lost);
     assert_true(placed > 0 && 1000 * lost <= placed + 1000);

@@ -68,7 +68,7 @@ TEST(test_triangles_round_ends) {
             walk_line(&t, is_round ? 0 : thick);
             walk_arc(&t, is_round ? thick / 2 : 0, PI / 2);
         }
-        struct ground_scene *s = lay_ground(end_walk(&t, true), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, true), (narc_chain_options){0});
         const uint32_t solid = add_shape(s, is_round ? capsule_of(wide, thick / 2) : box_of(wide, thick, 0));
         const double size = random_log_between(&random, 0.1, 1);
         const uint32_t triangle = add_shape(s, regular_of(3 + random_below(&random, 3), size, 0));
@@ -95,7 +95,6 @@ TEST(test_triangles_round_ends) {
             if (told->count > 0 && contact.separation < -room && (double)-contact.separation < 0.9 * thick / 2)
                 expect_near((double)told->deepest, (double)contact.separation, 1e-5, "depth");
         }
-        destroy_ground_scene(s);
     }
 }
 
@@ -110,7 +109,7 @@ TEST(test_level_line_into_a_bowl) {
         walk_line(&t, 1);
         const double x = t.x, y = t.y;
         walk_arc(&t, radius, -1.2);
-        struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
         const double wide = random_between(&random, 0.05, 0.3), over = random_between(&random, 2e-4, 9e-4) * radius;
         const uint32_t box = add_shape(s, box_of(wide, wide / 2, 0));
         const double up = wide / 4 - 1e-7, along = over - wide / 2;
@@ -122,7 +121,6 @@ TEST(test_level_line_into_a_bowl) {
             level += told->rows[k].count;
         if (trial % 2 && !(told->count == 1 && level == 2)) /* exactly level */
             fail_msg("%zu rows with %zu points, %g over the seam of a radius %g", told->count, level, over, radius);
-        destroy_ground_scene(s);
     }
 }
 
@@ -149,7 +147,7 @@ TEST(test_boxes_reach_back) {
     struct test_random random = test_random_named("boxes reach back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         const size_t parts = 4 + random_below(&random, 20);
-        struct ground_scene *s = lay_ground(make_vault(parts), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(make_vault(parts), (narc_chain_options){0});
         narc_box boxes[GROUND_ENTRIES], own;
         const narc_bodies ground = view_columns(s->bodies, s->count);
         narc_error error;
@@ -174,7 +172,6 @@ TEST(test_boxes_reach_back) {
                     fail_msg("%g deep: the boxes do not meet", (double)find_deepest(&told->rows[i]));
             }
         }
-        destroy_ground_scene(s);
     }
 }
 
@@ -188,6 +185,7 @@ TEST(test_lenses_in_a_slope) {
         walk_arc(&t, 0, 0);
         walk_line(&t, 20);
         walk_arc(&t, 0, 0);
+        AUTO(destroy_ground_scene_at)
         struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){.weld = 3});
         const struct shape lens = make_shape(&random, FAMILY_LENS);
         const uint32_t shape = add_shape(s, lens);
@@ -202,7 +200,6 @@ TEST(test_lenses_in_a_slope) {
             assert_true(told->count > 0);
             expect_near((double)find_deepest(&told->rows[0]), -depth, 1e-5, "separation");
         }
-        destroy_ground_scene(s);
     }
 }
 
@@ -210,7 +207,7 @@ TEST(test_lenses_in_a_slope) {
 TEST(test_given_thickness) {
     const double slope = 0.3, turn = 2 * slope, thick = 0.08;
     for (int given = 0; given < 2; given++) {
-        struct ground_scene *s = create_ground_scene();
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = create_ground_scene();
         narc_error error = {0};
         for (int lower = 0; lower < 2; lower++) {
             struct turtle t = create_turtle(lower ? -4 : 4, -4 * tan(slope) - lower * thick / cos(slope),
@@ -233,7 +230,6 @@ TEST(test_given_thickness) {
             least = fmaxf(least, find_deepest(&told->rows[k]));
         assert_true(told->count > 0);
         expect_near((double)least, -0.02, 1e-5, "depth");
-        destroy_ground_scene(s);
     }
 }
 
@@ -252,6 +248,7 @@ TEST(test_both_sides) {
             walk_arc(&t, 0, 0.7);
         walk_line(&t, 3);
         walk_arc(&t, 0, 0);
+        AUTO(destroy_ground_scene_at)
         struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){.both_sides = 1});
         const double radius = random_log_between(&random, 0.1, 1);
         const uint32_t ball = add_shape(s, circle_of(radius));
@@ -290,7 +287,6 @@ TEST(test_both_sides) {
             narc_add_chain(s->store, t.arcs, t.count, &(narc_chain_options){.both_sides = 1}, none, 1, &needed, &error),
             NARC_ERROR_CAPACITY, &error, "room for 1 entries");
         assert_int_equal(needed, s->count);
-        destroy_ground_scene(s);
     }
 }
 
@@ -310,7 +306,7 @@ TEST(test_beside_open_ends) {
         const double x = t.x, y = t.y;
         walk_line(&t, 2);
         walk_arc(&t, 0, 0);
-        struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
         const double beside = random_log_between(&random, 1e-3, 0.1), along = random_between(&random, 0.01, 0.05);
         const double foot_x = x - along * cos(slope), foot_y = y - along * sin(slope);
         const double depth = (beside - foot_x) / sin(slope), size = depth * random_between(&random, 1.02, 1.5);
@@ -321,7 +317,6 @@ TEST(test_beside_open_ends) {
         if (told->count > 0)
             fail_msg("trial %zu: a triangle %g beside the end is told of %g", trial, beside,
                      (double)find_deepest(&told->rows[0]));
-        destroy_ground_scene(s);
     }
 }
 
@@ -346,7 +341,7 @@ TEST(test_front_only) {
     walk_arc(&t, 0, 0);
     walk_line(&t, 10);
     walk_arc(&t, 0, 0);
-    struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
     const uint32_t shapes[] = {add_shape(s, circle_of(0.5)), add_shape(s, box_of(2, 1, 0)),
                                add_shape(s, regular_of(3, 0.5, 0))};
     for (int k = 0; k < 3; k++)
@@ -362,7 +357,6 @@ TEST(test_front_only) {
                 assert_int_equal(cast_first(s, &body, 2, angle, 0), touches);
             }
         }
-    destroy_ground_scene(s);
 }
 
 TEST_MAIN("thin ground")

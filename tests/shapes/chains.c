@@ -176,10 +176,10 @@ static void check_numbers(const narc_arc *arcs, size_t count, const narc_chain_e
 
 /* Divides a chain and looks at all of it; returns the number of entries. */
 static size_t check_division(const narc_arc *arcs, size_t count, const narc_chain_options *options) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     const size_t found = add(shapes, arcs, count, options);
     const bool closed = options && options->closed;
-    struct front *fronts = malloc(found * sizeof *fronts);
+    AUTO(free_at) struct front *fronts = malloc(found * sizeof *fronts);
     assert_non_null(fronts);
     uint32_t run = options ? options->first_run : 0;
     for (size_t k = 0; k < found; k++) {
@@ -205,28 +205,25 @@ static size_t check_division(const narc_arc *arcs, size_t count, const narc_chai
     check_cover(arcs, count, closed, fronts, found);
     check_seams(fronts, found, closed);
     assert_true(shapes->piece_count == shapes->count);
-    free(fronts);
-    narc_destroy_shapes(shapes);
     return found;
 }
 
 TEST(divides_ground) {
     struct test_random random = test_random_named("ground");
     for (size_t trial = 0; trial < test_trials(100); trial++) {
+        AUTO(free_at)
         struct turtle t = walk_ground(&random, 1 + random_below(&random, 60), random_between(&random, 0.1, 1.3));
         const narc_chain_options options = {.first_run = (uint32_t)random_below(&random, 3),
                                             .weld = random_below(&random, 2) ? random_between(&random, 0.5, 5) : 0};
         check_division(t.arcs, t.count, &options);
-        free(t.arcs);
     }
 }
 
 TEST(divides_rings) {
     const narc_chain_options ring = {.closed = 1};
     for (size_t teeth = 3; teeth < 40; teeth += 4) {
-        struct turtle t = walk_gear(teeth, 0.5);
+        AUTO(free_at) struct turtle t = walk_gear(teeth, 0.5);
         check_division(t.arcs, t.count, &ring);
-        free(t.arcs);
     }
     struct turtle shoe = create_turtle(2, 0, 0); /* a horseshoe */
     walk_arc(&shoe, 2, PI);
@@ -245,7 +242,7 @@ TEST(divides_rings) {
     assert_int_equal(check_division(cave.arcs, cave.count, &ring), 4);
     free(cave.arcs);
     for (size_t corners = 3; corners < 400; corners = corners * 3 / 2) { /* convex polygons, from a plain point on */
-        struct turtle t = create_turtle(1, 0, 0);
+        AUTO(free_at) struct turtle t = create_turtle(1, 0, 0);
         for (size_t k = 0; k < corners; k++) {
             walk_arc(&t, 0, 0);
             walk_line(&t, 1);
@@ -254,7 +251,6 @@ TEST(divides_rings) {
         }
         if (corners % 2 == 0 || corners == 3) /* else it does not close: every other corner is another one */
             check_division(t.arcs, t.count, &ring);
-        free(t.arcs);
     }
 }
 
@@ -317,7 +313,7 @@ TEST(divides_one_edge_and_valleys) {
 TEST(divides_corners_beside_valleys) {
     for (int ends = 1; ends < 4; ends++)
         for (int first = -1; first < 2; first += 2) {
-            struct turtle t = create_turtle(1, 2, PI / 2);
+            AUTO(free_at) struct turtle t = create_turtle(1, 2, PI / 2);
             for (int end = 1; end < 3; end++) {
                 walk_arc(&t, 0, ends & end ? 0.5 * first : 0);
                 if (ends & end)
@@ -326,7 +322,6 @@ TEST(divides_corners_beside_valleys) {
                     walk_line(&t, 3);
             }
             assert_in_range(check_division(t.arcs, t.count, NULL), 2, 5);
-            free(t.arcs);
         }
 }
 
@@ -335,7 +330,7 @@ TEST(divides_valleys_without_a_sign) {
     struct test_random random = test_random_named("unsigned valleys");
     for (size_t trial = 0; trial < test_trials(40); trial++) {
         const bool closed = trial % 4 == 0;
-        struct turtle t = closed ? walk_gear(5, 1) : walk_ground(&random, 40, 1.2);
+        AUTO(free_at) struct turtle t = closed ? walk_gear(5, 1) : walk_ground(&random, 40, 1.2);
         for (size_t k = 0; closed && k < t.count; k++) /* valleys of right angles in a ring of corners */
             t.arcs[k] = (narc_arc){0, 0, 0, 0, 0};
         t.count = closed ? 0 : t.count;
@@ -373,13 +368,12 @@ TEST(divides_valleys_without_a_sign) {
         }
         narc_destroy_shapes(stores[0]);
         narc_destroy_shapes(stores[1]);
-        free(t.arcs);
     }
 }
 
 TEST(welds_collinear_edges) {
     enum { EDGES = 10000 };
-    struct turtle t = create_turtle(3, 1, 2);
+    AUTO(free_at) struct turtle t = create_turtle(3, 1, 2);
     for (size_t k = 0; k <= EDGES; k++) {
         walk_arc(&t, 0, 0);
         walk_line(&t, 0.125);
@@ -402,12 +396,11 @@ TEST(welds_collinear_edges) {
     expect_error(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, MOST, &found, &error), NARC_ERROR_NOT_CLOSED,
                  &error, "arc 5: its start normal is");
     narc_destroy_shapes(shapes);
-    free(t.arcs);
 }
 
 /* More arcs than a shape has room for. */
 TEST(divides_runs_of_many_arcs) {
-    struct turtle t = create_turtle(0, 0, 1);
+    AUTO(free_at) struct turtle t = create_turtle(0, 0, 1);
     for (int k = 0; k < 200; k++) {
         walk_arc(&t, k % 3 ? 0.5 : 0, 0.006);
         walk_line(&t, 0.1);
@@ -416,7 +409,6 @@ TEST(divides_runs_of_many_arcs) {
     const size_t found = check_division(t.arcs, t.count, NULL);
     assert_int_equal(found, 4);
     assert_int_equal(entries[0].arc_count, 56); /* what a shape has room for, less what is behind and at cuts */
-    free(t.arcs);
 }
 
 /* ------------------------------------------------------------------------------------------------ refused */
@@ -424,7 +416,7 @@ TEST(divides_runs_of_many_arcs) {
 /* The store is as it was before, and so are the outputs. */
 static void check_refused(const narc_arc *arcs, size_t count, const narc_chain_options *options, narc_status status,
                           size_t index, const char *words) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     const uint64_t changes = shapes->change_count;
     size_t found = 77;
     narc_error error;
@@ -436,13 +428,12 @@ static void check_refused(const narc_arc *arcs, size_t count, const narc_chain_o
     assert_int_equal(entries[0].shape, 1234);
     assert_int_equal(narc_count_shapes(shapes), 0);
     assert_true(shapes->change_count == changes);
-    narc_destroy_shapes(shapes);
 }
 
 /* A plain, a hill, a valley with a round bottom, a corner, a plain. */
 enum { GROUND = 8 };
 static void make_ground(narc_arc arcs[GROUND]) {
-    struct turtle t = create_turtle(20, 0, PI / 2);
+    AUTO(free_at) struct turtle t = create_turtle(20, 0, PI / 2);
     walk_arc(&t, 0, 0);
     walk_line(&t, 2);
     walk_arc(&t, 0, 0);
@@ -459,13 +450,12 @@ static void make_ground(narc_arc arcs[GROUND]) {
     walk_arc(&t, 0, 0);
     assert_int_equal(t.count, GROUND);
     memcpy(arcs, t.arcs, GROUND * sizeof *arcs);
-    free(t.arcs);
 }
 
 TEST(refuses_bad_arguments) {
     narc_arc arcs[GROUND];
     make_ground(arcs);
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     size_t found = 77;
     narc_error error;
     assert_int_equal(check_division(arcs, GROUND, NULL), 7);
@@ -492,7 +482,6 @@ TEST(refuses_bad_arguments) {
                  "room for 6 entries, not for 7");
     assert_int_equal(entries[0].shape, 1234);
     assert_int_equal(narc_count_shapes(shapes), 0);
-    narc_destroy_shapes(shapes);
 }
 
 TEST(refuses_arcs_that_are_wrong) {
@@ -536,13 +525,12 @@ TEST(refuses_arcs_that_are_wrong) {
 /* Arcs that are flatter than single precision can tell from edges, and parts that are too large. */
 TEST(refuses_sizes_out_of_range) {
     for (int concave = 0; concave < 2; concave++) {
-        struct turtle t = create_turtle(0, 0, PI / 2);
+        AUTO(free_at) struct turtle t = create_turtle(0, 0, PI / 2);
         walk_arc(&t, 1, 0.5);
         walk_arc(&t, 1, -0.25);
         walk_arc(&t, 1e4, concave ? -1e-4 : 1e-4);
         walk_arc(&t, 1, -0.25);
         check_refused(t.arcs, t.count, NULL, NARC_ERROR_RADIUS, 2, "begins at arc 2");
-        free(t.arcs);
     }
     const narc_arc far[] = {{2e10, 0, 0, PI / 2, PI / 2}, {0, 0, 0, PI / 2, PI / 2}};
     check_refused(far, 2, NULL, NARC_ERROR_SIZE, 0, "bounding radius");
@@ -607,6 +595,7 @@ TEST(refuses_chains_that_lie_on_themselves) {
     struct test_random random = test_random_named("on themselves");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
         const bool exact = trial < 16;
+        AUTO(free_at)
         struct turtle t = create_turtle(exact ? 0 : random_between(&random, -9, 9), 0,
                                         exact ? PI / 2 : random_between(&random, -9, 9));
         const double size = exact ? 1 : random_log_between(&random, 0.1, 10);
@@ -638,16 +627,14 @@ TEST(refuses_chains_that_lie_on_themselves) {
         }
         walk_arc(&t, 0, 0);
         check_refused(t.arcs, t.count, NULL, NARC_ERROR_NOT_SIMPLE, SIZE_MAX, "meets arc");
-        free(t.arcs);
     }
-    struct turtle t = create_turtle(0, 0, 0); /* a closed outline that is walked twice */
+    AUTO(free_at) struct turtle t = create_turtle(0, 0, 0); /* a closed outline that is walked twice */
     for (int k = 0; k < 8; k++) {
         walk_line(&t, 1);
         walk_arc(&t, k % 2 ? 0.5 : 0, PI / 2);
     }
     check_refused(t.arcs, t.count, &(narc_chain_options){.closed = 1}, NARC_ERROR_NOT_SIMPLE, SIZE_MAX, "meets arc");
     check_division(t.arcs, 4, &(narc_chain_options){.closed = 1});
-    free(t.arcs);
 }
 
 /* What meets at a point alone: equal parts of one circle or line, thin walls, slits and cusps, a lens. */
@@ -671,7 +658,7 @@ TEST(accepts_parts_that_are_alike) {
         }
         walk_line(&t, size * random_between(&random, 0.1, 2));
         walk_arc(&t, 0, 0);
-        narc_shapes *shapes = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
         add(shapes, t.arcs, t.count, NULL);
         free(t.arcs);
         t = create_turtle(x, y, random_between(&random, -9, 9)); /* a cusp, with one tangent on both sides */
@@ -690,7 +677,6 @@ TEST(accepts_parts_that_are_alike) {
         for (size_t k = 0; k <= parts; k++)
             walk_arc(&t, size, 2 * PI / (double)(parts + 1) * (trial % 2 ? 1 : -1));
         add(shapes, t.arcs, t.count, &(narc_chain_options){.closed = 1});
-        narc_destroy_shapes(shapes);
         free(t.arcs);
     }
 }
@@ -712,13 +698,13 @@ TEST(accepts_chains_that_come_near_themselves) {
 /* ------------------------------------------------------------------------------------------------ kept */
 
 TEST(fails_wherever_memory_ends) {
-    struct turtle t = walk_gear(30, 0.5);
+    AUTO(free_at) struct turtle t = walk_gear(30, 0.5);
     const narc_chain_options ring = {.closed = 1};
     size_t failures = 0;
     narc_status status = NARC_ERROR_MEMORY;
     for (size_t left = 0; status != NARC_OK; left++) {
         struct ledger ledger = {0};
-        narc_shapes *shapes = ledger_store(&ledger);
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
         const narc_arc ball = {0, 0, 1, 0, 2 * PI};
         size_t found = 77;
         narc_error error;
@@ -737,24 +723,21 @@ TEST(fails_wherever_memory_ends) {
             failures++;
         }
         assert_int_equal(shapes->piece_count + 1, shapes->count);
-        narc_destroy_shapes(shapes);
     }
     assert_int_equal(failures, 4); /* arcs, curves, headers, records */
-    free(t.arcs);
 }
 
 static void add_ring(narc_shapes *shapes, size_t teeth, narc_chain_entry *out_entries, size_t *out_count) {
-    struct turtle t = walk_gear(teeth, 0.5);
+    AUTO(free_at) struct turtle t = walk_gear(teeth, 0.5);
     narc_error error;
     expect_ok(narc_add_chain(shapes, t.arcs, t.count, &(narc_chain_options){.closed = 1}, out_entries, MOST, out_count,
                              &error),
               &error);
-    free(t.arcs);
 }
 
 TEST(refuses_pieces_that_are_too_large) {
-    narc_shapes *shapes = empty_store();
-    struct turtle t = create_turtle(0, 0, PI / 2 + 1);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
+    AUTO(free_at) struct turtle t = create_turtle(0, 0, PI / 2 + 1);
     size_t count = 77;
     narc_error error;
     walk_arc(&t, 3e9, -1.9);
@@ -762,15 +745,13 @@ TEST(refuses_pieces_that_are_too_large) {
                  "its bounding radius is");
     assert_int_equal(narc_count_shapes(shapes), 0);
     assert_int_equal(count, 77);
-    narc_destroy_shapes(shapes);
-    free(t.arcs);
 }
 
 /* A chain whose last piece is a shape with as many uses as it can have: none of its pieces is added. */
 TEST(adds_no_piece_where_one_is_used_most) {
     static narc_chain_entry first[MOST], second[MOST];
-    narc_shapes *shapes = empty_store();
-    struct turtle t = walk_gear(6, 0.5);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
+    AUTO(free_at) struct turtle t = walk_gear(6, 0.5);
     size_t count, again = 77;
     narc_error error;
     add_ring(shapes, 6, first, &count);
@@ -784,8 +765,6 @@ TEST(adds_no_piece_where_one_is_used_most) {
     for (size_t k = count; k-- > 0;)
         assert_int_equal(narc_remove_shape(shapes, first[k].shape, NULL), NARC_OK);
     assert_int_equal(shapes->piece_count, 0);
-    narc_destroy_shapes(shapes);
-    free(t.arcs);
 }
 
 /* Pieces come and go as shapes do, and are none that a list of arcs makes. */
@@ -835,8 +814,8 @@ TEST(keeps_pieces_as_shapes) {
 TEST(finds_boxes_of_fronts) {
     struct test_random random = test_random_named("front boxes");
     for (size_t trial = 0; trial < test_trials(50); trial++) {
-        struct turtle t = walk_ground(&random, 20, 1.2);
-        narc_shapes *shapes = empty_store();
+        AUTO(free_at) struct turtle t = walk_ground(&random, 20, 1.2);
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
         const size_t found = add(shapes, t.arcs, t.count, NULL);
         for (size_t k = 0; k < found; k++) {
             const struct front f = get_front(shapes, &entries[k]);
@@ -867,7 +846,5 @@ TEST(finds_boxes_of_fronts) {
             assert_true(box.min_x >= seen.min_x - room && box.min_y >= seen.min_y - room &&
                         box.max_x <= seen.max_x + room && box.max_y <= seen.max_y + room);
         }
-        narc_destroy_shapes(shapes);
-        free(t.arcs);
     }
 }

@@ -99,7 +99,7 @@ static void check_arc(const struct shape *shape, size_t i, uint32_t radii, doubl
 
 static void check_shape(const struct shape *shape) {
     double extent = 0;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     store_shape(shapes, *shape);
     const narc_shape_header *header = shapes->headers;
     for (size_t i = 0; i < shape->count; i++)
@@ -108,7 +108,6 @@ static void check_shape(const struct shape *shape) {
         const size_t caller = (i + header->first_arc) % header->count;
         check_arc(shape, shape->count == 1 ? 0 : caller, narc_arcs_of(shapes, header)[i].arc.inner_radii, extent);
     }
-    narc_destroy_shapes(shapes);
 }
 
 TEST(holds_for_all_families) {
@@ -140,7 +139,7 @@ static void expect_inner_radii(narc_shapes *shapes, size_t arc, double inner, do
 TEST(is_tight_for_known_shapes) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     store_shape(shapes, circle_of(3));
     expect_inner_radii(shapes, 0, 3, 3);
     store_shape(shapes, capsule_of(4, 0.3));
@@ -168,5 +167,4 @@ TEST(is_tight_for_known_shapes) {
     for (size_t i = 0; i < count; i++)
         sharpest = fmin(sharpest, arcs[i].radius);
     assert_true(half_float(inner_radii_of(shapes, 3) & 0xffff) > 1.1 * sharpest);
-    narc_destroy_shapes(shapes);
 }

@@ -90,15 +90,14 @@ TEST(polylines_of_bodies_are_placed) {
                                 (float)scale,
                                 0};
         size_t count, own_count;
+        AUTO(free_at)
         narc_point *const line = flatten(shape.arcs, shape.count, true, &body, 0.01 * (double)body.scale, &count);
-        narc_point *const own = flatten(shape.arcs, shape.count, true, NULL, 0.01, &own_count);
+        AUTO(free_at) narc_point *const own = flatten(shape.arcs, shape.count, true, NULL, 0.01, &own_count);
         assert_int_equal(count, own_count);
         for (size_t k = 0; k < count; k++) {
             const narc_point p = place(&body, own[k]);
             assert_true(hypot(p.x - line[k].x, p.y - line[k].y) <= 1e-12 * (1 + hypot(p.x, p.y)) * 100);
         }
-        free(line);
-        free(own);
     }
 }
 
@@ -107,10 +106,10 @@ TEST(polylines_of_chains_go_along) {
     struct test_random random = test_random_named("polylines of chains");
     const enum chain_family families[] = {CHAIN_HILLS, CHAIN_BOWLS, CHAIN_MIXED, CHAIN_STEPS};
     for (size_t trial = 0; trial < 4 * test_trials(6); trial++) {
-        const struct chain chain = make_chain(&random, families[trial % 4]);
+        AUTO(free_at) const struct chain chain = make_chain(&random, families[trial % 4]);
         const double tolerance = random_log_between(&random, 1e-4, 0.1);
         size_t count, at = 0;
-        narc_point *const line = flatten(chain.arcs, chain.count, false, NULL, tolerance, &count);
+        AUTO(free_at) narc_point *const line = flatten(chain.arcs, chain.count, false, NULL, tolerance, &count);
         for (size_t k = 0; k < chain.count; k++) {
             const narc_arc *const arc = &chain.arcs[k];
             const bool concave = signbit(arc->radius);
@@ -125,8 +124,6 @@ TEST(polylines_of_chains_go_along) {
                 assert_true(find_distance(p, line[at], line[at + 1]) <= tolerance + 1e-9);
             }
         }
-        free(line);
-        free(chain.arcs);
     }
 }
 

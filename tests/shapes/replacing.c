@@ -16,7 +16,7 @@
 
 /* A shape that was added to a store of its own has the same bits wherever it is. */
 static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
-    narc_shapes *fresh = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *fresh = empty_store();
     store_shape(fresh, *shape);
     narc_shape_header header = shapes->headers[index];
     assert_true(header.first_record + narc_count_records(&header) <= shapes->record_count);
@@ -25,7 +25,6 @@ static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const s
     header.first_record = fresh->headers[0].first_record;
     assert_memory_equal(&header, fresh->headers, sizeof header);
     assert_memory_equal(&shapes->boxes[index], fresh->boxes, sizeof *fresh->boxes);
-    narc_destroy_shapes(fresh);
 }
 
 enum { MODEL_SHAPES = 40 };
@@ -67,7 +66,7 @@ TEST(holds_what_was_put_last) {
     struct test_random random = test_random_named("replacing");
     for (size_t round = 0; round < test_trials(20); round++) {
         struct ledger ledger = {0};
-        struct model *model = calloc(1, sizeof *model);
+        AUTO(free_at) struct model *model = calloc(1, sizeof *model);
         narc_shapes *shapes = ledger_store(&ledger);
         assert_non_null(model);
         for (int step = 0; step < 300; step++) {
@@ -120,7 +119,6 @@ TEST(holds_what_was_put_last) {
         expect_model(shapes, model);
         narc_destroy_shapes(shapes);
         assert_int_equal(ledger.live, 0);
-        free(model);
     }
 }
 
@@ -154,7 +152,7 @@ TEST(memory_does_not_grow) {
     struct test_random random = test_random_named("no growth");
     for (int way = 0; way < 2; way++) { /* replace; remove and add */
         struct ledger ledger = {0};
-        narc_shapes *shapes = ledger_store(&ledger);
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
         struct shape polygons[NARC_MAX_ARCS + 1];
         size_t corners[SHAPES], need = SHAPES * need_of(3), most_needed = need;
         for (size_t n = 3; n <= NARC_MAX_ARCS; n++)
@@ -179,7 +177,6 @@ TEST(memory_does_not_grow) {
         }
         assert_int_equal(narc_count_shapes(shapes), SHAPES);
         expect_little_memory(&ledger, most_needed);
-        narc_destroy_shapes(shapes);
     }
 }
 
@@ -188,7 +185,7 @@ TEST(memory_does_not_grow) {
 TEST(removed_shapes_need_no_memory) {
     enum { SHAPES = 3000 };
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);
     const size_t most_needed = (SHAPES - 1) * need_of(3) + need_of(64);
     for (uint32_t k = 0; k < SHAPES; k++)
@@ -209,13 +206,12 @@ TEST(removed_shapes_need_no_memory) {
             expect_same_shape(shapes, k, &own);
     }
     expect_little_memory(&ledger, most_needed);
-    narc_destroy_shapes(shapes);
 }
 
 /* A shape that changes and keeps its number of arcs, or has fewer, allocates nothing. */
 TEST(same_size_allocates_nothing) {
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape eight = make_polygon(8), five = make_polygon(5);
     assert_int_equal(narc_add_shape(shapes, eight.arcs, 8, NULL, NULL), NARC_OK);
     const size_t before = ledger.allocations;
@@ -224,14 +220,13 @@ TEST(same_size_allocates_nothing) {
     assert_int_equal(narc_replace_shape(shapes, 0, five.arcs, 5, NULL), NARC_OK);
     assert_int_equal(ledger.allocations, before);
     expect_same_shape(shapes, 0, &five);
-    narc_destroy_shapes(shapes);
 }
 
 /* Whatever is wrong, the store stays as it was. */
 TEST(refused_replacement_changes_nothing) {
     struct ledger ledger = {0};
-    struct model *model = calloc(1, sizeof *model);
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(free_at) struct model *model = calloc(1, sizeof *model);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);
     narc_arc broken = {0, 0, -1, -PI, PI};
     narc_error error;
@@ -257,6 +252,4 @@ TEST(refused_replacement_changes_nothing) {
     expect_ok(narc_replace_shape(shapes, 7, large.arcs, 64, &error), &error);
     model->shape[7] = large;
     expect_model(shapes, model);
-    narc_destroy_shapes(shapes);
-    free(model);
 }

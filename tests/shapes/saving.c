@@ -76,24 +76,21 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
 /* The same store, from bytes that may lie anywhere, with the same bytes. */
 static narc_shapes *save_and_load(const narc_shapes *shapes) {
     size_t size, again;
-    unsigned char *const bytes = save(shapes, &size), *const moved = malloc(size + 1);
+    AUTO(free_at) unsigned char *const bytes = save(shapes, &size), *const moved = malloc(size + 1);
     assert_non_null(moved);
     narc_shapes *const loaded = load(memcpy(moved + 1, bytes, size), size);
     expect_same_store(shapes, loaded);
-    unsigned char *const same = save(loaded, &again);
+    AUTO(free_at) unsigned char *const same = save(loaded, &again);
     assert_int_equal(again, size);
     assert_memory_equal(same, bytes, size);
-    free(same);
-    free(moved);
-    free(bytes);
     return loaded;
 }
 
 TEST(loads_what_was_saved) {
     struct test_random random = test_random_named("saving");
     for (size_t round = 0; round < test_trials(20); round++) {
-        narc_shapes *const shapes = make_store(&random, 1 + round % 5);
-        narc_shapes *const loaded = save_and_load(shapes);
+        AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = make_store(&random, 1 + round % 5);
+        AUTO(narc_destroy_shapes_at) narc_shapes *const loaded = save_and_load(shapes);
         /* It goes on as the saved one does: equal shapes are found, indices come in the same order. */
         for (int k = 0; k < 20; k++) {
             const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
@@ -101,8 +98,6 @@ TEST(loads_what_was_saved) {
             assert_int_equal(store_shape(loaded, shape), index);
             assert_int_equal(store_shape(loaded, shape), index);
         }
-        narc_destroy_shapes(shapes);
-        narc_destroy_shapes(loaded);
     }
 }
 
@@ -110,7 +105,7 @@ TEST(loads_what_was_saved) {
 TEST(loads_shapes_far_from_their_origin) {
     struct test_random random = test_random_named("far saving");
     for (double away = 1; away < 1e9; away *= 10) {
-        narc_shapes *const shapes = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
         size_t size;
         for (size_t k = 0; k < 5 * FAMILY_COUNT; k++) {
             struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
@@ -120,12 +115,9 @@ TEST(loads_shapes_far_from_their_origin) {
                 store_shape(shapes, shape);
         }
         assert_true(narc_count_shapes(shapes) > 0);
-        unsigned char *bytes = save(shapes, &size);
-        narc_shapes *const loaded = load(bytes, size);
+        AUTO(free_at) unsigned char *bytes = save(shapes, &size);
+        AUTO(narc_destroy_shapes_at) narc_shapes *const loaded = load(bytes, size);
         assert_int_equal(narc_count_shapes(loaded), narc_count_shapes(shapes));
-        narc_destroy_shapes(shapes);
-        narc_destroy_shapes(loaded);
-        free(bytes);
     }
 }
 
@@ -133,7 +125,7 @@ TEST(loads_shapes_far_from_their_origin) {
 TEST(saves_recorded_bytes) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count, size;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     for (int k = 0; k < 8; k++) {
         const double length = 1 + k / 8.0;
         store_shape(shapes, box_of(length, 2, k / 16.0));
@@ -146,12 +138,10 @@ TEST(saves_recorded_bytes) {
     assert_int_equal(narc_remove_shape(shapes, 4, NULL), NARC_OK);
     assert_int_equal(narc_remove_shape(shapes, 9, NULL), NARC_OK);
     assert_int_equal(narc_add_shape_at(shapes, 30, arcs, count, NULL), NARC_OK);
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     const uint64_t hash = test_hash(TEST_HASH_START, bytes, size);
     printf("  %zu bytes, 0x%016" PRIx64 "\n", size, hash);
     assert_true(hash == 0xb3e02012f6908cacu);
-    narc_destroy_shapes(shapes);
-    free(bytes);
 }
 
 TEST(refuses_bad_arguments) {
@@ -184,7 +174,7 @@ TEST(loading_survives_failing_allocations) {
     struct test_random random = test_random_named("loading without memory");
     narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
     size_t size, failures = 0;
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     narc_error error;
     for (;; failures++) {
         struct ledger ledger = {.limited = true, .left = failures};
@@ -202,7 +192,6 @@ TEST(loading_survives_failing_allocations) {
     }
     assert_true(failures >= 3);
     narc_destroy_shapes(shapes);
-    free(bytes);
 }
 
 static void write_checksum(unsigned char *bytes, size_t size) {
@@ -215,7 +204,7 @@ TEST(damaged_bytes_are_refused) {
     struct test_random random = test_random_named("damage");
     narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
     size_t size;
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     narc_error error;
     for (size_t k = 0; k < test_trials(3000); k++) {
         const size_t at = random_below(&random, size);
@@ -224,15 +213,13 @@ TEST(damaged_bytes_are_refused) {
         assert_int_equal(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT);
         bytes[at] ^= flip;
         const size_t shorter = random_below(&random, size);
-        unsigned char *part = malloc(shorter ? shorter : 1); /* sanitizers see what reads past it */
+        AUTO(free_at) unsigned char *part = malloc(shorter ? shorter : 1); /* sanitizers see what reads past it */
         assert_non_null(part);
         memcpy(part, bytes, shorter);
         assert_int_equal(narc_load_shapes(NULL, part, shorter, &loaded, &error), NARC_ERROR_FORMAT);
-        free(part);
     }
     assert_null(loaded);
     narc_destroy_shapes(shapes);
-    free(bytes);
 }
 
 /* All pairs of a store's shapes in one place and near it: answers are numbers, and agree with each other. */
@@ -255,15 +242,13 @@ static void expect_usable(const narc_shapes *shapes) {
     narc_bodies bodies;
     narc_view_bodies(body, count, &bodies);
     const narc_pairs pairs = {.count = count * count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-    uint64_t *const bits = find_overlaps(shapes, &bodies, &pairs, NULL);
-    struct contacts contacts = find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+    AUTO(free_at) uint64_t *const bits = find_overlaps(shapes, &bodies, &pairs, NULL);
+    AUTO(free_at) struct contacts contacts = find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY});
     assert_int_equal(contacts.count, pairs.count);
     for (size_t k = 0; k < pairs.count; k++) {
         assert_false(isnan(contacts.rows[k].separation) || isnan(contacts.rows[k].normal_x));
         assert_int_equal(bit_is_set(bits, k), contacts.rows[k].separation < 0);
     }
-    free(contacts.rows);
-    free(bits);
 }
 
 static void write_word(unsigned char *bytes, uint32_t word) {
@@ -278,12 +263,12 @@ static void write_float(unsigned char *bytes, float value) {
 }
 
 static void check_forged(struct shape box) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     unsigned char is[4], *at = NULL;
     size_t size;
     store_shape(shapes, box);
     assert_int_equal(shapes->box_count, 1);
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     write_float(is, shapes->headers[0].bound_radius);
     for (size_t k = START; k + 4 <= size && !at; k++)
         at = memcmp(bytes + k, is, 4) == 0 ? bytes + k : NULL;
@@ -291,12 +276,9 @@ static void check_forged(struct shape box) {
     const float forged = 2 * shapes->headers[0].bound_radius;
     write_float(at, forged);
     write_checksum(bytes, size);
-    narc_shapes *const loaded = load(bytes, size);
+    AUTO(narc_destroy_shapes_at) narc_shapes *const loaded = load(bytes, size);
     assert_true(loaded->headers[0].bound_radius == forged);
     assert_int_equal(loaded->box_count, 0);
-    narc_destroy_shapes(loaded);
-    narc_destroy_shapes(shapes);
-    free(bytes);
 }
 
 /* Kernels for boxes and capsules go by half of their sizes, the others by the bounding circle: where that is forged,
@@ -309,13 +291,13 @@ TEST(forged_circle_makes_no_capsule) { check_forged(capsule_of(4, 2)); }
 TEST(forged_bytes_do_no_harm) {
     struct test_random random = test_random_named("forgery");
     size_t loads = 0;
-    narc_shapes *shapes = make_store(&random, 2);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = make_store(&random, 2);
     size_t size;
-    unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
     narc_error error;
     assert_non_null(forged);
     for (size_t k = 0; k < test_trials(8000); k++) {
-        narc_shapes *loaded = NULL;
+        AUTO(narc_destroy_shapes_at) narc_shapes *loaded = NULL;
         memcpy(forged, bytes, size);
         for (size_t flips = 1 + random_below(&random, 3); flips > 0; flips--) {
             const size_t at = random_below(&random, 8) ? random_below(&random, size) : random_below(&random, START);
@@ -339,23 +321,17 @@ TEST(forged_bytes_do_no_harm) {
             expect_usable(loaded);
         /* It can be saved, loaded, and added to. */
         size_t again;
-        unsigned char *copy = save(loaded, &again);
-        narc_shapes *const third = load(copy, again);
+        AUTO(free_at) unsigned char *copy = save(loaded, &again);
+        AUTO(narc_destroy_shapes_at) narc_shapes *const third = load(copy, again);
         for (size_t i = narc_count_shapes(third); i-- > 0;)
             while (narc_count_uses(third, (uint32_t)i) > 0 && narc_count_uses(third, (uint32_t)i) < 10)
                 assert_int_equal(narc_remove_shape(third, (uint32_t)i, NULL), NARC_OK);
         for (int i = 0; i < 3; i++)
             store_shape(third, make_shape(&random, FAMILY_BOX));
-        narc_destroy_shapes(third);
-        narc_destroy_shapes(loaded);
-        free(copy);
     }
     printf("  %zu loads of %zu forgeries\n", loads, test_trials(8000));
     assert_true(loads > 0);
     expect_usable(shapes);
-    narc_destroy_shapes(shapes);
-    free(bytes);
-    free(forged);
 }
 
 /* ------------------------------------------------------------------------------------------------ pieces of chains */
@@ -376,13 +352,12 @@ static narc_shapes *make_ground_store(struct test_random *random) {
 
 TEST(saves_pieces_of_chains) {
     struct test_random random = test_random_named("pieces"), again = random;
+    AUTO(narc_destroy_shapes_at)
     narc_shapes *const shapes = make_ground_store(&random), *const loaded = save_and_load(shapes);
+    AUTO(narc_destroy_shapes_at)
     narc_shapes *const same = make_ground_store(&again); /* chains are divided into the same bits */
     assert_int_equal(loaded->piece_count, narc_count_shapes(shapes) - 4);
     expect_same_store(shapes, same);
-    narc_destroy_shapes(same);
-    narc_destroy_shapes(shapes);
-    narc_destroy_shapes(loaded);
 }
 
 /* Where the numbers of a store's first shape are. */
@@ -399,11 +374,10 @@ static void expect_refused(unsigned char *bytes, size_t size, const char *words)
 
 /* With a number, or a byte, that is another one. */
 static void refuse_number(const unsigned char *bytes, size_t size, size_t at, float number, const char *words) {
-    unsigned char *const forged = malloc(size);
+    AUTO(free_at) unsigned char *const forged = malloc(size);
     assert_non_null(forged);
     write_float((unsigned char *)memcpy(forged, bytes, size) + at, number);
     expect_refused(forged, size, words);
-    free(forged);
 }
 
 static void refuse_byte(unsigned char *bytes, size_t size, size_t at, unsigned byte, const char *words) {
@@ -460,13 +434,13 @@ TEST(refuses_forged_shapes) {
                   {{1, 2, 3, 4, 0}, "arcs out of order"}};
     struct shape pentagon;
     narc_point points[CORNERS];
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     size_t size;
     for (size_t k = 0; k < CORNERS; k++)
         points[k] = (narc_point){10 + cos(0.4 * PI * (double)k), sin(0.4 * PI * (double)k)};
     assert_int_equal(narc_build_polygon(points, CORNERS, 0, pentagon.arcs, &pentagon.count, NULL), NARC_OK);
     store_shape(shapes, pentagon);
-    unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
     assert_non_null(forged);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         refuse_number(bytes, size, numbers[k].at, numbers[k].value, numbers[k].words);
@@ -477,9 +451,6 @@ TEST(refuses_forged_shapes) {
     }
     refuse_byte(bytes, size, RATIO, bytes[RATIO] - 1u, "an extent that is too small");
     refuse_byte(bytes, size, FLAGS, bytes[FLAGS] ^ NARC_SHAPE_SMOOTH, "flags that are not the shape's");
-    free(bytes);
-    free(forged);
-    narc_destroy_shapes(shapes);
 }
 
 static float read_float(const unsigned char *bytes) {
@@ -492,14 +463,14 @@ static float read_float(const unsigned char *bytes) {
 /* A lens whose arcs become flatter than arcs may be, all numbers together. */
 TEST(refuses_forged_flat_arcs) {
     const double radius = 60, flatter = 70; /* half the chord is 1 */
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     struct shape lens;
     size_t size;
     assert_int_equal(narc_build_four_arc(&(narc_four_arc){radius, radius, 2 * sqrt(radius * radius - 1), 0, 0},
                                          lens.arcs, &lens.count, NULL),
                      NARC_OK);
     store_shape(shapes, lens);
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     for (size_t k = 0; k < lens.count; k++) {
         unsigned char *const arc = bytes + ARCS + k * ARC;
         if (read_float(arc + 8) > 0) {
@@ -512,22 +483,18 @@ TEST(refuses_forged_flat_arcs) {
         }
     }
     expect_refused(bytes, size, "an arc that is too flat");
-    free(bytes);
-    narc_destroy_shapes(shapes);
 }
 
 /* The list of removed indices ends where the last one says that there are no more. */
 TEST(refuses_a_list_that_goes_on) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     size_t size;
     store_shape(shapes, circle_of(1));
     store_shape(shapes, circle_of(2));
     assert_int_equal(narc_remove_shape(shapes, 1, NULL), NARC_OK);
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     write_word(bytes + size - 4, 0);
     expect_refused(bytes, size, "removed indices are no list");
-    free(bytes);
-    narc_destroy_shapes(shapes);
 }
 
 /* What is stored of a piece is not believed: one number that is wrong, and it is refused. */
@@ -540,13 +507,13 @@ TEST(refuses_forged_pieces) {
                    {ARCS + 12, 1},   {ARCS + 16, 2},    {ARCS + 24, NAN}};
     const unsigned char marks[] = {0, NARC_PIECE_RUN, NARC_PIECE_CONCAVE + 1, NARC_PIECE_CONCAVE + NARC_PIECE_RUN};
     for (int concave = 0; concave < 2; concave++) {
-        struct turtle t = create_turtle(0, 0, 0);
+        AUTO(free_at) struct turtle t = create_turtle(0, 0, 0);
         narc_chain_entry entry;
-        narc_shapes *shapes = empty_store();
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
         size_t size, count;
         walk_arc(&t, 3, concave ? -1 : 1);
         assert_int_equal(narc_add_chain(shapes, t.arcs, t.count, NULL, &entry, 1, &count, NULL), NARC_OK);
-        unsigned char *bytes = save(shapes, &size);
+        AUTO(free_at) unsigned char *bytes = save(shapes, &size);
         const unsigned char mark = bytes[MARK];
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers && concave; k++)
             refuse_number(bytes, size, numbers[k].at, numbers[k].value, "");
@@ -557,15 +524,10 @@ TEST(refuses_forged_pieces) {
                 refuse_number(bytes, size, ARCS + k * ARC + 8, 0x1p-21f, "");
         if (!concave)
             refuse_byte(bytes, size, MARK, mark | NARC_PIECE_CONCAVE, "");
-        free(bytes);
-        narc_destroy_shapes(shapes);
-        free(t.arcs);
     }
-    narc_shapes *shapes = empty_store(); /* a shape that is no closed run */
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store(); /* a shape that is no closed run */
     size_t size;
     store_shape(shapes, box_of(1, 2, 0));
-    unsigned char *bytes = save(shapes, &size);
+    AUTO(free_at) unsigned char *bytes = save(shapes, &size);
     refuse_byte(bytes, size, MARK, bytes[MARK] | NARC_PIECE_RUN, "");
-    narc_destroy_shapes(shapes);
-    free(bytes);
 }

@@ -39,7 +39,7 @@ TEST(equal_shapes_are_stored_once) {
 /* What answers tell apart is another shape: the place, the numbers of arcs, one bit of one number. */
 TEST(other_bits_are_another_shape) {
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0);
     struct shape other = box;
     assert_int_equal(store_shape(shapes, box), 0);
@@ -61,12 +61,11 @@ TEST(other_bits_are_another_shape) {
         const struct shape circle = {{{k, 0, 1, -PI, PI}}, 1};
         assert_int_equal(store_shape(shapes, circle), 4 + k);
     }
-    narc_destroy_shapes(shapes);
 }
 
 TEST(shared_shapes_are_not_replaced) {
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
@@ -86,7 +85,6 @@ TEST(shared_shapes_are_not_replaced) {
     expect_ok(narc_replace_shape(shapes, 1, other.arcs, 4, &error), &error);
     assert_in_range(store_shape(shapes, other), 0, 1);
     assert_int_equal(narc_count_uses(shapes, 0) + narc_count_uses(shapes, 1), 4);
-    narc_destroy_shapes(shapes);
 }
 
 /* How many shapes a search looks at, on average of all shapes, and at most. Shapes like those of a level: boxes with
@@ -94,7 +92,7 @@ TEST(shared_shapes_are_not_replaced) {
 TEST(searches_are_short) {
     enum { STEPS = 150 };
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     for (int w = 1; w <= STEPS; w++)
         for (int h = 1; h <= STEPS; h++)
             assert_int_equal(store_shape(shapes, box_of(0.125 * w, 0.125 * h, 0)), (w - 1) * STEPS + h - 1);
@@ -110,12 +108,11 @@ TEST(searches_are_short) {
     /* Of random lists at most as many as shapes: half of one more than its own. The longest of 22,500 is 8 or so. */
     assert_true(looks < 2 * all);
     assert_true(longest < 16);
-    narc_destroy_shapes(shapes);
 }
 
 TEST(added_at_an_index) {
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     expect_ok(narc_add_shape_at(shapes, 5, box.arcs, 4, &error), &error); /* extends */
@@ -140,14 +137,13 @@ TEST(added_at_an_index) {
     static const uint32_t free_ones[] = {1, 3, 4, 6};
     for (uint32_t k = 0; k < 4; k++)
         assert_int_equal(store_shape(shapes, box_of(4 + k, 1, 0)), free_ones[k]);
-    narc_destroy_shapes(shapes);
 }
 
 /* Any order of indices, each in a time that does not depend on how many there are. */
 TEST(fills_indices_in_any_order) {
     enum { COUNT = 5000 };
     struct ledger ledger = {0};
-    narc_shapes *shapes = ledger_store(&ledger);
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = ledger_store(&ledger);
     for (uint32_t k = COUNT; k-- > 0;) {
         const struct shape box = box_of(1 + k, 1, 0);
         assert_int_equal(narc_add_shape_at(shapes, k, box.arcs, 4, NULL), NARC_OK);
@@ -156,5 +152,4 @@ TEST(fills_indices_in_any_order) {
     for (uint32_t k = 0; k < COUNT; k++)
         assert_int_equal(store_shape(shapes, box_of(1 + k, 1, 0)), k);
     assert_int_equal(narc_count_shapes(shapes), COUNT);
-    narc_destroy_shapes(shapes);
 }

@@ -40,7 +40,7 @@ static double extent_of(const struct shape *shape) {
 /* The layout that the kernels rely on. */
 TEST(lays_out_blocks) {
     struct test_random random = test_random_named("blocks");
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -78,7 +78,6 @@ TEST(lays_out_blocks) {
     }
     assert_int_equal(narc_get_arcs(shapes, 40 * FAMILY_COUNT, NULL), 0);
     assert_int_equal(narc_shape_flags(shapes, 40 * FAMILY_COUNT), 0);
-    narc_destroy_shapes(shapes);
 }
 
 /* Multiples of a quarter turn are stored as exact zeros and ones, whole turns added or not. */
@@ -86,7 +85,7 @@ TEST(stores_exact_quarter_turns) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const float x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
     for (int turns = -3; turns <= 3; turns++) {
         narc_arc turned[4];
@@ -103,7 +102,6 @@ TEST(stores_exact_quarter_turns) {
             assert_true(arc->start_x == x[i] && arc->start_y == y[i]);
         }
     }
-    narc_destroy_shapes(shapes);
 }
 
 static unsigned add_and_get_flags(narc_shapes *shapes, const narc_arc *arcs, size_t count) {
@@ -116,7 +114,7 @@ TEST(knows_what_shapes_are) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const narc_point rhombus[4] = {{2, 0}, {0, 1}, {-2, 0}, {0, -1}}, square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     narc_build_circle(1, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count),
                      NARC_SHAPE_SMOOTH | NARC_SHAPE_CIRCLE | NARC_SHAPE_CENTERS_INSIDE);
@@ -133,16 +131,14 @@ TEST(knows_what_shapes_are) {
     assert_int_equal(narc_build_points(square, 4, 0.5, arcs, &count, NULL), NARC_ERROR_RADIUS);
     narc_build_points(square, 4, 0.6, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_SMOOTH | NARC_SHAPE_CENTERS_INSIDE);
-    narc_destroy_shapes(shapes);
 }
 
 /* The form of the box that some arcs make, in a store of their own. */
 static narc_box_form find_form(const narc_arc *arcs, size_t count) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
     const narc_box_form form = shapes->boxes[0];
     assert_int_equal(shapes->box_count, narc_has_form(&form));
-    narc_destroy_shapes(shapes);
     return form;
 }
 
@@ -266,7 +262,7 @@ TEST(bounds_what_is_stored) {
     struct test_random random = test_random_named("bounds");
     /* The room that is promised, less or more what rounding the arcs and the circle itself takes. */
     const double least = NARC_ROUNDING_ROOM - 8 * ulp, most = NARC_ROUNDING_ROOM + 8 * ulp;
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < test_trials(100) * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         narc_arc arcs[NARC_MAX_ARCS];
@@ -309,7 +305,6 @@ TEST(bounds_what_is_stored) {
         assert_false(narc_get_aabb(shapes, (uint32_t)narc_count_shapes(shapes), c, s, scale, &box));
         assert_false(narc_get_aabb(shapes, index, c, s, scale, NULL));
     }
-    narc_destroy_shapes(shapes);
 }
 
 /* ------------------------------------------------------------------------------------------------ memory */
@@ -381,18 +376,17 @@ TEST(leaves_room_for_arcs_that_are_apart) {
             const double x = apart * cos(angle + along * PI / 2), y = apart * sin(angle + along * PI / 2);
             const narc_arc halves[2] = {{0, 0, 1, angle, angle + PI}, {x, y, 1, angle + PI, angle + 2 * PI}};
             const double room = along ? apart : 2 * apart;
-            narc_shapes *shapes = empty_store();
+            AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
             assert_int_equal(narc_add_shape(shapes, halves, 2, NULL, NULL), NARC_OK);
             const narc_shape_header *const header = &shapes->headers[0];
             assert_true((double)header->bound_radius >= 1 + room && (double)header->inner_radius <= 1 - room);
-            narc_destroy_shapes(shapes);
         }
     }
 }
 
 /* As many shapes as a store takes, and as many uses of one, are more than a test can add: the counts are set. */
 TEST(tells_that_it_is_full) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     const struct shape circle = circle_of(1), other = circle_of(2);
     uint32_t index = 7;
     narc_error error;
@@ -407,22 +401,20 @@ TEST(tells_that_it_is_full) {
                  "the store is full, it has 2147483647 shapes");
     shapes->count = all;
     assert_int_equal(index, 7);
-    narc_destroy_shapes(shapes);
 }
 
 /* The largest circle has room for rounding about its origin, but not a radius away from it. */
 TEST(refuses_circles_without_room) {
-    narc_shapes *shapes = empty_store();
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = empty_store();
     narc_arc circle = {0, 0, NARC_MAX_SIZE, -PI, PI};
     narc_error error;
     expect_ok(narc_add_shape(shapes, &circle, 1, NULL, &error), &error);
     circle.center_x = NARC_MAX_SIZE;
     expect_error(narc_add_shape(shapes, &circle, 1, NULL, &error), NARC_ERROR_SIZE, &error, "with room for rounding");
-    narc_destroy_shapes(shapes);
 }
 
 TEST(refuses_bad_arguments) {
-    narc_shapes *shapes = NULL;
+    AUTO(narc_destroy_shapes_at) narc_shapes *shapes = NULL;
     narc_error error;
     struct ledger ledger = {0};
     narc_allocator incomplete = ledger_allocator(&ledger);
@@ -444,5 +436,4 @@ TEST(refuses_bad_arguments) {
     assert_int_equal(narc_get_arcs(NULL, 0, &arc), 0);
     assert_int_equal(narc_reserve_shapes(NULL, 1, 1), NARC_ERROR_ARGUMENT);
     narc_destroy_shapes(NULL);
-    narc_destroy_shapes(shapes);
 }

@@ -137,7 +137,7 @@ TEST(test_builders) {
         struct test_random random = {builder < SEGMENT ? builder : builder + 2}; /* not of NARC_TEST_SEED */
         uint64_t hash = TEST_HASH_START;
         size_t built = 0;
-        narc_shapes *shapes;
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes;
         assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
         for (size_t k = 0; k < shapes_of(builder); k++) {
             narc_arc arcs[NARC_MAX_ARCS];
@@ -159,7 +159,6 @@ TEST(test_builders) {
         printf("  %s: %zu of %zu, 0x%016" PRIx64 "\n", names[builder], built, shapes_of(builder), hash);
         assert_true(built > shapes_of(builder) * 3 / 4);
         same = same && hash == golden[builder];
-        narc_destroy_shapes(shapes);
     }
     assert_true(same);
 }
@@ -221,7 +220,7 @@ TEST(test_chains) {
         const narc_chain_options options = {.closed = k % 4 == 0, .weld = k % 2 ? 0 : 2};
         const size_t first = options.closed ? 0 : k % 5; /* any arc may be the first one */
         narc_chain_entry entries[ENTRIES];
-        narc_shapes *shapes;
+        AUTO(narc_destroy_shapes_at) narc_shapes *shapes;
         size_t count = 0;
         assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
         divided +=
@@ -233,7 +232,6 @@ TEST(test_chains) {
         }
         if (count > 0)
             hash = hash_stored(hash, shapes);
-        narc_destroy_shapes(shapes);
     }
     printf("  chains: %zu of 200, 0x%016" PRIx64 "\n", divided, hash);
     assert_true(divided > 150);

@@ -687,6 +687,7 @@ void ask_body(const struct ground_scene *scene, const struct body *body, narc_qu
     const narc_bodies own = view_columns(body, 1), ground = view_columns(scene->bodies, scene->count);
     const narc_pairs pairs = {
         .count = scene->count, .a = {&zero, 0}, .b = NARC_ARRAY(entry_numbers()), .other_bodies = &ground};
+    AUTO(free_at)
     const struct ground_answers answers = ask_sets((struct question){scene, &own, NULL, &pairs, query, 0}, false);
     out->contact_count = answers.counts[0];
     assert_in_range(out->contact_count, 0, TOLD_ROWS);
@@ -697,5 +698,4 @@ void ask_body(const struct ground_scene *scene, const struct body *body, narc_qu
     out->deepest = INFINITY;
     for (size_t k = 0; k < out->count; k++)
         out->deepest = fminf(out->deepest, find_deepest(&out->rows[k]));
-    free(answers.counts);
 }

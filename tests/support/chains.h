@@ -75,6 +75,7 @@ struct ground_scene {
 
 struct ground_scene *create_ground_scene(void);
 void destroy_ground_scene(struct ground_scene *scene);
+RELEASE_AT(destroy_ground_scene)
 
 /* Takes a chain with its arcs, whatever comes of it. */
 narc_status add_ground(struct ground_scene *scene, struct chain chain, narc_chain_options options, narc_error *error);

@@ -126,16 +126,16 @@ static void ask_index(const struct everything *e, const narc_box *boxes, const n
     narc_bodies bodies = e->bodies, movers = e->bodies;
     narc_cast_options cast = e->cast;
     narc_index_query search = {.workers = workers};
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     narc_error error;
-    uint32_t *const own = guard_allocate(e->movers * sizeof *own);
+    AUTO(guard_release_at) uint32_t *const own = guard_allocate(e->movers * sizeof *own);
     for (uint32_t k = 0; k < e->movers; k++)
         own[k] = k;
     bodies.count = e->indexed;
     movers.count = e->movers;
     expect_ok(narc_create_index(&guard_allocator, &index), &error);
     expect_ok(narc_build_index(index, boxes, e->indexed, &(narc_index_options){.workers = workers}, &error), &error);
-    uint32_t *const order = guard_allocate(e->rays.count * sizeof *order);
+    AUTO(guard_release_at) uint32_t *const order = guard_allocate(e->rays.count * sizeof *order);
     const narc_ray_options through = {.search = search,
                                       .inside = e->inside,
                                       .most = MOST_HITS,
@@ -154,16 +154,13 @@ static void ask_index(const struct everything *e, const narc_box *boxes, const n
                                add_rows(answers, ANSWER_MOVERS, e->movers), e->movers, &error),
               &error);
     ask_lists(e, index, boxes, workers, answers);
-    narc_destroy_index(index);
-    guard_release(own);
-    guard_release(order);
 }
 
 struct answers ask_everything(const struct everything *e, const narc_workers *workers) {
     struct answers answers;
     const size_t bodies = e->bodies.count;
     size_t *const counts = memset(add_rows(&answers, ANSWER_COUNTS, COUNTS), 0, COUNTS * sizeof *counts);
-    uint32_t *const owner = guard_allocate(bodies * sizeof *owner);
+    AUTO(guard_release_at) uint32_t *const owner = guard_allocate(bodies * sizeof *owner);
     narc_box *const boxes = add_rows(&answers, ANSWER_BOXES, bodies);
     const narc_box_options options = {.workers = workers, .out_skipped = &counts[9]};
     narc_error error;
@@ -175,7 +172,6 @@ struct answers ask_everything(const struct everything *e, const narc_workers *wo
               &error);
     ask_pairs(e, workers, &answers, counts);
     ask_index(e, e->boxes ? e->boxes : boxes, workers, &answers, counts);
-    guard_release(owner);
     return answers;
 }
 
@@ -295,7 +291,7 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
     world.cast.target = random_below(random, 2) ? 0 : (float)random_between(random, -0.1, 0.1);
     world.cast.parting = world.cast.target > 0 ? 0.01f : 0;
     world.inside = (narc_inside)random_below(random, 3);
-    struct contacts contacts = scene_contacts(&scene, INFINITY);
+    AUTO(free_at) struct contacts contacts = scene_contacts(&scene, INFINITY);
     if (random_below(random, 2))
         world.query.flat_angle = (float)random_between(random, 0, 1.5);
     for (size_t k = 0; k < pairs; k++) {
@@ -313,7 +309,6 @@ struct world make_world(struct test_random *random, struct scene scene, size_t b
         world.rays[k] = make_ray(random, &scene.shapes[body->shape], body, scene.precision,
                                  (enum ray_kind)random_below(random, RAY_KINDS));
     }
-    free(contacts.rows);
     return world;
 }
 

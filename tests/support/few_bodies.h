@@ -23,5 +23,6 @@ struct few {
 struct few *make_few(struct shape shape, size_t count, const narc_allocator *allocator);
 const narc_step_result *step_few(struct few *few);
 void destroy_few(struct few *few);
+RELEASE_AT(destroy_few)
 
 #endif

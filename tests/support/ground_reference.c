@@ -219,7 +219,7 @@ static int compare_feet(const void *left, const void *right) {
 }
 
 size_t ground_feet(const struct ground *ground, narc_point point, struct ground_foot *out, size_t capacity) {
-    struct ground_foot *all = malloc(ground->count * sizeof *all);
+    AUTO(free_at) struct ground_foot *all = malloc(ground->count * sizeof *all);
     size_t count = 0;
     for (size_t k = 0; k < ground->count; k++)
         count += find_foot(&ground->pieces[k], point, &all[count]);
@@ -227,7 +227,6 @@ size_t ground_feet(const struct ground *ground, narc_point point, struct ground_
     count = count < capacity ? count : capacity;
     for (size_t k = 0; k < count; k++)
         out[k] = all[k];
-    free(all);
     return count;
 }
 
@@ -414,13 +413,12 @@ static double find_end_gap(const struct ground *ground, const struct ground *out
 }
 
 struct ground_clearance ground_find_clearance(struct ground *ground, const struct reference_body *body) {
-    struct ground *outline = walk_body(body);
+    AUTO(destroy_ground_at) struct ground *outline = walk_body(body);
     const bool is_outside = ground_distance(outline, ground->pieces[0].from).distance > 0;
     struct ground_clearance out = {is_outside ? find_gap(outline, ground) : 0, false};
     const double extent = reference_extent(body);
     out.in_air = out.distance > 0 && ground_distance(ground, outline->pieces[0].from).distance > 0 &&
                  find_end_gap(ground, outline, 8 * (out.distance + extent)) > end_room * extent;
-    destroy_ground(outline);
     return out;
 }
 

@@ -31,6 +31,7 @@ narc_point chain_point(const narc_arc *arc, double angle);
 struct ground; /* a chain, piece by piece */
 struct ground *make_ground(const struct chain *chain);
 void destroy_ground(struct ground *ground);
+RELEASE_AT(destroy_ground)
 
 /* The nearest of all feet, which is the signed distance of the ground. Where an open end is nearer than all feet there
  * is no such distance: +INFINITY. */

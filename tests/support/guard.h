@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+#include "auto.h"
 #include "narc_shapes.h"
 
 /* `size` bytes that end where a forbidden page begins, filled with junk; what lies before them is watched. */
@@ -14,6 +15,7 @@ void *guard_allocate(size_t size);
 
 /* Checks that nothing before the memory was written (behind it, nothing could be) and frees it. */
 void guard_release(void *memory);
+RELEASE_AT(guard_release)
 
 /* A copy of something in such memory. */
 void *guard_copy(const void *bytes, size_t size);

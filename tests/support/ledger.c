@@ -29,10 +29,9 @@ static void *allocate(size_t size, void *context) {
 static void release(void *memory, void *context) {
     struct ledger *ledger = context;
     assert_non_null(memory);
-    size_t *start = (size_t *)(void *)((char *)memory - HEADER);
+    AUTO(free_at) size_t *start = (size_t *)(void *)((char *)memory - HEADER);
     ledger->live -= *start;
     memset(memory, GUARD_JUNK, *start);
-    free(start);
 }
 
 narc_allocator ledger_allocator(struct ledger *ledger) { return (narc_allocator){allocate, release, ledger}; }

@@ -43,14 +43,13 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
     const narc_batch batch = begin_plain(shapes, bodies, pairs, &query);
     const size_t count = pairs->count;
     struct contacts plain = {make_junk(count * sizeof *plain.rows), count};
-    uint64_t *bits = make_junk(NARC_BIT_WORDS(count) * sizeof *bits);
+    AUTO(free_at) uint64_t *bits = make_junk(NARC_BIT_WORDS(count) * sizeof *bits);
     assert_int_equal(find_rows(narc_kernels_plain.contact, &batch, sizeof *plain.rows, plain.rows), count);
     narc_kernels_plain.overlap(&batch, 0, count, &skipped, bits);
     for (size_t k = 0; k < count; k++) {
         assert_int_equal(plain.rows[k].pair, k);
         assert_int_equal(bit_is_set(bits, k), plain.rows[k].separation < 0);
     }
-    free(bits);
     return plain;
 }
 
@@ -83,11 +82,11 @@ static void fail_at(const struct plain_batch *batch, size_t pair, const char *wh
 }
 
 void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers) {
+    AUTO(free_at)
     uint64_t *bits = find_overlaps(batch->shapes, batch->bodies, batch->pairs, &(narc_query){.workers = workers});
     for (size_t k = 0; k < batch->pairs->count; k++)
         if (bit_is_set(bits, k) != (batch->right[k].separation < 0))
             fail_at(batch, k, bit_is_set(bits, k) ? "collides by its bit" : "does not collide by its bit");
-    free(bits);
 }
 
 /* What differs between a contact and another, NULL if nothing does. Zeros of either sign are not the same. */
@@ -116,7 +115,7 @@ static void fail_contact(const struct plain_batch *batch, const narc_contact *fo
 
 void check_plain_contacts(const struct plain_batch *batch, const narc_query *query) {
     const float margin = query->margin;
-    struct contacts found = find_contacts(batch->shapes, batch->bodies, batch->pairs, query);
+    AUTO(free_at) struct contacts found = find_contacts(batch->shapes, batch->bodies, batch->pairs, query);
     size_t at = 0;
     for (size_t k = 0; k < batch->pairs->count; k++) {
         const bool wanted = margin == INFINITY || batch->right[k].separation < margin;
@@ -131,7 +130,6 @@ void check_plain_contacts(const struct plain_batch *batch, const narc_query *que
         }
     }
     assert_int_equal(at, found.count);
-    free(found.rows);
 }
 
 /* Fails with the first row that differs. */
@@ -165,13 +163,13 @@ enum layout any_layout(struct test_random *random) {
 }
 
 void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name) {
-    struct columns columns = create_columns(scene, any_layout(random), 0, scene->pair_count);
+    AUTO(destroy_columns) struct columns columns = create_columns(scene, any_layout(random), 0, scene->pair_count);
     const narc_pairs *pairs = &columns.pairs;
     const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, pairs, name);
     const float flats[] = {0, 0.05f, 0.7f, 0.7853982f, NARC_MAX_FLAT_ANGLE, -1};
     const float some = batch.right[random_below(random, scene->pair_count)].separation;
     const float margins[] = {0.02f, 0, INFINITY, some, nextafterf(some, INFINITY), -0.01f};
-    float *each = malloc(scene->pair_count * sizeof *each);
+    AUTO(free_at) float *each = malloc(scene->pair_count * sizeof *each);
     for (size_t k = 0; k < scene->pair_count; k++) { /* the separation itself is not below it */
         const float separation = batch.right[k].separation;
         each[k] = random_below(random, 2) ? separation : nextafterf(separation, INFINITY);
@@ -194,7 +192,5 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
             check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .workers = &workers});
     }
     check_plain_overlaps(&batch, NULL);
-    free(each);
     free(batch.right);
-    destroy_columns(&columns);
 }

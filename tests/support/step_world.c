@@ -448,13 +448,12 @@ static void *allocate(size_t size, void *context) {
 }
 
 static void release(void *given, void *context) {
-    char *const memory = (char *)given - IN_FRONT;
+    AUTO(free_at) char *const memory = (char *)given - IN_FRONT;
     size_t size;
     (void)context;
     memcpy(&size, memory, sizeof size);
     for (size_t k = 0; k < BEHIND; k++)
         assert_int_equal(memory[IN_FRONT + size + k], (char)GUARD_JUNK);
-    free(memory);
 }
 
 const narc_allocator watched = {.allocate = allocate, .release = release};

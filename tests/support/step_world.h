@@ -38,6 +38,7 @@ struct memory {
 /* With an open chain as ground, whose entries stand behind all bodies, or without. */
 struct step_world *make_step_world(struct test_random random, bool ground);
 void destroy_step_world(struct step_world *w);
+RELEASE_AT(destroy_step_world)
 
 /* What happens between two steps: who may be another one is listed in w->moved. */
 void move_step_world(struct step_world *w);

@@ -22,6 +22,8 @@
 
 #include <cmocka.h>
 
+#include "auto.h"
+
 #define PI 3.14159265358979323846
 
 /* A test of this program: TEST_MAIN() or test_run() runs all, those of a file in their order there. */

@@ -42,7 +42,9 @@ TEST(test_collision_across_borders) {
                                        {15.65, 8, 100, 0}, {2.8, 8, -100, 0}, {15.76, 1.72, 90, -90}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         const double *p = places[i];
-        dem d = collide_at(p[0], p[1], true, p[2], p[3]), reference = collide_at(p[0], p[1], false, p[2], p[3]);
+        AUTO(dem_destroy)
+        dem d = collide_at(p[0], p[1], true, p[2], p[3]),
+            reference = collide_at(p[0], p[1], false, p[2], p[3]);
         size_t crossings = 0, contacts = 0;
         for (int s = 0; s < 1000; s++) {
             const int32_t before = d.bodies[0].cell_x + d.bodies[0].cell_y;
@@ -58,15 +60,13 @@ TEST(test_collision_across_borders) {
         assert_true(contacts > 100);
         assert_true(crossings > 0 || (p[2] == 0 && p[3] == 0));
         check_same(&d, &reference);
-        dem_destroy(&d);
-        dem_destroy(&reference);
     }
 }
 
 /* A wall across the border: a box, found from both sides. */
 TEST(test_wall_across_border) {
     for (int side = 0; side < 2; side++) {
-        dem d = plain_world();
+        AUTO(dem_destroy) dem d = plain_world();
         d.settings.periodic_x = true;
         d.settings.high.x = 16;
         d.settings.gravity = (vec){0, -10};
@@ -76,13 +76,12 @@ TEST(test_wall_across_border) {
         dem_start(&d);
         step(&d, 2000);
         assert_int_equal(d.contact_count, 1);
-        dem_destroy(&d);
     }
 }
 
 /* Pairs come in the order of both parts, and once, wherever the image of B is. */
 TEST(test_pairs_in_order) {
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     size_t images = 0;
     dem_start(&d);
     for (int i = 0; i < 100; i++) {
@@ -96,7 +95,6 @@ TEST(test_pairs_in_order) {
     }
     print_message("%zu pairs across the border\n", images);
     assert_true(images > 10);
-    dem_destroy(&d);
 }
 
 static const double SIDE = 16, SHEAR_RATE = 2;
@@ -128,7 +126,7 @@ static void put_pair(dem *d, bool sheared, double offset, double x) {
 TEST(test_collision_across_the_sheared_border) {
     static const double offsets[] = {0, 3, -7.9, 7.99}, places[] = {8, 0.2, 15.9};
     for (size_t i = 0; i < 12; i++) {
-        dem d, reference;
+        AUTO(dem_destroy) dem d, reference;
         put_pair(&d, true, offsets[i % 4], places[i / 4]);
         put_pair(&reference, false, offsets[i % 4], places[i / 4]);
         size_t contacts = 0;
@@ -150,7 +148,5 @@ TEST(test_collision_across_the_sheared_border) {
         }
         assert_true(fabs(energies(&d).damping - energies(&reference).damping) < 1e-8);
         assert_true(fabs(energies(&d).friction - energies(&reference).friction) < 1e-8);
-        dem_destroy(&d);
-        dem_destroy(&reference);
     }
 }

@@ -56,7 +56,7 @@ TEST(test_elastic_collision) {
         const double depth = depths[kind], duration = (kind ? 2.943275 : PI) * depth;
         dem_contact_law law = plain_law();
         law.damping_ratio = 0;
-        dem d = make_collision(DISC, kind ? DEM_HERTZ : DEM_LINEAR, law, duration / 2000, 1, 0);
+        AUTO(dem_destroy) dem d = make_collision(DISC, kind ? DEM_HERTZ : DEM_LINEAR, law, duration / 2000, 1, 0);
         double deepest = 0;
         step(&d, 1);
         for (size_t i = 0; d.contact_count > 0; i++) {
@@ -67,7 +67,6 @@ TEST(test_elastic_collision) {
         assert_true(fabs(d.time / duration - 1) < 3e-3); /* steps, and where the first was within the contact */
         assert_true(fabs(deepest / depth - 1) < 1e-3);
         assert_true(fabs(d.bodies[1].velocity.x - 1) < 1e-3 && fabs(d.bodies[0].velocity.x) < 1e-3);
-        dem_destroy(&d);
     }
 }
 
@@ -78,6 +77,7 @@ TEST(test_conservation) {
         law.damping_ratio = dem_damping_ratio(kind % 2 ? DEM_HERTZ : DEM_LINEAR, 0.5);
         law.friction = 0.4;
         law.rolling_friction = 0.1;
+        AUTO(dem_destroy)
         dem d = make_collision(kind / 2 ? ARCS : DISC, kind % 2 ? DEM_HERTZ : DEM_LINEAR, law, 1e-5, 3, 2);
         d.bodies[0].spin = 4;
         d.bodies[1].spin = 1;
@@ -90,7 +90,6 @@ TEST(test_conservation) {
         const dem_energies e = energies(&d);
         assert_true(e.damping > 0 && e.friction > 0);
         assert_true(fabs(total_energy(&d) - energy) < 2e-3 * energy);
-        dem_destroy(&d);
     }
 }
 
@@ -98,14 +97,13 @@ TEST(test_conservation) {
 TEST(test_no_friction_loses_nothing) {
     dem_contact_law law = plain_law();
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.5);
-    dem d = make_collision(ARCS, DEM_LINEAR, law, 1e-5, 3, 2);
+    AUTO(dem_destroy) dem d = make_collision(ARCS, DEM_LINEAR, law, 1e-5, 3, 2);
     d.bodies[0].spin = 4;
     for (int i = 0; i < 60000; i++) {
         step(&d, 1);
         assert_true(d.account.friction == 0 && d.account.tangential == 0);
     }
     assert_true(d.account.damping > 0.1);
-    dem_destroy(&d);
 }
 
 /* Both laws give the restitution that is asked for, whatever touches: tips of ellipses, a side on a side, a corner on a
@@ -129,7 +127,7 @@ TEST(test_restitution_of_shapes) {
         settings.law = k % 2 ? DEM_HERTZ : DEM_LINEAR;
         settings.time_step = 5e-6;
         law.damping_ratio = dem_damping_ratio(settings.law, 0.6);
-        dem d = make_world(settings, law);
+        AUTO(dem_destroy) dem d = make_world(settings, law);
         const uint32_t shape = cases[k / 2].shape;
         const double reach = 2 * d.shapes[shape].reach + 1e-3;
         const double angle_a = cases[k / 2].angle_a, angle_b = cases[k / 2].angle_b;
@@ -142,7 +140,6 @@ TEST(test_restitution_of_shapes) {
         print_message("%s, %s: %.6f\n", cases[k / 2].name, k % 2 ? "Hertz" : "linear", found);
         assert_true(fabs(found - 0.6) < 2e-3);
         assert_true(fabs(d.bodies[0].spin) < 1e-6 && fabs(d.bodies[0].velocity.y) < 1e-6);
-        dem_destroy(&d);
     }
 }
 
@@ -155,7 +152,7 @@ TEST(test_hertz_has_one_radius) {
         dem_settings settings = plain_settings();
         settings.law = DEM_HERTZ;
         settings.time_step = 1e-6;
-        dem d = make_world(settings, law);
+        AUTO(dem_destroy) dem d = make_world(settings, law);
         const double depth = 1e-3, reach = corner ? sqrt(0.5) : 0.5, h = corner ? depth : sqrt(2) * depth;
         const dem_grain left = {.shape = SQUARE, .scale = 1};
         const dem_grain right = {
@@ -168,7 +165,6 @@ TEST(test_hertz_has_one_radius) {
         const double force = d.contacts[0].on.force.x * (corner ? 1 : sqrt(0.5));
         print_message("Hertz force %.12g, expected %.12g\n", force, expected);
         assert_true(fabs(force / expected - 1) < 1e-11); /* depths are within a rounding of 1 of 1e-3 */
-        dem_destroy(&d);
     }
 }
 
@@ -177,11 +173,10 @@ TEST(test_hertz_has_one_radius) {
 /* Within the contact of two discs, h = v / w sin(w t). */
 static double find_error(double step_angle) {
     const double rate = sqrt(1e5 / (0.5 * PI)), speed = 8;
-    dem d = make_collision(DISC, DEM_LINEAR, plain_law(), step_angle / rate, speed, 0);
+    AUTO(dem_destroy) dem d = make_collision(DISC, DEM_LINEAR, plain_law(), step_angle / rate, speed, 0);
     d.bodies[1].position.x = 2;
     step(&d, (size_t)lround(2 / step_angle));
     const double depth = 2 - (d.bodies[1].position.x - d.bodies[0].position.x);
-    dem_destroy(&d);
     return fabs(depth / (speed / rate * sin(2)) - 1);
 }
 

@@ -37,7 +37,7 @@ static load press(const uint32_t shapes[2], double x, double y, const double tur
     dem_settings settings = plain_settings();
     settings.max_overlap = 10;
     law.kn = 1;
-    dem d = make_world(settings, law);
+    AUTO(dem_destroy) dem d = make_world(settings, law);
     for (uint32_t k = 0; k < 4; k++) /* shapes ELL + 1 ... */
         add_bar(&d, k % 2 != 0, k < 2 ? 1 : 2);
     for (int k = 0; k < 2; k++)
@@ -46,7 +46,6 @@ static load press(const uint32_t shapes[2], double x, double y, const double tur
     dem_start(&d);
     const dem_energies e = energies(&d);
     const load found = {e.elastic, hypot(d.bodies[0].force.x, d.bodies[0].force.y), d.bodies[0].torque};
-    dem_destroy(&d);
     return found;
 }
 
@@ -83,7 +82,7 @@ static void bounce(dem_law kind, double restitution, double steps, double *out_w
     for (int phase = 0; phase < 20; phase++) {
         dem_contact_law law = plain_law();
         law.damping_ratio = dem_damping_ratio(kind, restitution);
-        dem d = make_world(settings, law);
+        AUTO(dem_destroy) dem d = make_world(settings, law);
         const double m = PI / 2, u = 0.2, b = dem_damping_ratio(DEM_LINEAR, restitution) / 2;
         const double stiffness = d.laws[0][0].kn * sqrt(0.5);
         double time = PI * sqrt(m / law.kn) / sqrt(1 - b * b);
@@ -98,7 +97,6 @@ static void bounce(dem_law kind, double restitution, double steps, double *out_w
         assert_int_equal(d.contact_count, 0);
         *out_worst = fmax(*out_worst, fabs((d.bodies[1].velocity.x - d.bodies[0].velocity.x) / u - restitution));
         *out_account = fmax(*out_account, fabs(total_energy(&d) / energy - 1));
-        dem_destroy(&d);
     }
 }
 
@@ -124,7 +122,7 @@ TEST(test_cohesion) {
     law.kn = 1000;
     law.cohesion = 10;
     law.range = 0.02;
-    dem d = make_world(plain_settings(), law);
+    AUTO(dem_destroy) dem d = make_world(plain_settings(), law);
     d.settings.time_step = 1e-4;
     const double rest = law.cohesion / law.kn; /* overlap */
     const double held = law.cohesion * law.range / 2 + law.cohesion * law.cohesion / (2 * law.kn), m = PI / 2;
@@ -141,12 +139,11 @@ TEST(test_cohesion) {
     assert_true(fabs(total_energy(&d) - energy) < 1e-4 * held);
     assert_true(d.bodies[1].position.x - d.bodies[0].position.x < 2 + law.range);
     assert_true(d.bodies[3].position.x - d.bodies[2].position.x > 2 + law.range);
-    dem_destroy(&d);
 }
 
 /* exp(-drag t), with gravity towards g / drag; all is damping. */
 TEST(test_drag) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.settings.drag = 2;
     d.settings.gravity = (vec){0, -3};
     d.settings.time_step = 1e-3;
@@ -158,7 +155,6 @@ TEST(test_drag) {
     assert_true(fabs(d.bodies[0].velocity.x - 5 * exp(-2)) < 1e-5 && fabs(d.bodies[0].spin - 7 * exp(-2)) < 1e-5);
     assert_true(fabs(d.bodies[0].velocity.y + 1.5 * (1 - exp(-2))) < 1e-5);
     assert_true(fabs(total_energy(&d) / energy - 1) < 1e-5);
-    dem_destroy(&d);
 }
 
 /* A square lattice of discs of diameter 2 under a stress p in x and q in y: kn (2 - L_x) = p L_y, and the other way round. */
@@ -171,7 +167,7 @@ TEST(test_cell_holds_stress) {
     law.kn = 1000;
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.3);
     const double p = 20, q = 10;
-    dem d = make_world(settings, law);
+    AUTO(dem_destroy) dem d = make_world(settings, law);
     d.settings.time_step = 1e-3;
     for (int k = 0; k < 16; k++)
         add_grain(&d, DISC, 1 + 2 * (k % 4), 1 + 2 * (k / 4), 0, 0);
@@ -184,7 +180,6 @@ TEST(test_cell_holds_stress) {
     print_message("cell %.9g by %.9g, of %.9g by %.9g\n", size.x / 4, size.y / 4, x, y);
     assert_true(fabs(size.x / 4 - x) < 1e-6 && fabs(size.y / 4 - y) < 1e-6);
     assert_true(fabs(d.stress.x - p) < 1e-3 && fabs(d.stress.y - q) < 1e-3);
-    dem_destroy(&d);
 }
 
 /* Three boxes of one group under two discs: together they bear the target, and go along with a velocity across it. */
@@ -195,7 +190,7 @@ TEST(test_group_has_one_servo) {
     dem_settings settings = plain_settings();
     settings.time_step = 1e-3;
     settings.max_overlap = 0.3;
-    dem d = make_world(settings, law);
+    AUTO(dem_destroy) dem d = make_world(settings, law);
     add_plate(&d, "top", 0, 2, 0, -1);
     for (int k = 0; k < 3; k++) {
         dem_wall *box = add_box(&d, SQUARE, 4, 4.0 * k - 4, -2.01);
@@ -213,7 +208,6 @@ TEST(test_group_has_one_servo) {
     assert_true(fabs(d.bodies[2 + 1].position.x + 3.5) < 1e-9);
     for (int k = 2; k < 4; k++)
         assert_true(d.bodies[2 + k].position.y == d.bodies[2 + 1].position.y);
-    dem_destroy(&d);
 }
 
 /* A disc in a bowl, a concave arc: a pendulum of length R - r, and of 3/2 of it where it rolls. */
@@ -225,7 +219,7 @@ TEST(test_pendulum_in_a_bowl) {
         dem_settings settings = plain_settings();
         settings.gravity = (vec){0, -1};
         settings.time_step = 5e-4;
-        dem d = make_world(settings, law);
+        AUTO(dem_destroy) dem d = make_world(settings, law);
         dem_wall wall = {.name = "bowl", .kind = DEM_BOX, .scale = 1};
         wall.shape = dem_add_chain(&d, "bowl", &bowl, 1, false);
         dem_add_wall(&d, wall);
@@ -243,7 +237,6 @@ TEST(test_pendulum_in_a_bowl) {
         }
         print_message("period %.6g, of %.6g\n", (crossed[2] - crossed[0]) / 2, theory);
         assert_true(fabs((crossed[2] - crossed[0]) / 2 / theory - 1) < 3e-4);
-        dem_destroy(&d);
     }
 }
 
@@ -258,7 +251,7 @@ TEST(test_flat_ground_of_pieces) {
         dem_settings settings = plain_settings();
         settings.gravity = (vec){0, -1};
         settings.time_step = 5e-4;
-        dem d = make_world(settings, law);
+        AUTO(dem_destroy) dem d = make_world(settings, law);
         if (chain) {
             dem_wall wall = {.name = "flat", .kind = DEM_BOX, .scale = 1};
             wall.shape = dem_add_chain(&d, "flat", flat, 9, false);
@@ -274,6 +267,5 @@ TEST(test_flat_ground_of_pieces) {
         print_message("%s: velocity %.9g, height off by %.2g\n", chain ? "chain" : "boxes", d.bodies[0].velocity.x,
                       d.bodies[0].position.y - 1 + PI / law.kn);
         assert_true(d.bodies[0].position.x > 21 && fabs(d.bodies[0].velocity.x - 1) < 1e-6);
-        dem_destroy(&d);
     }
 }

@@ -33,7 +33,7 @@ static dem make_gas(uint32_t shape, dem_law kind, double friction, double time_s
 
 /* The largest, relative to the energy. */
 static double find_drift(uint32_t shape, dem_law kind, size_t steps, double time_step, size_t *out_most) {
-    dem d = make_gas(shape, kind, 0, time_step);
+    AUTO(dem_destroy) dem d = make_gas(shape, kind, 0, time_step);
     const double before = total_energy(&d);
     double worst = 0;
     *out_most = 0;
@@ -44,7 +44,6 @@ static double find_drift(uint32_t shape, dem_law kind, size_t steps, double time
     }
     const dem_energies e = energies(&d);
     assert_true(e.damping == 0 && e.friction == 0);
-    dem_destroy(&d);
     return worst / before;
 }
 
@@ -75,7 +74,7 @@ TEST(test_gas_keeps_its_energy) {
 /* A gas of Hertz's discs without dashpots: what friction takes rises, damping takes nothing, all is accounted for. */
 TEST(test_hertz_with_friction_gives_no_energy) {
     for (double friction = 0.5; friction < 100; friction *= 100) {
-        dem d = make_gas(DISC, DEM_HERTZ, friction, 1e-4);
+        AUTO(dem_destroy) dem d = make_gas(DISC, DEM_HERTZ, friction, 1e-4);
         const double energy = total_energy(&d);
         double before = 0;
         for (int k = 0; k < 200; k++) {
@@ -86,7 +85,6 @@ TEST(test_hertz_with_friction_gives_no_energy) {
         print_message("friction %g: lost %.3f, off by %.2g\n", friction, before / energy,
                       total_energy(&d) / energy - 1);
         assert_true(before > 0 && fabs(total_energy(&d) / energy - 1) < 2e-3);
-        dem_destroy(&d);
     }
 }
 
@@ -94,7 +92,7 @@ TEST(test_hertz_with_friction_gives_no_energy) {
 TEST(test_all_energy_is_accounted_for) {
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
-        dem d = make_busy_world(1);
+        AUTO(dem_destroy) dem d = make_busy_world(1);
         d.settings.time_step = i ? 2.5e-5 : 1e-4;
         dem_start(&d);
         const double before = total_energy(&d);
@@ -106,6 +104,5 @@ TEST(test_all_energy_is_accounted_for) {
                       e.walls, e.kinetic, imbalance[i]);
         assert_true(e.damping > 0 && e.friction > 0);
         assert_true(fabs(imbalance[i]) < (i ? 2.5e-3 : 1e-2) * (e.damping + e.friction));
-        dem_destroy(&d);
     }
 }

@@ -26,7 +26,7 @@ static double sample_reach(const dem *d, const dem_shape *shape) {
 
 /* Flat arcs too, whose circles reach far. */
 TEST(test_reach) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     assert_int_equal(narc_build_four_arc(&(narc_four_arc){20, 30, 48, 0.1, 0}, arcs, &count, NULL), NARC_OK);
@@ -39,7 +39,6 @@ TEST(test_reach) {
         assert_true(fabs(d.shapes[k].reach - sampled) <= 1e-6 * sampled);
     }
     assert_true(fabs(d.shapes[box].reach - sqrt(4.25)) < 1e-6);
-    dem_destroy(&d);
 }
 
 /* A column of two discs of radius 1 between plates 3.98 apart, without gravity, and a disc that touches one of them from
@@ -61,7 +60,7 @@ static dem make_column(double friction, double aside) {
 }
 
 TEST(test_loads) {
-    dem d = make_column(0.5, 1.99);
+    AUTO(dem_destroy) dem d = make_column(0.5, 1.99);
     dem_load *loads = dem_find_loads(&d);
     const double push = 1e5 * 0.02 / 3, arm = 1 - 0.01 / 3, volume = PI * 2;
     /* Floor and neighbour above; from the side the third, which also stands on the floor: with friction two are enough. */
@@ -75,19 +74,17 @@ TEST(test_loads) {
     assert_true(fabs(loads[1].stress.yy / expected - 1) < 1e-3); /* depths are within 1e-6 or so of 7e-3 */
     assert_true(fabs(loads[1].stress.xx) < 1e-3 * expected);
     dem_release(loads);
-    dem_destroy(&d);
 }
 
 /* Alone and without friction nobody has three; with friction the column stands and the third, on the floor alone, rattles. */
 TEST(test_rattlers) {
     static const uint32_t expected[2][3] = {{0, 0, 0}, {2, 2, 0}};
     for (int friction = 0; friction < 2; friction++) {
-        dem d = make_column(friction, 4);
+        AUTO(dem_destroy) dem d = make_column(friction, 4);
         dem_load *loads = dem_find_loads(&d);
         for (size_t k = 0; k < 3; k++)
             assert_int_equal(loads[k].bearing, expected[friction][k]);
         assert_int_equal(loads[2].contacts, 1);
         dem_release(loads);
-        dem_destroy(&d);
     }
 }

@@ -10,7 +10,7 @@
 
 /* Two discs that touch, and two boxes whose union is one of 3 by 1, far from their centroid. */
 TEST(test_mass_of_parts) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     const double r = 0.5, dimer = 2 * (PI * pow(r, 4) / 2 + PI * pow(r, 4)), box = 3.0 * (9 + 1) / 12;
     narc_arc arcs[2 * NARC_MAX_ARCS], moved[NARC_MAX_ARCS];
     size_t counts[2];
@@ -26,14 +26,13 @@ TEST(test_mass_of_parts) {
     shape = &d.shapes[DIMER];
     assert_true(fabs(shape->area - 2 * PI * r * r) < 1e-12 && fabs(shape->second_moment - dimer) < 1e-12);
     assert_true(fabs(shape->reach - 2 * r) < 1e-12);
-    dem_destroy(&d);
 }
 
 /* A disc meets one end of a dimer square to its axis, without friction or damping. The push P along y changes the
  * momenta of both by P and the dimer's spin by P a / I; energy tells P. Contacts are soft: the dimer turns a little while
  * they last, by the speed times their time, 2e-3 of the arm. */
 TEST(test_collision_off_centre) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.settings.time_step = 1e-5;
     d.laws[0][0].kn = 1e7;
     add_grain(&d, DIMER, 0, 0, 0, 0);
@@ -48,12 +47,11 @@ TEST(test_collision_off_centre) {
     assert_true(fabs(d.bodies[0].spin / (-push * arm / inertia) - 1) < 5e-3);
     assert_true(fabs(d.bodies[1].velocity.y - (-1 + push / m)) < 5e-3 &&
                 fabs(d.bodies[0].velocity.y + push / mass) < 5e-3);
-    dem_destroy(&d);
 }
 
 /* Forces within a grain there are none, though its parts lie over each other; pairs are of parts, forces on bodies. */
 TEST(test_parts_are_one_body) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.settings.periodic_x = d.settings.periodic_y = true;
     d.settings.high.x = d.settings.high.y = 8;
     add_grain(&d, ELL, 0.1, 0.1, 0, 0); /* across both borders */
@@ -63,12 +61,11 @@ TEST(test_parts_are_one_body) {
     assert_int_equal(d.contact_count, 0);
     for (size_t p = 0; p < d.pair_count; p++)
         assert_ptr_not_equal(dem_body_a(&d, p), dem_body_b(&d, p));
-    dem_destroy(&d);
 }
 
 /* An upright dimer on a plate and one that lies on it: one contact and two, each of which bears its share. */
 TEST(test_dimers_on_a_plate) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.settings.gravity = (vec){0, -10};
     d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "floor", 0, 0, 0, 1);
@@ -81,5 +78,4 @@ TEST(test_dimers_on_a_plate) {
     assert_true(fabs(d.bodies[0].force.y / weight - 1) < 1e-3 && fabs(d.bodies[1].force.y / weight - 1) < 1e-3);
     assert_true(fabs(d.bodies[0].position.y - (0.5 - weight / 2 / 1e5)) < 1e-6);
     assert_true(fabs(d.bodies[1].position.y - (1 - weight / 1e5)) < 1e-6);
-    dem_destroy(&d);
 }

@@ -51,7 +51,7 @@ static dem make_room(void) {
 /* Every pair of the list is apart by the gap, by the exact test, borders and walls among them. */
 TEST(test_free_places) {
     const double gap = 0.05;
-    dem d = make_room();
+    AUTO(dem_destroy) dem d = make_room();
     dem_filling filling = plain_filling(150);
     uint64_t random = 5;
     filling.gap = gap;
@@ -72,20 +72,18 @@ TEST(test_free_places) {
     print_message("%zu pairs, %zu with walls, %zu across the border\n", d.found->count, walls, images);
     assert_int_equal(count, 0);
     assert_true(walls > 5 && images > 0);
-    dem_destroy(&d);
 }
 
 /* Infinite mass is what walls have. */
 TEST(test_mass_out_of_range) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.materials[0].density = 1e300;
     d.settings.thickness = 1e8; /* so that the moment of inertia, half the mass, is finite */
     EXPECT_ERROR(&d, "mass inf is out of range", add_grain(&d, DISC, 0, 0, 0, 0));
-    dem_destroy(&d);
 }
 
 TEST(test_lattice) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     dem_filling filling = plain_filling(0);
     uint64_t random = 5;
     filling.spacing = (vec){3, 5};
@@ -98,5 +96,4 @@ TEST(test_lattice) {
     }
     filling.count = 61;
     EXPECT_ERROR(&d, "has no room for 61 grains", dem_fill_lattice(&d, &filling, &random));
-    dem_destroy(&d);
 }

@@ -44,7 +44,7 @@ static void check_same_walls(const dem *d, const dem *other) {
 
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
 TEST(test_bit_for_bit) {
-    dem d = make_busy_world(1), again = make_busy_world(2);
+    AUTO(dem_destroy) dem d = make_busy_world(1), again = make_busy_world(2);
     const dem_progress progress = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3};
     dem_progress found = {.input = 5};
     d.walls[2].velocity = (vec){0.01, 0.02};
@@ -68,8 +68,6 @@ TEST(test_bit_for_bit) {
     }
     assert_true(d.renewals > 10 && d.walls[0].work != 0 && d.account.rolling > 0);
     assert_true(d.renewals == again.renewals);
-    dem_destroy(&d);
-    dem_destroy(&again);
 }
 
 static void write_file(const char *bytes, size_t size) {
@@ -80,14 +78,13 @@ static void write_file(const char *bytes, size_t size) {
 }
 
 static void expect_refusal(const char *message, uint64_t input) {
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     dem_progress progress = {.input = input};
     dem_start(&d);
     const uint64_t before = dem_hash(&d);
     EXPECT_ERROR(&d, message, dem_read_restart(&d, &progress, path));
     check_error(&d, path);
     assert_true(dem_hash(&d) == before);
-    dem_destroy(&d);
 }
 
 TEST(test_damage) {
@@ -97,7 +94,7 @@ TEST(test_damage) {
     } flips[] = {{0, "not a restart file"}, {7, "not a restart file"}, {8, "its version is"},
                  {12, "order of bytes"},    {16, "and should have"},   {24, "damaged"},
                  {32, "another input"},     {40, "damaged"},           {5000, "damaged"}};
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     size_t size;
     dem_start(&d);
     step(&d, 10);
@@ -119,22 +116,20 @@ TEST(test_damage) {
     write_file(bytes, size);
     expect_refusal("another input", 6);
     dem_release(bytes);
-    dem_destroy(&d);
 }
 
 /* A whole file, but a body has no mass, as a wall has none. */
 TEST(test_foreign_bodies) {
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     dem_start(&d);
     d.bodies[0].inverse_mass = 0;
     dem_write_restart(&d, &(dem_progress){.input = 5}, path);
     expect_refusal("its bodies do not fit the input", 5);
-    dem_destroy(&d);
 }
 
 /* A whole file, but a history is of other parts than its contact. */
 TEST(test_foreign_pairs) {
-    dem d = make_busy_world(1), again = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1), again = make_busy_world(1);
     dem_progress progress = {.input = 5};
     dem_start(&d);
     dem_start(&again);
@@ -143,28 +138,24 @@ TEST(test_foreign_pairs) {
     d.pairs[d.contacts[0].pair].a ^= 1;
     dem_write_restart(&d, &progress, path);
     EXPECT_ERROR(&again, "its bodies do not fit the input", dem_read_restart(&again, &progress, path));
-    dem_destroy(&d);
-    dem_destroy(&again);
 }
 
 /* A file that cannot be written leaves the old one. */
 TEST(test_no_place_to_write) {
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     dem_start(&d);
     const dem_progress progress = {.input = 1};
     EXPECT_ERROR(&d, "/nonexistent/folder/file: ", dem_write_restart(&d, &progress, "/nonexistent/folder/file"));
-    dem_destroy(&d);
 }
 
 static uint64_t run_world(const char *isa, unsigned threads) {
     assert_int_equal(narc_set_isa(isa, NULL), NARC_OK);
-    dem d = make_busy_world(threads);
+    AUTO(dem_destroy) dem d = make_busy_world(threads);
     dem_start(&d);
     step(&d, 7000);
     assert_true(d.contact_count > 60);
     const uint64_t hash = dem_hash(&d);
     print_message("%s, %u threads: %016" PRIx64 ", %zu contacts\n", isa, threads, hash, d.contact_count);
-    dem_destroy(&d);
     return hash;
 }
 
@@ -178,10 +169,9 @@ TEST(test_same_bits) {
 
 /* The hash sees a last bit. */
 TEST(test_hash_sees_all) {
-    dem d = make_busy_world(1);
+    AUTO(dem_destroy) dem d = make_busy_world(1);
     dem_start(&d);
     const uint64_t before = dem_hash(&d);
     d.bodies[5].spin = nextafter(d.bodies[5].spin, 100);
     assert_int_not_equal(dem_hash(&d), before);
-    dem_destroy(&d);
 }

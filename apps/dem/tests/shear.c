@@ -49,7 +49,7 @@ static momentum find_momentum(const dem *d) {
  * shear stress, and all energy is accounted for. */
 TEST(test_flow) {
     enum { BANDS = 8 };
-    dem d = make_flow(1);
+    AUTO(dem_destroy) dem d = make_flow(1);
     double speed[BANDS] = {0}, count[BANDS] = {0}, stress = 0, off = 0, mean = 0;
     step(&d, 20000);
     const double energy = total_energy(&d), work = d.shear_work, began = d.time;
@@ -84,14 +84,13 @@ TEST(test_flow) {
     assert_true(fabs(by_stress / done - 1) < 0.05);
     assert_true(done > 0 && fabs(lost / done - 1) < 0.1);
     assert_true(fabs(total_energy(&d) - energy) < 1e-2 * done);
-    dem_destroy(&d);
 }
 
 /* On two threads, and from a restart, the same bits. */
 TEST(test_sheared_bits) {
     static const char path[] = "sheared.restart";
     dem_progress progress = {.input = 5};
-    dem one = make_flow(1), two = make_flow(2), again = make_flow(1);
+    AUTO(dem_destroy) dem one = make_flow(1), two = make_flow(2), again = make_flow(1);
     step(&one, 3000);
     dem_write_restart(&one, &progress, path);
     dem_read_restart(&again, &progress, path);
@@ -100,7 +99,4 @@ TEST(test_sheared_bits) {
     step(&two, 6000);
     assert_true(one.renewals > 10 && one.shear_work != 0);
     assert_true(dem_hash(&one) == dem_hash(&two) && dem_hash(&one) == dem_hash(&again));
-    dem_destroy(&one);
-    dem_destroy(&two);
-    dem_destroy(&again);
 }

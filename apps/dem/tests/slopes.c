@@ -32,7 +32,7 @@ static dem make_slope(uint32_t shape, double friction, double rolling_friction, 
  * at the start and is damped, and takes a slip of m g sin(angle) / (3 kt) = 3e-4. Float depths are within 2e-6 of 3e-4,
  * but they change the normal force, which does not count as long as the grain does not slide. */
 static void check_rolling(uint32_t shape, bool periodic) {
-    dem d = make_slope(shape, 0.5, 0, periodic);
+    AUTO(dem_destroy) dem d = make_slope(shape, 0.5, 0, periodic);
     const double arm = 1 - 0.5 * find_depth(&d), mass = d.bodies[0].mass, inertia = d.bodies[0].inertia;
     const double expected = GRAVITY * sin(ANGLE) / (1 + inertia / (mass * arm * arm));
     step(&d, 20000);
@@ -43,7 +43,6 @@ static void check_rolling(uint32_t shape, bool periodic) {
     assert_true(fabs(speed + d.bodies[0].spin * arm) < 1e-4 * speed);
     const double way = d.bodies[0].position.x + (periodic ? 7.0 * d.bodies[0].cell_x : 0);
     assert_true(fabs(way / (0.5 * expected * time * time) - 1) < 1e-4);
-    dem_destroy(&d);
 }
 
 TEST(test_disc_rolls) { check_rolling(DISC, false); }
@@ -58,7 +57,7 @@ TEST(test_history_survives_borders) {
 /* Below a third of tan(angle) friction cannot hold it: g (sin - mu cos) down, mu m g cos arm / I about the centre. */
 static void check_sliding(uint32_t shape) {
     const double friction = 0.25 * tan(ANGLE) / 3;
-    dem d = make_slope(shape, friction, 0, false);
+    AUTO(dem_destroy) dem d = make_slope(shape, friction, 0, false);
     const double arm = 1 - 0.5 * find_depth(&d), mass = d.bodies[0].mass, inertia = d.bodies[0].inertia;
     const double along = GRAVITY * (sin(ANGLE) - friction * cos(ANGLE));
     const double turn = -friction * mass * GRAVITY * cos(ANGLE) * arm / inertia;
@@ -68,7 +67,6 @@ static void check_sliding(uint32_t shape) {
     /* The spring takes mu m g cos / kt, 4e-5, to load: no more than 1e-2 s of the second. */
     assert_true(fabs(d.bodies[0].velocity.x / d.time / along - 1) < 1e-3);
     assert_true(fabs(d.bodies[0].spin / d.time / turn - 1) < 1e-2);
-    dem_destroy(&d);
 }
 
 TEST(test_grains_slide) {
@@ -79,7 +77,9 @@ TEST(test_grains_slide) {
 /* Rolling friction above tan(angle) holds a disc (its torque can be mu_r R m g cos, gravity's is m g sin R), and below
  * it takes away its share. */
 TEST(test_rolling_friction) {
-    dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false), slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
+    AUTO(dem_destroy)
+    dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false),
+        slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
     step(&held, 20000);
     step(&slower, 10000); /* until the springs are loaded */
     const double before = slower.bodies[0].velocity.x;
@@ -91,6 +91,4 @@ TEST(test_rolling_friction) {
     const double expected = torque * arm / (mass * arm * arm + slower.bodies[0].inertia);
     print_message("rolling friction: acceleration %.9g, expected %.9g\n", found, expected);
     assert_true(fabs(found / expected - 1) < 1e-3); /* the normal force is within 2e-6 of 3e-4 */
-    dem_destroy(&held);
-    dem_destroy(&slower);
 }

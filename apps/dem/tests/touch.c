@@ -72,7 +72,7 @@ static pose move(pose p, const double by[4], double step) {
 
 /* Along small ways the depth changes by no more than they are long: 2e-5, and at both ends by sqrt(2) times that. */
 TEST(test_depth_never_jumps) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     uint64_t random = 5;
     size_t doubles = 0;
     double worst = 0;
@@ -95,25 +95,23 @@ TEST(test_depth_never_jumps) {
     print_message("largest change %.3g, %zu with two ends\n", worst, doubles);
     assert_true(doubles > 100000);
     assert_true(worst < 1e-4);
-    dem_destroy(&d);
 }
 
 /* Two circles of radius 1 and 0.5 and their tangents: the library says how deep they are. */
 TEST(test_edges_between_unequal_arcs) {
     const double turn = acos(0.25);
     const narc_arc arcs[] = {{0, 0, 1, turn, PI}, {0, 0, 1, PI, 2 * PI - turn}, {2, 0, 0.5, -turn, turn}};
-    dem d;
+    AUTO(dem_destroy) dem d;
     dem_create(&d, plain_settings());
     const uint32_t shape = dem_add_shape(&d, "drop", arcs, 3);
     uint64_t random = 4;
     for (int trial = 0; trial < 1000; trial++)
         draw_pose(&d, shape, &random);
-    dem_destroy(&d);
 }
 
 /* What a force of 1 does in a small motion is what the depth loses: by central differences of 1e-6. */
 TEST(test_force_is_the_gradient_of_the_depth) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     uint64_t random = 6;
     size_t slides = 0;
     double worst = 0;
@@ -144,14 +142,13 @@ TEST(test_force_is_the_gradient_of_the_depth) {
     print_message("largest difference %.3g, %zu slide\n", worst, slides);
     assert_true(slides > 50);
     assert_true(worst < 1e-3);
-    dem_destroy(&d);
 }
 
 /* A contact of 1e-9 of a grain, far from the origin, is as deep as the places say: to their rounding. */
 TEST(test_depth_is_double) {
     static const double depths[] = {1e-3, 1e-6, 1e-9};
     for (int i = 0; i < 3; i++) {
-        dem d = plain_world();
+        AUTO(dem_destroy) dem d = plain_world();
         d.laws[0][0].damping_ratio = 0;
         d.settings.time_step = 1e-12;
         add_plate(&d, "floor", 0, 0, 0, 1);
@@ -167,13 +164,12 @@ TEST(test_depth_is_double) {
             print_message("depth %.12g of %g\n", h, depths[i]);
             assert_true(fabs(h - depths[i]) < 1e-14);
         }
-        dem_destroy(&d);
     }
 }
 
 /* A wall of bricks in bond, five courses, comes to rest: nothing moves, and the same contacts stay. */
 TEST(test_bricks_stand_still) {
-    dem d = plain_world();
+    AUTO(dem_destroy) dem d = plain_world();
     d.laws[0][0].damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.3);
     d.laws[0][0].friction = 0.5;
     d.laws[0][0].kn = 1e4;
@@ -203,5 +199,4 @@ TEST(test_bricks_stand_still) {
     assert_int_equal(contacts, 5 + 4 * 9);
     assert_true(m.fastest < 1e-12 && m.energy.kinetic < 1e-22);
     assert_true(hypot(d.bodies[22].position.x - x, d.bodies[22].position.y - y) < 1e-10);
-    dem_destroy(&d);
 }

@@ -21,6 +21,9 @@
     static void name(__attribute__((unused)) void **state)
 void test_add(const char *name, CMUnitTestFunction test);
 
+/* AUTO(dem_destroy) dem d = plain_world(); is destroyed where its block ends. */
+#define AUTO(release) __attribute__((cleanup(release)))
+
 /* Shapes of every world, in this order: a disc of radius 1; the same circle, given as eight arcs; an octagon with
  * rounded corners; eight arcs of two radii; an ellipse; a sharp octagon; a square of side 1; a capsule; a sand
  * grain, fitted; two discs of radius 0.5 that touch, at x = -0.5 and 0.5; two bars with round ends that lie over each
