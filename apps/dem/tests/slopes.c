@@ -78,8 +78,7 @@ TEST(test_grains_slide) {
  * it takes away its share. */
 TEST(test_rolling_friction) {
     AUTO(dem_destroy)
-    dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false),
-        slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
+    dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false), slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
     step(&held, 20000);
     step(&slower, 10000); /* until the springs are loaded */
     const double before = slower.bodies[0].velocity.x;
