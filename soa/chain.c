@@ -269,7 +269,8 @@ static narc_status add_pieces(narc_shapes *shapes, const side sides[2], uint32_t
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)count, "there is room for %zu entries, not for %zu",
                          capacity, count);
     }
-    narc_status status = narc_make_room(shapes, narc_count_shapes(shapes) + count, sides[0].records + sides[1].records);
+    narc_status status =
+        narc_make_room(shapes, narc_count_shapes(shapes) + count, sides[0].records + sides[1].records, true);
     if (status != NARC_OK)
         return narc_fail(error, status, 0, (double)count, "no room for %zu shapes beside the other %zu", count,
                          narc_count_shapes(shapes));

@@ -318,6 +318,9 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     const bool circle = header->flags & NARC_SHAPE_CIRCLE, capsule = header->count == 2 && !circle;
     const bool smooth = header->flags & NARC_SHAPE_SMOOTH;
     const uint32_t other = has_equal_corners(shape) ? NARC_IS_POLYGON : 0;
+    if (narc_is_of_chain(header))
+        return (narc_box_form){header->bound_radius, 0, arcs[header->count].solid.thickness,
+                               NARC_HAS_FRONT | NARC_IS_POLYGON};
     if (narc_is_plane(header))
         return (narc_box_form){1, 0, 0, NARC_IS_PLANE | NARC_IS_POLYGON | (header->first_arc & NARC_FIRST_ARC)};
     if ((header->count != 4 && header->count != 2) || header->extent_ratio == UINT8_MAX || smooth != circle)
@@ -342,6 +345,28 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     }
     const uint32_t info = circle ? NARC_IS_CIRCLE : (capsule ? NARC_IS_CAPSULE : NARC_IS_BOX) | header->first_arc;
     return found ? (narc_box_form){x, y, radius, info} : (narc_box_form){.info = other};
+}
+
+narc_piece_form narc_find_piece_form(const narc_encoded_shape *shape) {
+    narc_shape_header header = shape->header;
+    const size_t count = header.count, first = header.first_arc & NARC_FIRST_ARC;
+    const narc_stored_arc *arc[3];
+    uint32_t info;
+    if (!narc_is_of_chain(&header))
+        return (narc_piece_form){.info = 0};
+    for (size_t k = 0; k < 3; k++)
+        arc[k] = &shape->records[narc_angle_records(count) + (k + count - first) % count].arc;
+    header.first_arc &= NARC_PIECE_MARKS;
+    memcpy(&info, (const char *)&header + sizeof header.first_record, sizeof info);
+    return (narc_piece_form){.center_0 = {arc[0]->center_x, arc[0]->center_y},
+                             .normal_1 = {arc[1]->start_x, arc[1]->start_y},
+                             .center_1 = {arc[1]->center_x, arc[1]->center_y},
+                             .radius_1 = arc[1]->radius,
+                             .info = info,
+                             .normal_2 = {arc[1]->end_x, arc[1]->end_y},
+                             .center_2 = {arc[2]->center_x, arc[2]->center_y},
+                             .normal_3 = {arc[2]->end_x, arc[2]->end_y},
+                             .radius_2 = arc[2]->radius};
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */

@@ -33,6 +33,9 @@ narc_status narc_encode_plane(narc_encoded_shape *out_shape, narc_error *error);
 /* The form of a shape that is a box or a capsule, else one with info 0. */
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape);
 
+/* What a circle touches of a piece of a chain; of another shape nothing. */
+narc_piece_form narc_find_piece_form(const narc_encoded_shape *shape);
+
 /* Checks the header and the arcs of a shape that was stored elsewhere, and writes the records of its angles.
  * Nothing that it lets through breaks what kernels rely on. NARC_ERROR_FORMAT. */
 narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error);

@@ -206,7 +206,7 @@ static narc_status link_removed(narc_shapes *shapes, uint32_t last, uint32_t rem
 static narc_status load_all(narc_shapes *shapes, const unsigned char *bytes, size_t size, narc_error *error) {
     const uint32_t count = get_word(bytes + AT_COUNT);
     const unsigned char *at = bytes + START, *const end = bytes + size;
-    narc_status status = count ? narc_make_room(shapes, count, 1) : NARC_OK;
+    narc_status status = count ? narc_make_room(shapes, count, 1, false) : NARC_OK;
     if (status != NARC_OK)
         return narc_fail(error, status, 0, count, "no memory for %lu shapes", (unsigned long)count);
     narc_open_indices(shapes, count);

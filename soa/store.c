@@ -95,20 +95,25 @@ static void unlink_shape(narc_shapes *shapes, uint32_t shape, uint32_t *head) {
 }
 
 /* Headers come last, so that what reads past them reads past the memory. */
-static bool grow_headers(narc_shapes *shapes, size_t capacity) {
-    const size_t item = sizeof(narc_box_form) + sizeof(uint32_t) + sizeof(narc_shape_entry) + sizeof(narc_shape_header);
+static bool grow_headers(narc_shapes *shapes, size_t capacity, bool with_fronts) {
+    const size_t item = sizeof(narc_piece_form) + sizeof(narc_box_form) + sizeof(uint32_t) + sizeof(narc_shape_entry) +
+                        sizeof(narc_shape_header);
     void *array = NULL, *memory;
     if (capacity > (SIZE_MAX - 2 * NARC_CACHE_LINE) / item)
         return false;
-    const size_t boxes_size = capacity * sizeof(narc_box_form);
+    const size_t fronts_size = with_fronts ? capacity * sizeof(narc_piece_form) : 0;
+    const size_t boxes_size = fronts_size + capacity * sizeof(narc_box_form);
     const size_t links = capacity * (sizeof(uint32_t) + sizeof(narc_shape_entry));
     const size_t front = (boxes_size + links + NARC_CACHE_LINE - 1) / NARC_CACHE_LINE * NARC_CACHE_LINE;
     memory = allocate(shapes, front + capacity * sizeof(narc_shape_header), &array);
     if (!memory)
         return false;
     narc_shape_header *headers = (void *)((char *)array + front);
-    narc_box_form *boxes = array;
+    narc_box_form *boxes = (void *)((char *)array + fronts_size);
     narc_shape_entry *entries = (void *)(boxes + capacity);
+    memset(array, 0, fronts_size);
+    if (shapes->fronts && shapes->count)
+        memcpy(array, shapes->fronts, shapes->count * sizeof *shapes->fronts);
     if (shapes->count) {
         memcpy(boxes, shapes->boxes, shapes->count * sizeof *boxes);
         memcpy(headers, shapes->headers, shapes->count * sizeof *headers);
@@ -117,6 +122,7 @@ static bool grow_headers(narc_shapes *shapes, size_t capacity) {
     release(shapes, shapes->headers_memory);
     shapes->headers_memory = memory;
     shapes->headers = headers;
+    shapes->fronts = with_fronts ? array : NULL;
     shapes->boxes = boxes;
     shapes->entries = entries;
     shapes->buckets = (void *)(entries + capacity);
@@ -180,11 +186,13 @@ static size_t choose_records(const narc_shapes *shapes, size_t used, size_t adde
 
 /* Room for so many headers in all, and so many records behind those that are there. If the second allocation fails the
  * first stays, unseen and unused. */
-narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records) {
+narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records, bool fronts) {
     const size_t used = shapes->used_records;
+    const bool full = count > shapes->capacity, with_fronts = fronts || shapes->fronts;
     if (count > NARC_MAX_SHAPES || records > MAX_RECORDS - used)
         return NARC_ERROR_COUNT;
-    if (count > shapes->capacity && !grow_headers(shapes, choose_headers(shapes->capacity, count)))
+    if ((full || (with_fronts && !shapes->fronts)) &&
+        !grow_headers(shapes, full ? choose_headers(shapes->capacity, count) : shapes->capacity, with_fronts))
         return NARC_ERROR_MEMORY;
     if (records <= shapes->record_capacity - shapes->record_count)
         return NARC_OK;
@@ -199,7 +207,7 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
     /* A record for each arc and one for 16 arcs' angles; for each shape, angles that do not fill their record, and a
      * circle's second half. */
     return narc_make_room(shapes, shapes->count + shape_count,
-                          arc_count + arc_count / NARC_RECORD_ANGLES + 2 * shape_count);
+                          arc_count + arc_count / NARC_RECORD_ANGLES + 2 * shape_count, false);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -268,10 +276,12 @@ static void count_piece(narc_shapes *shapes, const narc_shape_header *header, in
     shapes->plane_count += narc_is_plane(header) ? (size_t)by : 0;
 }
 
-/* Keeps the form of a shape's box, or that it is none. */
-static void put_box(narc_shapes *shapes, uint32_t shape, narc_box_form box) {
+/* Keeps the form of a shape's box, or that it is none, and what a circle touches of a piece. */
+static void put_forms(narc_shapes *shapes, uint32_t shape, narc_box_form box, narc_piece_form piece) {
     shapes->box_count += narc_has_form(&box) - (size_t)narc_has_form(&shapes->boxes[shape]);
     shapes->boxes[shape] = box;
+    if (shapes->fronts)
+        shapes->fronts[shape] = piece;
 }
 
 void narc_open_indices(narc_shapes *shapes, size_t count) {
@@ -292,10 +302,13 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     const size_t used_size = narc_has_shape(shapes, shape) ? own_size : 0;
     const size_t count = shape < shapes->count ? shapes->count : (size_t)shape + 1;
     const uint32_t hash = hash_shape(encoded);
-    if (size > own_size) {
-        const narc_status status = narc_make_room(shapes, count, size);
+    const bool has_front = narc_is_of_chain(&encoded->header);
+    if (size > own_size || (has_front && !shapes->fronts)) {
+        const narc_status status = narc_make_room(shapes, count, size > own_size ? size : 0, has_front);
         if (status != NARC_OK)
             return fail_room(shapes, status, error);
+    }
+    if (size > own_size) {
         encoded->header.first_record = (uint32_t)shapes->record_count;
         shapes->record_count += size;
     } else {
@@ -314,7 +327,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     count_piece(shapes, &encoded->header, 1);
     if (shapes->largest_ratio < encoded->header.extent_ratio)
         shapes->largest_ratio = encoded->header.extent_ratio;
-    put_box(shapes, shape, narc_find_box_form(encoded));
+    put_forms(shapes, shape, narc_find_box_form(encoded), narc_find_piece_form(encoded));
     shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
     link_shape(shapes, shape, find_bucket(shapes, hash));
     shapes->used_records += size - used_size;
@@ -408,7 +421,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     shapes->used_records -= narc_count_records(header);
     count_piece(shapes, header, -1);
     header->bound_radius = 0;
-    put_box(shapes, shape, (narc_box_form){.info = 0});
+    put_forms(shapes, shape, (narc_box_form){.info = 0}, (narc_piece_form){.info = 0});
     unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
     link_shape(shapes, shape, &shapes->last_removed);
     shapes->removed_count++;

@@ -151,7 +151,8 @@ typedef union narc_record {
  *   info   0: the shape is none of these; else NARC_IS_..., and in its lowest bits, but for a circle, the first_arc of
  *          its header. NARC_IS_POLYGON alone, which makes it less than 0: none of these either, but a polygon of 3 to
  *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by. NARC_IS_PLANE beside it
- *          is a half-plane's, of which half_x is 1, and all else 0.
+ *          is a half-plane's, of which half_x is 1, and all else 0. NARC_HAS_FRONT beside it is that of a piece of a chain:
+ *          half_x is its bounding radius, and radius the thickness of its solid.
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -164,9 +165,24 @@ typedef struct narc_box_form {
 #define NARC_IS_CIRCLE  16u
 #define NARC_IS_POLYGON 0x80000000u
 #define NARC_IS_PLANE   0x40000000u
+#define NARC_HAS_FRONT  0x20000000u
 enum { NARC_FORM_CORNERS = 8 };
 
-static inline bool narc_has_form(const narc_box_form *box) { return (box->info & ~NARC_IS_POLYGON) != 0; }
+static inline bool narc_has_form(const narc_box_form *box) {
+    return (box->info & ~(NARC_IS_POLYGON | NARC_HAS_FRONT)) != 0;
+}
+
+/* What a circle touches of a piece of a chain, in one line of the cache: of a run the caller's arcs 0, 1 and 2, where the
+ * normals 1 to 3 lie between them and behind; all of the shortest fronts, and the begin of others. Of a concave arc, as of
+ * arc 1, centre, radius, and the normals 1 and 2 at its ends. `info` is the second word of the header, less the number of
+ * the arc that is stored first. Of all other shapes all is 0. */
+typedef struct narc_piece_form {
+    float center_0[2], normal_1[2];
+    float center_1[2], radius_1;
+    uint32_t info;
+    float normal_2[2], center_2[2];
+    float normal_3[2], radius_2, unused;
+} narc_piece_form;
 
 /* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with
  * fewer, and a concave arc has two. */
@@ -209,6 +225,7 @@ struct narc_shapes {
     narc_shape_header *headers;
     narc_record *records;
     narc_box_form *boxes;                 /* one for each header */
+    narc_piece_form *fronts;              /* one for each header, or NULL if there never was a piece of a chain */
     narc_shape_entry *entries;            /* one for each header */
     uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
@@ -222,8 +239,8 @@ struct narc_shapes {
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
-    /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache
-     * lines, and end with the memory but for less than one, and records but for what may be read ahead (store.c). */
+    /* What the allocator returned: fronts, boxes, entries, buckets and headers; and records. Fronts, headers and records begin
+     * at cache lines, and end with the memory but for less than one, and records but for what may be read ahead (store.c). */
     void *headers_memory, *records_memory;
 };
 
@@ -241,8 +258,8 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, struct n
 narc_status narc_share_encoded_shape(narc_shapes *shapes, struct narc_encoded_shape *encoded, uint32_t *out_shape,
                                      narc_error *error);
 
-/* Room for so many shapes in all, with so many more records. */
-narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records);
+/* Room for so many shapes in all, with so many more records; `fronts`: and for pieces of chains among them. */
+narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records, bool fronts);
 
 /* Makes indices that were never given out, from narc_count_shapes() to below `count`, those of removed shapes; there is
  * room for them. The lowest is the one that was removed last. */

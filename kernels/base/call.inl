@@ -27,6 +27,7 @@ struct call {
     bool pieces, planes;             /* are there pieces of chains; half-planes? */
     bool *planes_first;              /* rows: set where a pair has one for A; or NULL */
     struct queue *concave, *runs;    /* rows, with pieces: where pairs with a concave arc, with a run wait; or NULL */
+    struct queue *settled;           /* with these: where pairs wait that touch, for certain */
 };
 
 /* Are there pieces of chains, and are they asked of as such? */

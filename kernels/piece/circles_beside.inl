@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * circles_beside.inl - circles beside the front of a run: where the foot of the centre lies is looked for among the
- * junctions, whose normals lie in the order of the arcs, by halving, then step by step.
+ * circles_beside.inl - circles about their own origin on pieces of chains, by what the store keeps of these for circles
+ * (store.h, narc_piece_form): right behind the indices, before a header or an arc is read.
  *
- * Let p be the centre of the circle. Without its radius the gap is the distance of p from the closed run, where p lies
- * outside of that. It rises towards the foot from all sides, by at least as much as p lies beside the nearest normal of a
- * junction, as these spread outwards; and where it is below 0 it is less. So where p lies outside by two slacks, and by as
- * much off the normals at both ends of the arc or the edge that holds the foot, every sign of the formula is right
- * (box/circles.inl). Where the foot lies by two slacks beyond an end of the front, no contact is told. Other pairs are left.
+ * On a run, where the foot of the centre lies is looked for among the junctions, whose normals lie in the order of the
+ * arcs: step by step, and by halving behind those that the form has. Let p be the centre of the circle. Without its radius
+ * the gap is the distance of p from the closed run, where p lies outside of that. It rises towards the foot from all sides,
+ * by at least as much as p lies beside the nearest normal of a junction, as these spread outwards; and where it is below 0 it
+ * is less. So where p lies outside by two slacks, and by as much off the normals at both ends of the arc or the edge that
+ * holds the foot, every sign of the formula is right (box/circles.inl). Where the foot lies by two slacks beyond an end of
+ * the front, no contact is told.
+ *   Of a concave arc the formula is a few lines (concave.inl). What a circle that far away, or that deep, has none with by
+ * the circles around both is not asked: no such contact lies within the margin, or reaches the arc by the least of both
+ * thicknesses. Other pairs are left.
  */
 #ifndef NARC_PIECE_CIRCLES_BESIDE_INL
 #define NARC_PIECE_CIRCLES_BESIDE_INL
 
-#include <stdbool.h>
-#include <stdint.h>
-#include <string.h>
-
+#include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/pair_setup.inl"
@@ -24,9 +26,12 @@
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_pairs.inl"
 #include "kernels.h"
 #include "piece/pieces.inl"
 #include "simd/simd.h"
+#include <stdbool.h>
+#include <stdint.h>
 
 /* What is known of all pairs: mostly ground comes last. */
 enum run_side { ANY_RUN, RUN_IS_B };
@@ -52,9 +57,9 @@ INLINE vi find_run_record(const struct run_beside *run, vi number) {
     return vi_add(run->ring.base, vi_select(vi_lt(stored, vi_set(0)), vi_add(stored, run->ring.count), stored));
 }
 
-/* From the centre of an arc to p. */
-INLINE vec2 look_from_arc(const struct run_beside *run, const vf field[8]) {
-    return v2_sub(run->p, v2_scale((vec2){field[0], field[1]}, run->scale));
+/* From the centre of an arc, its first two fields, to p. */
+INLINE vec2 look_from_arc(const struct run_beside *run, const vf *center) {
+    return v2_sub(run->p, v2_scale((vec2){center[0], center[1]}, run->scale));
 }
 
 /* Is p behind the start of an arc? */
@@ -62,11 +67,21 @@ INLINE vm is_behind_start(const struct run_beside *run, const vf field[8]) {
     return v_le(v_set(0), v2_cross((vec2){field[4], field[5]}, look_from_arc(run, field)));
 }
 
-/* The last arc of the front, up to the corner `last` behind it, whose start p lies behind, or the corner before it: its
- * number, and the fields of it and, but for the last one, of the next. By halving, and then step by step. */
-INLINE vi find_arc_before(const narc_record *records, const struct run_beside *run, vi last, vf here[8], vf next[8]) {
+/* Goes on behind arc 2, whose end p is not clearly before, in the lanes `walks`: to the last arc of the front, up to the corner `last` behind it, whose start p
+ * lies behind. Returns its number, and the fields of it and, but for the last one, of the next. By halving, and then step by
+ * step. */
+NOINLINE vi walk_on(const narc_shapes *shapes, const int32_t *shape, struct run_beside *run, vm walks, vi last,
+                    vf here[8], vf next[8]) {
+    const narc_record *const records = shapes->records;
     const vi one = vi_set(1);
-    vi low = vi_set(0), high = vi_add(last, one);
+    vf header[4];
+    v_rows(shapes->headers, sizeof *shapes->headers, shape, header);
+    const vi info = vi_bits(header[1]);
+    const struct ring ring = make_ring(vi_bits(header[0]), info);
+    /* Other lanes have the first records of all, of which there are as many as a run has. */
+    run->ring = (struct ring){vi_select(walks, ring.base, vi_set(0)), vi_select(walks, ring.count, vi_set(6))};
+    run->first = vi_select(walks, get_first_arc(info), vi_set(0));
+    vi low = vi_set(2), high = vi_select(walks, vi_add(last, one), vi_set(3));
     for (;;) {
         const vm open = vi_lt(vi_add(low, vi_set(3)), high);
         if (!vm_any(open))
@@ -114,159 +129,237 @@ INLINE vec2 find_point_of(const struct arcs *arc, vec2 n, vf sign) {
     return v2_add(arc->center, v2_scale(n, v_mul(sign, arc->radius)));
 }
 
-/* How a circle touches a run: with the arc `touched`, in `record`, or with the edge between that and the arc before. */
-struct run_touch {
-    vm is_a, at_edge; /* is the run A? */
-    vi record, circle_record;
-    struct arcs touched, before, circle;
-    const vf *circle_field; /* four, of its record */
+/* Circles and pieces, of which one is A, and how they touch: with the arc `touched`, the caller's `number`, or with the edge
+ * between that and the arc before. */
+struct circles_on_pieces {
+    enum run_side of;
+    vm is_a, concave, at_edge; /* is the piece A? */
+    vi info, number;
+    vf scale, radius, thickness; /* of the piece; the circle's; how thick the solid is */
+    struct arcs touched, before;
+    vec2 center; /* of the circle */
     vf separation;
     vec2 n;
 };
 
-/* Answers pairs in the lanes `near`; returns those that are not so simple: which are deep, or touch an arc that turns by next
- * to nothing. */
-INLINE vm answer_circles_beside(const struct call *call, const struct run_touch *touch, const struct ring *run,
-                                enum run_side of, vm near, const vf item[FIELDS]) {
-    const vm is_a = touch->is_a;
-    const vec2 n = touch->n;
-    const struct touching_pair pair = {get_item_bits(item, FIRST_RECORD_A),
-                                       get_item_bits(item, FIRST_RECORD_B),
-                                       get_item_bits(item, INFO_A),
-                                       get_item_bits(item, INFO_B),
-                                       item[SCALE_A],
-                                       item[SCALE_B],
-                                       {item[ROTATION_A], item[ROTATION_A + 1]},
-                                       .round_a = of == RUN_IS_B};
-    const vf scale = pick(of, is_a, pair.scale_a, pair.scale_b),
-             scale_circle = pick(of, is_a, pair.scale_b, pair.scale_a);
-    const vm shallow = vm_and_not(is_circle_shallow(call->batch->shapes->records, touch->circle_field, scale_circle,
-                                                    vi_add(run->base, run->count), scale, touch->separation),
-                                  vm_front(call->batch->query->front_only ? V_WIDTH : 0));
-    const vm simple = vm_and_not(vm_or(shallow, v_le(v_set(0), touch->separation)), is_parallel(touch->touched.end, n));
-    const vm keep = vm_and(near, simple);
-    if (!vm_any(keep))
-        return near;
-    const vf sign = pick(of, is_a, v_set(1), v_set(-1));
-    const vec2 point = find_point_of(&touch->touched, n, sign), other = find_point_of(&touch->before, n, sign),
-               on_circle = find_point_of(&touch->circle, n, v_neg(sign));
-    const vf along = v2_cross(n, point), along_before = v_select(touch->at_edge, v2_cross(n, other), along);
-    const vf size = find_magnitude(&touch->touched), along_circle = v2_cross(n, on_circle);
-    const struct feature of_run = {
-        v2_dot(n, point),           v_min(along, along_before),
-        v_max(along, along_before), touch->record,
-        touch->touched.radius,      v_add(size, v_select(touch->at_edge, find_magnitude(&touch->before), size)),
-        touch->touched.start,       touch->touched.end};
-    const struct feature of_circle = {
-        v2_dot(n, on_circle), along_circle, along_circle, touch->circle_record, touch->circle.radius, v_set(0), n, n};
-    const struct feature on_a = pick_feature(of, is_a, &of_run, &of_circle),
-                         on_b = pick_feature(of, is_a, &of_circle, &of_run);
-    const struct answer answer = tell_touch(&pair, touch->separation, n, &on_a, &on_b, has_reaches(call));
-    const vi feature = pick_bits(of, is_a, vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
-    char *place[V_WIDTH];
-    const vi pairs = get_item_bits(item, PAIR);
-    find_places(call, pairs, vm_and(keep, is_front(pick_bits(of, is_a, pair.info_a, pair.info_b), feature)), place);
-    write_rows(call, place, find_numbers(call, pairs), &answer);
-    return vm_and_not(near, keep);
+/* The piece's record of a number, and the circle's first, where `of_piece` is the piece's header, and `of_circle` the other. */
+INLINE vi find_piece_record(const struct headers *of_piece, vi number) {
+    const struct run_beside run = {.ring = make_ring(of_piece->first_record, of_piece->info),
+                                   .first = get_first_arc(of_piece->info)};
+    return find_run_record(&run, number);
 }
 
-/* Settles the pairs of a circle and a run in the lanes `which`: those that touch are answered, or go to the last stage. Returns
- * those that are not settled. */
-INLINE vm settle_circles_of(const struct call *call, struct queue *queues, enum run_side of, vm is_a, vm which,
-                            vf margin, const vf item[FIELDS]) {
-    const narc_record *const records = call->batch->shapes->records;
-    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
-    const struct pose pose = {
-        {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
-    const struct ring ring_a = make_ring(get_item_bits(item, FIRST_RECORD_A), info_a),
-                      ring_b = make_ring(get_item_bits(item, FIRST_RECORD_B), info_b);
-    /* Other lanes have the first records of all, of which there are as many as a run has. */
-    struct run_beside run = {.ring = {vi_select(which, pick_bits(of, is_a, ring_a.base, ring_b.base), vi_set(0)),
-                                      vi_select(which, pick_bits(of, is_a, ring_a.count, ring_b.count), vi_set(6))},
-                             .first = vi_select(which, get_first_arc(pick_bits(of, is_a, info_a, info_b)), vi_set(0)),
-                             .scale = pick(of, is_a, pose.scale_a, pose.scale_b)};
-    const vi last = vi_sub(run.ring.count, vi_set(5)), circle_record = pick_bits(of, is_a, ring_b.base, ring_a.base);
-    int32_t index[V_WIDTH];
-    vf circle[4], here[8], next[8];
-    vi_store(index, circle_record);
-    v_rows(records, sizeof *records, index, circle);
-    const vec2 center = {circle[0], circle[1]}, center_a = v2_scale(center, pose.scale_a),
-               center_b = place_center_b(center, &pose);
-    run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose.rotation, v2_sub(center_a, pose.position)));
+/* Pairs that touch, for certain, in the lanes `which`, wait for the last stage, which knows all that may be so. */
+NOINLINE void pass_touching(const struct call *call, const struct pair_indices *in, int k,
+                            const struct placement *placement, const struct circles_on_pieces *c, vm which, vi pairs) {
+    const narc_shape_header *const headers = call->batch->shapes->headers;
+    const struct headers a = load_headers(headers, in->shape_a + k), b = load_headers(headers, in->shape_b + k);
+    const vm is_a = c->is_a;
+    const vi number = c->number, zero = vi_set(0);
+    vf item[FIELDS];
+    set_vec2(item, POSITION, placement->pose.position);
+    set_vec2(item, ROTATION, placement->pose.rotation);
+    set_vec2(item, ROTATION_A, placement->rotation_a);
+    set_vec2(item, DIRECTION, c->n);
+    set_vec2(item, NORMAL, c->n);
+    item[SCALE_A] = placement->pose.scale_a;
+    item[SCALE_B] = placement->pose.scale_b;
+    item[SEPARATION] = c->separation;
+    item[FIRST_RECORD_A] = v_of_bits(a.first_record);
+    item[FIRST_RECORD_B] = v_of_bits(b.first_record);
+    item[INFO_A] = v_of_bits(a.info);
+    item[INFO_B] = v_of_bits(b.info);
+    item[RECORD_A] = v_of_bits(find_piece_record(&a, vi_select(is_a, number, zero)));
+    item[RECORD_B] = v_of_bits(find_piece_record(&b, vi_select(is_a, zero, number)));
+    item[PAIR] = v_of_bits(pairs);
+    push(call->settled, which, item, ROW_FIELDS);
+}
 
-    const vi number = find_arc_before(records, &run, last, here, next), record = find_run_record(&run, number),
-             next_record = find_run_record(&run, vi_add(number, one));
-    const vf slack = item[SLACK], two = v_add(slack, slack);
+/* Are the contacts so shallow that they reach the piece (is_shallow()), for certain, and the front by the circle's middle? */
+INLINE vm are_circles_shallow(const struct call *call, const struct circles_on_pieces *c) {
+    const vf inner = v_mul(v_set(1 - 0x1p-17f), c->radius),
+             most = call->batch->query->front_only ? inner : v_add(inner, inner);
+    return is_shallow(most, c->thickness, c->separation);
+}
+
+/* Writes the rows of pairs in the lanes `keep`. */
+INLINE void write_circles_on_pieces(const struct call *call, const struct placement *placement,
+                                    const struct circles_on_pieces *c, vm keep, vi pairs) {
+    const enum run_side of = c->of;
+    const vm is_a = c->is_a;
+    const vec2 n = c->n;
+    const vi none = vi_set(0), round = vi_set((int32_t)((NARC_SHAPE_CIRCLE | NARC_SHAPE_SMOOTH) << 16 | 2));
+    const struct touching_pair pair = {none,
+                                       none,
+                                       pick_bits(of, is_a, c->info, round),
+                                       pick_bits(of, is_a, round, c->info),
+                                       placement->pose.scale_a,
+                                       placement->pose.scale_b,
+                                       placement->rotation_a,
+                                       .round_a = of == RUN_IS_B};
+    const vf sign = pick(of, is_a, v_set(1), v_set(-1)), zero = v_set(0);
+    const vec2 point = find_point_of(&c->touched, n, sign), other = find_point_of(&c->before, n, sign),
+               on_circle = v2_add(c->center, v2_scale(n, v_mul(v_neg(sign), c->radius)));
+    const vf along = v2_cross(n, point), along_before = v_select(c->at_edge, v2_cross(n, other), along);
+    const vf size = find_magnitude(&c->touched), along_circle = v2_cross(n, on_circle);
+    const struct feature of_run = {
+        v2_dot(n, point),           v_min(along, along_before),
+        v_max(along, along_before), vi_add(find_first_arc(none, c->info), c->number),
+        c->touched.radius,          v_add(size, v_select(c->at_edge, find_magnitude(&c->before), size)),
+        c->touched.start,           c->touched.end};
+    const struct feature of_circle = {v2_dot(n, on_circle), along_circle, along_circle, none, c->radius, zero, n, n};
+    const struct feature on_a = pick_feature(of, is_a, &of_run, &of_circle),
+                         on_b = pick_feature(of, is_a, &of_circle, &of_run);
+    const struct answer answer = tell_touch(&pair, c->separation, n, &on_a, &on_b, has_reaches(call));
+    const vi feature = pick_bits(of, is_a, vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
+    char *place[V_WIDTH];
+    find_places(call, pairs, vm_and(keep, is_front(c->info, feature)), place);
+    write_rows(call, place, find_numbers(call, pairs), &answer);
+}
+
+/* Takes pairs of a circle and a piece in the lanes `which`: those that touch are answered, or go to the last stage. Returns
+ * those that it took. */
+INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *in, int k,
+                            const struct placement *placement, enum run_side of, vm is_a, vm which,
+                            const struct box_form *a, const struct box_form *b, int32_t number) {
+    const narc_shapes *const shapes = call->batch->shapes;
+    const struct pose *const pose = &placement->pose;
+    const vi zero = vi_set(0), one = vi_set(1), pairs = vi_add(vi_lanes(), vi_set(number));
+    const vec2 origin = {v_set(0), v_set(0)}, center_b = place_center_b(origin, pose);
+    int32_t shape[V_WIDTH];
+    vf arc_0[4], arc_1[4], arc_2[4], behind[4];
+    vi_store(shape, pick_bits(of, is_a, vi_load(in->shape_a + k), vi_load(in->shape_b + k)));
+    v_rows(shapes->fronts->center_0, sizeof *shapes->fronts, shape, arc_0);
+    v_rows(shapes->fronts->center_1, sizeof *shapes->fronts, shape, arc_1);
+    v_rows(shapes->fronts->normal_2, sizeof *shapes->fronts, shape, arc_2);
+    v_rows(shapes->fronts->normal_3, sizeof *shapes->fronts, shape, behind);
+    struct circles_on_pieces c;
+    c.of = of;
+    c.is_a = is_a;
+    c.info = vi_bits(arc_1[3]);
+    const vi last = vi_sub(get_arc_count(c.info), vi_set(5)), ratio = get_extent_ratio(c.info);
+    struct run_beside run;
+    run.scale = pick(of, is_a, pose->scale_a, pose->scale_b);
+    c.concave = has_mark(c.info, NARC_PIECE_CONCAVE);
+    c.radius = v_mul(pick(of, is_a, b->radius, a->radius), pick(of, is_a, pose->scale_b, pose->scale_a));
+    c.thickness = v_mul(pick(of, is_a, a->radius, b->radius), run.scale);
+    c.center = pick_vec2(of, is_a, center_b, origin);
+    run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose->rotation, v2_sub(origin, pose->position)));
+    const vf size = v_mul(pick(of, is_a, a->half.x, b->half.x), run.scale);
+    const vf extents = v_add(v_mul(size, v_of_int(ratio)), c.radius);
+    const vf known_slack =
+        v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(pose->position.x), v_abs(pose->position.y)), extents));
+    const vf slack = v_select(vi_lt(ratio, vi_set(255)), known_slack, v_set(INFINITY)), two = v_add(slack, slack);
+    which = vm_and(which, vm_and(is_size_in_range(size), is_box_in_range(c.radius)));
+
+    /* The arc whose start p lies behind, and the next one. A concave arc is like arc 1. */
+    const vec2 normal_1 = {arc_0[2], arc_0[3]}, normal_2 = {arc_2[0], arc_2[1]};
+    const vm past_1 = vm_or(c.concave, v_le(v_set(0), v2_cross(normal_1, look_from_arc(&run, arc_1))));
+    const vm past_2 =
+        vm_and(vm_and(past_1, vi_lt(one, last)), v_le(v_set(0), v2_cross(normal_2, look_from_arc(&run, arc_2 + 2))));
+    const vf none = v_set(0);
+    vf here[8] = {v_select(past_2, arc_2[2], v_select(past_1, arc_1[0], arc_0[0])),
+                  v_select(past_2, arc_2[3], v_select(past_1, arc_1[1], arc_0[1])),
+                  v_select(past_2, behind[2], v_select(past_1, arc_1[2], none)),
+                  none,
+                  v_select(past_2, arc_2[0], arc_0[2]),
+                  v_select(past_2, arc_2[1], arc_0[3]),
+                  v_select(past_2, behind[0], v_select(past_1, arc_2[0], arc_0[2])),
+                  v_select(past_2, behind[1], v_select(past_1, arc_2[1], arc_0[3]))};
+    vf next[8] = {v_select(past_1, arc_2[2], arc_1[0]),
+                  v_select(past_1, arc_2[3], arc_1[1]),
+                  v_select(past_1, behind[2], arc_1[2]),
+                  none,
+                  here[6],
+                  here[7],
+                  v_select(past_1, behind[0], arc_2[0]),
+                  v_select(past_1, behind[1], arc_2[1])};
+    vi before = vi_select(past_2, vi_set(2), vi_select(past_1, one, zero));
+    const vm past_3 =
+        vm_and_not(past_2, v_lt(two, v2_cross(look_from_arc(&run, arc_2 + 2), (vec2){behind[0], behind[1]})));
+    const vm walks = vm_and(vm_and(which, past_3), vi_lt(vi_set(2), last));
+    if (vm_any(walks)) {
+        struct run_beside walked = {.scale = run.scale, .p = run.p};
+        vf there[8], beyond_there[8];
+        const vi found = walk_on(shapes, shape, &walked, walks, last, there, beyond_there);
+        before = vi_select(walks, found, before);
+        for (int f = 0; f < 8; f++) {
+            here[f] = v_select(walks, there[f], here[f]);
+            next[f] = v_select(walks, beyond_there[f], next[f]);
+        }
+    }
+
     const vec2 u = look_from_arc(&run, here), start = {here[4], here[5]}, end = {here[6], here[7]};
-    const vf radius = v_mul(here[2], run.scale),
-             radius_circle = v_mul(circle[2], pick(of, is_a, pose.scale_b, pose.scale_a));
     const vf behind_start = v2_cross(start, u), before_end = v2_cross(u, end);
-    const vm is_first = vi_lt(number, one), is_last = vm_not(vi_lt(number, last));
+    const vm is_first = vi_lt(before, one), is_last = vm_not(vi_lt(before, last));
     const vm within = vm_and(v_lt(two, behind_start), v_lt(two, before_end));
     const vm at_arc = vm_and_not(within, vm_or(is_first, is_last));
-    const vm at_edge =
-        vm_and_not(vm_and(v_lt(before_end, v_neg(two)), v_lt(two, v2_cross(look_from_arc(&run, next), end))), is_last);
-    const vf distance = v_sub(v_select(at_edge, v2_dot(u, end), v2_length(u)), radius);
+    const vm past_end = vm_and(v_lt(before_end, v_neg(two)), v_lt(two, v2_cross(look_from_arc(&run, next), end)));
+    c.at_edge = vm_and_not(past_end, vm_or(is_last, c.concave));
+    const vf distance = v_sub(v_select(c.at_edge, v2_dot(u, end), v2_length(u)), v_mul(here[2], run.scale));
     const vm beyond_begin = vm_and(is_first, v_lt(two, before_end)),
              beyond_end = vm_and(is_last, v_lt(two, behind_start));
     const vm beyond = vm_and(vm_or(beyond_begin, beyond_end), v_lt(two, v2_dot(u, v2_select(is_first, end, start))));
-    const vm known = vm_and(which, vm_or(beyond, vm_and(vm_or(at_arc, at_edge), v_lt(two, distance))));
-    const vm near = vm_and_not(vm_and_not(known, beyond), v_lt(v_add(v_add(radius_circle, margin), slack), distance));
-    if (!vm_any(near))
-        return vm_and_not(which, known);
-    /* As the formula has it, with the arc that holds the foot, or lies behind its edge. */
+    const vm on_front = vm_and(vm_or(at_arc, c.at_edge), v_lt(two, distance));
+    const vm runs = vm_and_not(vm_and(which, vm_or(beyond, on_front)), c.concave);
+    const vm apart = v_lt(v_add(v_add(c.radius, placement->margin), slack), distance);
+    vm taken = runs, near = vm_and_not(runs, vm_or(beyond, apart));
+    if (!vm_any(vm_or(near, vm_and(which, c.concave))))
+        return taken;
+
+    /* As the formulas have it, with the arc that holds the foot, or lies behind its edge. */
     vf touched[8];
     for (int f = 0; f < 8; f++)
-        touched[f] = v_select(at_edge, next[f], here[f]);
-    struct run_touch touch = {.is_a = is_a,
-                              .at_edge = at_edge,
-                              .record = vi_select(at_edge, next_record, record),
-                              .circle_record = circle_record,
-                              .circle_field = circle,
-                              .touched = place_run_arc(touched, &pose, of, is_a),
-                              .before = place_run_arc(here, &pose, of, is_a),
-                              .circle = {.center = pick_vec2(of, is_a, center_b, center_a), .radius = radius_circle}};
-    const vec2 way = v2_sub(pick_vec2(of, is_a, touch.circle.center, touch.touched.center),
-                            pick_vec2(of, is_a, touch.touched.center, touch.circle.center));
-    const vf length = v2_length(way), radii = v_add(touch.touched.radius, radius_circle);
-    touch.separation = v_sub(v_select(at_edge, v2_dot(way, touch.touched.start), length), radii);
-    touch.n = v2_select(at_edge, touch.touched.start, v2_divide(way, length));
-    const vm found = vm_and(near, is_below(touch.separation, margin));
-    const vm left = answer_circles_beside(call, &touch, &run.ring, of, found, item);
-    if (vm_any(left)) {
-        vf own[FIELDS];
-        memcpy(own, item, sizeof own);
-        own[SEPARATION] = touch.separation;
-        set_vec2(own, NORMAL, touch.n);
-        own[RECORD_A] = v_of_bits(pick_bits(of, is_a, touch.record, circle_record));
-        own[RECORD_B] = v_of_bits(pick_bits(of, is_a, circle_record, touch.record));
-        push(&queues[ANSWER], left, own, ROW_FIELDS);
+        touched[f] = v_select(c.at_edge, next[f], here[f]);
+    c.number = vi_select(c.concave, zero, vi_add(before, vi_select(c.at_edge, one, zero)));
+    c.touched = place_run_arc(touched, pose, of, is_a);
+    c.before = place_run_arc(here, pose, of, is_a);
+    const vec2 from = pick_vec2(of, is_a, c.touched.center, c.center),
+               to = pick_vec2(of, is_a, c.center, c.touched.center);
+    vec2 way = v2_sub(to, from);
+    const vf length = v2_length(way);
+    c.separation = v_sub(v_select(c.at_edge, v2_dot(way, c.touched.start), length), v_add(c.touched.radius, c.radius));
+    if (vm_any(c.concave)) {
+        const vec2 back = v2_sub(from, to);
+        const vm alike = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)),
+                 known = vm_and(which, vm_and_not(c.concave, alike));
+        const vf inside = v_sub(v_sub(v_neg(c.touched.radius), length), c.radius);
+        taken = vm_or(taken, known);
+        near = vm_or(near, vm_and(known, is_in_sector(&c.touched, back, c.radius)));
+        c.separation = v_select(c.concave, inside, c.separation);
+        way = v2_select(c.concave, back, way);
     }
-    return vm_and_not(which, known);
+    c.n = v2_select(c.at_edge, c.touched.start, v2_divide(way, length));
+    const vm found = vm_and(near, is_below(c.separation, placement->margin));
+    if (!vm_any(found))
+        return taken;
+    const vm deep = vm_and_not(v_lt(c.separation, v_set(0)), are_circles_shallow(call, &c));
+    const vm ends = vm_and_not(is_parallel(c.touched.end, c.n), c.concave);
+    const vm left = vm_and(found, vm_or(deep, ends)), keep = vm_and_not(found, left),
+             waits = vm_and_not(left, c.concave);
+    if (vm_any(waits)) {
+        const struct circles_on_pieces copy = c;
+        pass_touching(call, in, k, placement, &copy, waits, pairs);
+    }
+    if (vm_any(keep))
+        write_circles_on_pieces(call, placement, &c, keep, pairs);
+    return vm_and_not(taken, vm_and_not(left, waits));
 }
 
-NOINLINE vm settle_circles_beside_a(const struct call *call, struct queue *queues, vm is_a, vm which, vf margin,
-                                    const vf item[FIELDS]) {
-    return settle_circles_of(call, queues, ANY_RUN, is_a, which, margin, item);
-}
-
-NOINLINE vm settle_circles_before_b(const struct call *call, struct queue *queues, vm which, vf margin,
-                                    const vf item[FIELDS]) {
-    return settle_circles_of(call, queues, RUN_IS_B, vm_front(0), which, margin, item);
-}
-
-/* Settles pairs of a circle and a run of those in the lanes `open`; returns the others. */
-INLINE vm settle_circles_beside(const struct call *call, struct queue *queues, vm open, vf margin,
-                                const vf item[FIELDS]) {
-    const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B);
-    const vm is_a = has_mark(info_a, NARC_PIECE_RUN), is_b = has_mark(info_b, NARC_PIECE_RUN);
-    const vm round = has_flag(vi_select(is_a, info_b, info_a), NARC_SHAPE_CIRCLE);
-    const vm which = vm_and(open, vm_and(vm_xor(is_a, is_b), round));
-    if (!vm_any(which))
-        return open;
-    const vm left = vm_any(vm_and(which, is_a)) ? settle_circles_beside_a(call, queues, is_a, which, margin, item)
-                                                : settle_circles_before_b(call, queues, which, margin, item);
-    return vm_or(vm_and_not(open, which), left);
+/* Takes pairs of a circle about its own origin and a piece of a chain, in the lanes `which`. Returns those that it took.
+ * `number`: of the first. */
+NOINLINE vm take_circles_on_pieces(const struct call *call, const struct pair_indices *in, int k,
+                                   const struct placement *placement, vm which, int32_t number) {
+    const narc_box_form *const forms = call->batch->shapes->boxes;
+    const struct box_form a = load_box_forms(forms, in->shape_a + k), b = load_box_forms(forms, in->shape_b + k);
+    const vm of_a = vm_and(is_form(&a, NARC_HAS_FRONT), is_form(&b, NARC_IS_CIRCLE)),
+             of_b = vm_and(is_form(&b, NARC_HAS_FRONT), is_form(&a, NARC_IS_CIRCLE));
+    const vm asked = vm_and(vm_and(which, placement->in_range), vm_or(of_a, of_b));
+    if (!vm_any(asked))
+        return asked;
+    if (vm_any(vm_and(asked, of_a)))
+        return settle_circles_of(call, in, k, placement, ANY_RUN, of_a, asked, &a, &b, number);
+    return settle_circles_of(call, in, k, placement, RUN_IS_B, vm_front(0), asked, &a, &b, number);
 }
 
 #endif

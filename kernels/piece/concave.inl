@@ -61,10 +61,6 @@ INLINE struct arcs load_body_arc(const narc_record *records, const struct concav
     return select_arcs(pairs->piece_is_a, &of_b, &of_a);
 }
 
-/* How far beside the sector of a piece, relative to the radii, the centre of the body's arc may lie: what the centres were
- * rounded by, of pieces whose distance is not much more than their size. */
-#define CONCAVE_ROOM 0x1p-20f
-
 /* From the centre of B's arc to that of A's. */
 INLINE vec2 look_back(const struct concave_pairs *pairs, vec2 piece, vec2 body) {
     return v2_select(pairs->piece_is_a, v2_sub(piece, body), v2_sub(body, piece));
@@ -87,9 +83,7 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     gap.length = v2_length(n);
     const vf distance = v_select(centred, zero, gap.length);
     gap.separation = v_sub(v_sub(v_neg(piece.radius), distance), body.radius);
-    /* Where both radii are nearly one, n is next to nothing and its direction that of rounding. */
-    const vf room = v_mul(v_set(-CONCAVE_ROOM), v_sub(body.radius, piece.radius));
-    const vm in_piece = vm_and(v_le(room, v2_cross(piece.start, n)), v_le(room, v2_cross(n, piece.end)));
+    const vm in_piece = is_in_sector(&piece, n, body.radius);
     const vf beyond = v2_cross(body.end, n); /* of half a turn, 0 is its start too */
     const vm at_start = vm_and(v_le(beyond, zero), v_lt(v2_dot(body.end, n), zero));
     const vm before_end = vm_or(v_lt(beyond, zero), at_start);

@@ -42,24 +42,22 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
     return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
 }
 
-/* Is a body so shallow that it reaches the piece (narc_is_shallow()), for certain? By its inner radius, the record of the
- * solid, and the piece's scale. */
-INLINE vm is_shallow(const narc_record *records, vf inner, vi solid_record, vf piece_scale, vf separation) {
+/* Is a body so shallow that it reaches the piece (narc_is_shallow()), for certain? By how deep it may be, twice its inner
+ * radius, and how thick the piece's solid is. */
+INLINE vm is_shallow(vf most, vf thickness, vf separation) {
     const vf depth = v_mul(v_set(-1 - 0x1p-17f), separation);
-    int32_t index[V_WIDTH];
-    vf solid[4];
-    vi_store(index, solid_record);
-    v_rows(records, sizeof *records, index, solid);
-    return vm_and(v_le(depth, v_add(inner, inner)), v_le(depth, v_mul(solid[0], piece_scale)));
+    return vm_and(v_le(depth, most), v_le(depth, thickness));
 }
 
-/* The same of a circle, by the fields of its arc, with its scale. */
-INLINE vm is_circle_shallow(const narc_record *records, const vf circle[4], vf circle_scale, vi solid_record,
-                            vf piece_scale, vf separation) {
-    /* The inner circle of its header lacks some roundings of the extent. */
-    const vf extent = v_add(v_add(v_abs(circle[0]), v_abs(circle[1])), circle[2]);
-    const vf inner = v_mul(v_sub(circle[2], v_mul(v_set(0x1p-17f), extent)), circle_scale);
-    return is_shallow(records, inner, solid_record, piece_scale, separation);
+/* How far beside the sector of a concave arc, relative to the radii, the centre of a body's arc may lie: what the centres
+ * were rounded by, of pieces whose distance is not much more than their size. */
+#define CONCAVE_ROOM 0x1p-20f
+
+/* Is n, from B's centre to A's, in the sector of a concave arc, beside a body's arc of this radius? Where both radii are
+ * nearly one, n is next to nothing and its direction that of rounding. */
+INLINE vm is_in_sector(const struct arcs *piece, vec2 n, vf radius) {
+    const vf room = v_mul(v_set(-CONCAVE_ROOM), v_sub(radius, piece->radius));
+    return vm_and(v_le(room, v2_cross(piece->start, n)), v_le(room, v2_cross(n, piece->end)));
 }
 
 /* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
@@ -74,9 +72,10 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
     const uint32_t piece_is_a = vm_bits(of_a);
     const narc_shape_header *header[2][V_WIDTH];
-    int32_t pair[V_WIDTH];
+    int32_t pair[V_WIDTH], solid[V_WIDTH];
     float inner[V_WIDTH] = {0};
     get_pairs(queue, k, pair);
+    vi_store(solid, last);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes);
         const size_t number = find_number(call, pair[l]);
@@ -86,15 +85,15 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     }
     if (!front_only) {
         const vf scaled = v_mul(v_load(inner), v_select(of_a, scale_b, scale_a));
+        vf field[4];
+        v_rows(batch->shapes->records, sizeof *batch->shapes->records, solid, field);
         const vm shallow =
-            is_shallow(batch->shapes->records, scaled, last, v_select(of_a, scale_a, scale_b), separation);
+            is_shallow(v_add(scaled, scaled), v_mul(field[0], v_select(of_a, scale_a, scale_b)), separation);
         which = vm_and_not(which, vm_and_not(shallow, both));
     }
     if (!vm_any(which))
         return which;
-    int32_t solid[V_WIDTH];
     float scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
-    vi_store(solid, last);
     v_store(scale[0], scale_a);
     v_store(scale[1], scale_b);
     v_store(depth, separation);

@@ -219,15 +219,12 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)
         return find_of_capsules(asked);
-    if ((form_a | form_b) & NARC_IS_PLANE)
+    if ((form_a | form_b) & (NARC_IS_PLANE | NARC_HAS_FRONT))
         return UNANSWERED;
     if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
         return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
     if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))
         return search_one(asked, true);
-    const narc_shape_header *const header_a = &shapes->headers[a], *const header_b = &shapes->headers[b];
-    if (narc_is_piece(header_a) || narc_is_piece(header_b))
-        return UNANSWERED;
     return search_one(asked, false);
 }
 

@@ -90,12 +90,23 @@ INLINE vm drop_some(const struct call *call, vm open, const vf item[FIELDS], str
 
 static vm settle_runs(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
                       struct pieces_met *met) {
-    open = settle_circles_beside(call, queues, open, margin, item);
-    if (queues[ANSWER].count >= FLUSH)
-        run_stage(call, answer_rows, queues, ANSWER);
-    if (vm_any(open))
-        open = settle_some(call, queues, open, margin, item, met);
+    open = settle_some(call, queues, open, margin, item, met);
     return vm_any(open) ? drop_some(call, open, item, met) : open;
+}
+
+/* Pairs of a circle and a piece come before those of two forms. Others come behind, out of order. */
+INLINE vm take_detours(const struct call *call, const struct pair_indices *indices, int k,
+                       const struct placement *placement, vm open, int32_t number) {
+    vm left = open;
+    if (NARC_PIECES && NARC_CIRCLE_FORMS && !LIKELY(!call->concave)) {
+        const struct placement copy = *placement; /* so that the other one stays in registers */
+        left = vm_and_not(open, take_circles_on_pieces(call, indices, k, &copy, open, number));
+        if (vm_any(vm_and_not(open, left)))
+            call->rows->done = -1;
+        if (call->settled->count >= FLUSH)
+            run_stage(call, answer_rows, call->settled - ANSWER, ANSWER);
+    }
+    return vm_any(left) ? take_detour(call, indices, k, placement, left, number) : left;
 }
 
 static void answer_rows_of_polygons(const struct call *call, struct queue *queues, int begin) {
@@ -125,7 +136,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
                                    search->stages[CLIMB],  polygons,
                                    search->stages[DECIDE], answer_rows,
                                    question->edges};
-    const struct course course = {.take = NARC_SHORTCUTS ? take_detour : NULL,
+    const struct course course = {.take = NARC_SHORTCUTS ? take_detours : NULL,
                                   .settle = triage_rows,
                                   .runs = NARC_PIECES && NARC_CIRCLE_FORMS ? settle_runs : NULL,
                                   .fields = NARC_SHORTCUTS ? ROW_FIELDS : FIELDS,
@@ -137,6 +148,7 @@ NOINLINE void run_rows(const struct call *given, struct queue *queues, int end, 
     struct call call = *given;
     call.concave = pieces;
     call.runs = pieces ? pieces + 1 : NULL;
+    call.settled = &queues[ANSWER];
     box_stage *const answers[BOX_QUEUES] = {second ? question->boxes : answer_rows_of_boxes,
                                             second ? question->capsules : answer_rows_of_capsules,
                                             NARC_CIRCLE_FORMS ? answer_circle_rows : NULL};
