@@ -291,6 +291,12 @@ static bool has_same_bits(float a, float b) {
     return bits[0] == bits[1];
 }
 
+/* The caller's arc of a number, round and round. */
+static const narc_stored_arc *find_caller_arc(const narc_encoded_shape *shape, size_t number) {
+    const size_t count = shape->header.count, first = shape->header.first_arc & NARC_FIRST_ARC;
+    return &shape->records[narc_angle_records(count) + (number + count - first) % count].arc;
+}
+
 /* Is it stored with these bits? The normals are those of the edges before and behind it. */
 static bool is_corner(const narc_stored_arc *arc, float x, float y, float radius, const float *start,
                       const float *end) {
@@ -318,9 +324,10 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     const bool circle = header->flags & NARC_SHAPE_CIRCLE, capsule = header->count == 2 && !circle;
     const bool smooth = header->flags & NARC_SHAPE_SMOOTH;
     const uint32_t other = has_equal_corners(shape) ? NARC_IS_POLYGON : 0;
-    if (narc_is_of_chain(header))
-        return (narc_box_form){header->bound_radius, 0, arcs[header->count].solid.thickness,
-                               NARC_HAS_FRONT | NARC_IS_POLYGON};
+    if (narc_is_of_chain(header)) {
+        const narc_stored_arc *a = find_caller_arc(shape, 3);
+        return (narc_box_form){a->center_x, a->center_y, header->bound_radius, NARC_HAS_FRONT | NARC_IS_POLYGON};
+    }
     if (narc_is_plane(header))
         return (narc_box_form){1, 0, 0, NARC_IS_PLANE | NARC_IS_POLYGON | (header->first_arc & NARC_FIRST_ARC)};
     if ((header->count != 4 && header->count != 2) || header->extent_ratio == UINT8_MAX || smooth != circle)
@@ -349,13 +356,11 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
 
 narc_piece_form narc_find_piece_form(const narc_encoded_shape *shape) {
     narc_shape_header header = shape->header;
-    const size_t count = header.count, first = header.first_arc & NARC_FIRST_ARC;
-    const narc_stored_arc *arc[3];
     uint32_t info;
     if (!narc_is_of_chain(&header))
         return (narc_piece_form){.info = 0};
-    for (size_t k = 0; k < 3; k++)
-        arc[k] = &shape->records[narc_angle_records(count) + (k + count - first) % count].arc;
+    const narc_stored_arc *const arc[] = {find_caller_arc(shape, 0), find_caller_arc(shape, 1),
+                                          find_caller_arc(shape, 2)};
     header.first_arc &= NARC_PIECE_MARKS;
     memcpy(&info, (const char *)&header + sizeof header.first_record, sizeof info);
     return (narc_piece_form){.center_0 = {arc[0]->center_x, arc[0]->center_y},
@@ -366,7 +371,8 @@ narc_piece_form narc_find_piece_form(const narc_encoded_shape *shape) {
                              .normal_2 = {arc[1]->end_x, arc[1]->end_y},
                              .center_2 = {arc[2]->center_x, arc[2]->center_y},
                              .normal_3 = {arc[2]->end_x, arc[2]->end_y},
-                             .radius_2 = arc[2]->radius};
+                             .radius_2 = arc[2]->radius,
+                             .thickness = shape->records[narc_count_records(&header) - 1].solid.thickness};
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */

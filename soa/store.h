@@ -152,7 +152,7 @@ typedef union narc_record {
  *          its header. NARC_IS_POLYGON alone, which makes it less than 0: none of these either, but a polygon of 3 to
  *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by. NARC_IS_PLANE beside it
  *          is a half-plane's, of which half_x is 1, and all else 0. NARC_HAS_FRONT beside it is that of a piece of a chain:
- *          half_x is its bounding radius, and radius the thickness of its solid.
+ *          its radius is the bounding radius, half_x and half_y are the centre of the caller's arc 3 (narc_piece_form).
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -174,14 +174,14 @@ static inline bool narc_has_form(const narc_box_form *box) {
 
 /* What a circle touches of a piece of a chain, in one line of the cache: of a run the caller's arcs 0, 1 and 2, where the
  * normals 1 to 3 lie between them and behind; all of the shortest fronts, and the begin of others. Of a concave arc, as of
- * arc 1, centre, radius, and the normals 1 and 2 at its ends. `info` is the second word of the header, less the number of
+ * arc 1, centre, radius, and the normals 1 and 2 at its ends. `thickness` is that of the solid, and `info` is the second word of the header, less the number of
  * the arc that is stored first. Of all other shapes all is 0. */
 typedef struct narc_piece_form {
     float center_0[2], normal_1[2];
     float center_1[2], radius_1;
     uint32_t info;
     float normal_2[2], center_2[2];
-    float normal_3[2], radius_2, unused;
+    float normal_3[2], radius_2, thickness;
 } narc_piece_form;
 
 /* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with

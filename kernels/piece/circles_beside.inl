@@ -242,10 +242,10 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     run.scale = pick(of, is_a, pose->scale_a, pose->scale_b);
     c.concave = has_mark(c.info, NARC_PIECE_CONCAVE);
     c.radius = v_mul(pick(of, is_a, b->radius, a->radius), pick(of, is_a, pose->scale_b, pose->scale_a));
-    c.thickness = v_mul(pick(of, is_a, a->radius, b->radius), run.scale);
+    c.thickness = v_mul(behind[3], run.scale);
     c.center = pick_vec2(of, is_a, center_b, origin);
     run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose->rotation, v2_sub(origin, pose->position)));
-    const vf size = v_mul(pick(of, is_a, a->half.x, b->half.x), run.scale);
+    const vf size = v_mul(pick(of, is_a, a->radius, b->radius), run.scale);
     const vf extents = v_add(v_mul(size, v_of_int(ratio)), c.radius);
     const vf known_slack =
         v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(pose->position.x), v_abs(pose->position.y)), extents));
@@ -253,10 +253,11 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     which = vm_and(which, vm_and(is_size_in_range(size), is_box_in_range(c.radius)));
 
     /* The arc whose start p lies behind, and the next one. A concave arc is like arc 1. */
-    const vec2 normal_1 = {arc_0[2], arc_0[3]}, normal_2 = {arc_2[0], arc_2[1]};
+    const vec2 normal_1 = {arc_0[2], arc_0[3]}, normal_2 = {arc_2[0], arc_2[1]}, normal_3 = {behind[0], behind[1]};
+    const vf center_3[2] = {pick(of, is_a, a->half.x, b->half.x), pick(of, is_a, a->half.y, b->half.y)};
+    const vec2 u_2 = look_from_arc(&run, arc_2 + 2), u_3 = look_from_arc(&run, center_3);
     const vm past_1 = vm_or(c.concave, v_le(v_set(0), v2_cross(normal_1, look_from_arc(&run, arc_1))));
-    const vm past_2 =
-        vm_and(vm_and(past_1, vi_lt(one, last)), v_le(v_set(0), v2_cross(normal_2, look_from_arc(&run, arc_2 + 2))));
+    const vm past_2 = vm_and(vm_and(past_1, vi_lt(one, last)), v_le(v_set(0), v2_cross(normal_2, u_2)));
     const vf none = v_set(0);
     vf here[8] = {v_select(past_2, arc_2[2], v_select(past_1, arc_1[0], arc_0[0])),
                   v_select(past_2, arc_2[3], v_select(past_1, arc_1[1], arc_0[1])),
@@ -275,9 +276,11 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
                   v_select(past_1, behind[0], arc_2[0]),
                   v_select(past_1, behind[1], arc_2[1])};
     vi before = vi_select(past_2, vi_set(2), vi_select(past_1, one, zero));
-    const vm past_3 =
-        vm_and_not(past_2, v_lt(two, v2_cross(look_from_arc(&run, arc_2 + 2), (vec2){behind[0], behind[1]})));
-    const vm walks = vm_and(vm_and(which, past_3), vi_lt(vi_set(2), last));
+    /* Arc 3 may be the corner where the front ends. */
+    const vm before_3 = v_lt(two, v2_cross(u_2, normal_3)), is_end = vm_not(vi_lt(vi_set(3), last));
+    const vm beyond_3 = vm_and(v_lt(two, v2_cross(normal_3, u_3)), v_lt(two, v2_dot(normal_3, u_3)));
+    const vm past_3 = vm_and_not(vm_and(which, vm_and(past_2, vi_lt(vi_set(2), last))), before_3);
+    const vm past_all = vm_and(past_3, vm_and(is_end, beyond_3)), walks = vm_and_not(past_3, past_all);
     if (vm_any(walks)) {
         struct run_beside walked = {.scale = run.scale, .p = run.p};
         vf there[8], beyond_there[8];
@@ -299,7 +302,8 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     const vf distance = v_sub(v_select(c.at_edge, v2_dot(u, end), v2_length(u)), v_mul(here[2], run.scale));
     const vm beyond_begin = vm_and(is_first, v_lt(two, before_end)),
              beyond_end = vm_and(is_last, v_lt(two, behind_start));
-    const vm beyond = vm_and(vm_or(beyond_begin, beyond_end), v_lt(two, v2_dot(u, v2_select(is_first, end, start))));
+    const vm ends = vm_and(vm_or(beyond_begin, beyond_end), v_lt(two, v2_dot(u, v2_select(is_first, end, start))));
+    const vm beyond = vm_or(ends, past_all);
     const vm on_front = vm_and(vm_or(at_arc, c.at_edge), v_lt(two, distance));
     const vm runs = vm_and_not(vm_and(which, vm_or(beyond, on_front)), c.concave);
     const vm apart = v_lt(v_add(v_add(c.radius, placement->margin), slack), distance);
@@ -334,8 +338,8 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     if (!vm_any(found))
         return taken;
     const vm deep = vm_and_not(v_lt(c.separation, v_set(0)), are_circles_shallow(call, &c));
-    const vm ends = vm_and_not(is_parallel(c.touched.end, c.n), c.concave);
-    const vm left = vm_and(found, vm_or(deep, ends)), keep = vm_and_not(found, left),
+    const vm at_end = vm_and_not(is_parallel(c.touched.end, c.n), c.concave);
+    const vm left = vm_and(found, vm_or(deep, at_end)), keep = vm_and_not(found, left),
              waits = vm_and_not(left, c.concave);
     if (vm_any(waits)) {
         const struct circles_on_pieces copy = c;
