@@ -158,6 +158,12 @@ INLINE struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b)
                          v2_select(m, a->start, b->start),   v2_select(m, a->end, b->end)};
 }
 
+/* Where `is_a`, the arc is A's. */
+INLINE struct arcs place_arc(const vf field[8], const struct pose *pose, vm is_a) {
+    const struct arcs of_a = place_a(field, pose), of_b = place_b(field, pose);
+    return select_arcs(is_a, &of_a, &of_b);
+}
+
 /* An arc of A and one of B. */
 struct arc_pair {
     struct arcs a, b;

@@ -53,38 +53,30 @@ NOINLINE vm drop_beside(const struct call *call, vm open, const vf item[FIELDS])
     const vm is_a = has_mark(info_a, NARC_PIECE_RUN), run = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
     if (!vm_any(vm_and(open, run)))
         return open;
-    const vf zero = v_set(0), scale = v_select(is_a, item[SCALE_A], item[SCALE_B]);
+    const vf scale = v_select(is_a, item[SCALE_A], item[SCALE_B]);
     const vf other_scale = v_select(is_a, item[SCALE_B], item[SCALE_A]);
     const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
-    const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
+    const vi info = vi_select(is_a, info_a, info_b);
     const vi base = find_first_arc(vi_select(is_a, first_a, first_b), info), count = get_arc_count(info);
-    const vi other_base = find_first_arc(vi_select(is_a, first_b, first_a), other_info);
     const vec2 position = {item[POSITION], item[POSITION + 1]}, rotation = {item[ROTATION], item[ROTATION + 1]};
 
-    vf form[4], circle[4], field[2][8];
+    vf form[4], field[2][8];
     int32_t index[V_WIDTH];
     vi_store(index, get_item_bits(item, BODY_SHAPE));
     v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
-    vi_store(index, other_base);
-    v_rows(shapes->records, sizeof *shapes->records, index, circle);
     for (int last = 0; last < 2; last++) { /* the arcs 0 and count - 5 of the caller's */
         const vi number = vi_sub(last ? vi_sub(count, vi_set(5)) : vi_set(0), get_first_arc(info));
         const vi stored = vi_select(vi_lt(number, vi_set(0)), vi_add(number, count), number);
         load_records(shapes->records, vi_select(run, vi_add(base, stored), base), field[last]);
     }
 
-    const vm round = has_flag(other_info, NARC_SHAPE_CIRCLE);
-    const vm known = vm_or(round, vi_lt(vi_set(0), vi_bits(form[3])));
+    const vm known = vi_lt(vi_set(0), vi_bits(form[3]));
     const vec2 x = {rotation.x, v_select(is_a, rotation.y, v_neg(rotation.y))};
     const vec2 at = v2_select(is_a, position, v2_unrotate_opposite(rotation, position));
-    const vec2 offset =
-        v2_scale((vec2){v_select(round, circle[0], zero), v_select(round, circle[1], zero)}, other_scale);
-    const vf half_x = v_mul(v_select(round, zero, form[0]), other_scale),
-             half_y = v_mul(v_select(round, zero, form[1]), other_scale);
-    const struct plain_body body = {.center = v2_add(at, v2_rotate(x, offset)),
-                                    .x_axis = v2_scale(x, half_x),
-                                    .y_axis = v2_scale((vec2){v_neg(x.y), x.x}, half_y),
-                                    .radius = v_mul(v_select(round, circle[2], form[2]), other_scale)};
+    const struct plain_body body = {.center = at,
+                                    .x_axis = v2_scale(x, v_mul(form[0], other_scale)),
+                                    .y_axis = v2_scale((vec2){v_neg(x.y), x.x}, v_mul(form[1], other_scale)),
+                                    .radius = v_mul(form[2], other_scale)};
     const vec2 begin = v2_scale((vec2){field[0][0], field[0][1]}, scale);
     const vec2 end = v2_scale((vec2){field[1][0], field[1][1]}, scale);
     const vec2 n_begin = {field[0][6], field[0][7]}, m_begin = {field[0][4], field[0][5]};

@@ -33,16 +33,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What is known of all pairs: mostly ground comes last. */
-enum run_side { ANY_RUN, RUN_IS_B };
-
-/* One where the run is A, the other one where it is B. */
-INLINE vf pick(enum run_side of, vm is_a, vf a, vf b) { return of == RUN_IS_B ? b : v_select(is_a, a, b); }
-
-INLINE vi pick_bits(enum run_side of, vm is_a, vi a, vi b) { return of == RUN_IS_B ? b : vi_select(is_a, a, b); }
-
-INLINE vec2 pick_vec2(enum run_side of, vm is_a, vec2 a, vec2 b) { return of == RUN_IS_B ? b : v2_select(is_a, a, b); }
-
 /* A run in each lane, and the centre of a circle in its frame, at world scale. */
 struct run_beside {
     struct ring ring;
@@ -106,100 +96,54 @@ NOINLINE vi walk_on(const narc_shapes *shapes, const int32_t *shape, struct run_
     }
 }
 
-/* The arcs of a run, placed, and which of two features is whose. */
-INLINE struct arcs place_run_arc(const vf field[8], const struct pose *pose, enum run_side of, vm is_a) {
-    const struct arcs of_b = place_b(field, pose);
-    if (of == RUN_IS_B)
-        return of_b;
-    const struct arcs of_a = place_a(field, pose);
-    return select_arcs(is_a, &of_a, &of_b);
-}
-
-INLINE struct feature pick_feature(enum run_side of, vm m, const struct feature *a, const struct feature *b) {
-    if (of == RUN_IS_B)
-        return *b;
-    return (struct feature){v_select(m, a->across, b->across),       v_select(m, a->along_min, b->along_min),
-                            v_select(m, a->along_max, b->along_max), vi_select(m, a->record, b->record),
-                            v_select(m, a->radius, b->radius),       v_select(m, a->magnitude, b->magnitude),
-                            v2_select(m, a->start, b->start),        v2_select(m, a->end, b->end)};
-}
-
-/* The point of an arc with the normal n: `sign` 1 of A, -1 of B. */
-INLINE vec2 find_point_of(const struct arcs *arc, vec2 n, vf sign) {
-    return v2_add(arc->center, v2_scale(n, v_mul(sign, arc->radius)));
-}
-
-/* Circles and pieces, of which one is A, and how they touch: with the arc `touched`, the caller's `number`, or with the edge
- * between that and the arc before. */
+/* How circles touch pieces: with the arc `touched`, the caller's `number`, or with the edge between that and the arc before. */
 struct circles_on_pieces {
-    enum run_side of;
-    vm is_a, concave, at_edge; /* is the piece A? */
+    vm concave, at_edge;
     vi info, number;
-    vf scale, radius, thickness; /* of the piece; the circle's; how thick the solid is */
+    vf radius, thickness; /* of the circle; of the solid */
     struct arcs touched, before;
     vec2 center; /* of the circle */
     vf separation;
     vec2 n;
 };
 
-/* The piece's record of a number, and the circle's first, where `of_piece` is the piece's header, and `of_circle` the other. */
-INLINE vi find_piece_record(const struct headers *of_piece, vi number) {
-    const struct run_beside run = {.ring = make_ring(of_piece->first_record, of_piece->info),
-                                   .first = get_first_arc(of_piece->info)};
-    return find_run_record(&run, number);
-}
-
-/* Pairs that touch, for certain, in the lanes `which`, wait for the last stage, which knows all that may be so. */
+/* Pairs that touch, for certain, in the lanes `which`, wait for the last stage, which knows whether that counts. `of_b`: the
+ * piece is B. */
 NOINLINE void pass_touching(const struct call *call, const struct pair_indices *in, int k,
-                            const struct placement *placement, const struct circles_on_pieces *c, vm which, vi pairs) {
-    const narc_shape_header *const headers = call->batch->shapes->headers;
-    const struct headers a = load_headers(headers, in->shape_a + k), b = load_headers(headers, in->shape_b + k);
-    const vm is_a = c->is_a;
-    const vi number = c->number, zero = vi_set(0);
+                            const struct placement *placement, const struct circles_on_pieces *c, bool of_b, vm which,
+                            int32_t number) {
     vf item[FIELDS];
-    set_vec2(item, POSITION, placement->pose.position);
-    set_vec2(item, ROTATION, placement->pose.rotation);
-    set_vec2(item, ROTATION_A, placement->rotation_a);
-    set_vec2(item, DIRECTION, c->n);
-    set_vec2(item, NORMAL, c->n);
-    item[SCALE_A] = placement->pose.scale_a;
-    item[SCALE_B] = placement->pose.scale_b;
+    (void)set_up_pairs(call, in, k, placement, which, number - k, item);
+    struct run_beside run[2];
+    for (int side = 0; side < 2; side++) {
+        const vi info = get_item_bits(item, INFO_A + side);
+        run[side].ring = make_ring(get_item_bits(item, FIRST_RECORD_A + side), info);
+        run[side].first = get_first_arc(info);
+    }
+    const vi of_piece = find_run_record(&run[of_b], c->number), of_circle = run[!of_b].ring.base;
     item[SEPARATION] = c->separation;
-    item[FIRST_RECORD_A] = v_of_bits(a.first_record);
-    item[FIRST_RECORD_B] = v_of_bits(b.first_record);
-    item[INFO_A] = v_of_bits(a.info);
-    item[INFO_B] = v_of_bits(b.info);
-    item[RECORD_A] = v_of_bits(find_piece_record(&a, vi_select(is_a, number, zero)));
-    item[RECORD_B] = v_of_bits(find_piece_record(&b, vi_select(is_a, zero, number)));
-    item[PAIR] = v_of_bits(pairs);
+    set_vec2(item, NORMAL, c->n);
+    item[RECORD_A] = v_of_bits(of_b ? of_circle : of_piece);
+    item[RECORD_B] = v_of_bits(of_b ? of_piece : of_circle);
     push(call->settled, which, item, ROW_FIELDS);
-}
-
-/* Are the contacts so shallow that they reach the piece (is_shallow()), for certain, and the front by the circle's middle? */
-INLINE vm are_circles_shallow(const struct call *call, const struct circles_on_pieces *c) {
-    const vf inner = v_mul(v_set(1 - 0x1p-17f), c->radius),
-             most = call->batch->query->front_only ? inner : v_add(inner, inner);
-    return is_shallow(most, c->thickness, c->separation);
 }
 
 /* Writes the rows of pairs in the lanes `keep`. */
 INLINE void write_circles_on_pieces(const struct call *call, const struct placement *placement,
-                                    const struct circles_on_pieces *c, vm keep, vi pairs) {
-    const enum run_side of = c->of;
-    const vm is_a = c->is_a;
+                                    const struct circles_on_pieces *c, bool of_b, vm keep, vi pairs) {
     const vec2 n = c->n;
-    const vi none = vi_set(0), round = vi_set((int32_t)((NARC_SHAPE_CIRCLE | NARC_SHAPE_SMOOTH) << 16 | 2));
+    const vi none = vi_set(0);
     const struct touching_pair pair = {none,
                                        none,
-                                       pick_bits(of, is_a, c->info, round),
-                                       pick_bits(of, is_a, round, c->info),
+                                       c->info,
+                                       c->info,
                                        placement->pose.scale_a,
                                        placement->pose.scale_b,
                                        placement->rotation_a,
-                                       .round_a = of == RUN_IS_B};
-    const vf sign = pick(of, is_a, v_set(1), v_set(-1)), zero = v_set(0);
-    const vec2 point = find_point_of(&c->touched, n, sign), other = find_point_of(&c->before, n, sign),
-               on_circle = v2_add(c->center, v2_scale(n, v_mul(v_neg(sign), c->radius)));
+                                       .round_a = of_b,
+                                       .round_b = !of_b};
+    const vec2 point = find_point(&c->touched, n, of_b), other = find_point(&c->before, n, of_b);
+    const vec2 on_circle = v2_add(c->center, v2_scale(n, of_b ? c->radius : v_neg(c->radius)));
     const vf along = v2_cross(n, point), along_before = v_select(c->at_edge, v2_cross(n, other), along);
     const vf size = find_magnitude(&c->touched), along_circle = v2_cross(n, on_circle);
     const struct feature of_run = {
@@ -207,11 +151,10 @@ INLINE void write_circles_on_pieces(const struct call *call, const struct placem
         v_max(along, along_before), vi_add(find_first_arc(none, c->info), c->number),
         c->touched.radius,          v_add(size, v_select(c->at_edge, find_magnitude(&c->before), size)),
         c->touched.start,           c->touched.end};
-    const struct feature of_circle = {v2_dot(n, on_circle), along_circle, along_circle, none, c->radius, zero, n, n};
-    const struct feature on_a = pick_feature(of, is_a, &of_run, &of_circle),
-                         on_b = pick_feature(of, is_a, &of_circle, &of_run);
-    const struct answer answer = tell_touch(&pair, c->separation, n, &on_a, &on_b, has_reaches(call));
-    const vi feature = pick_bits(of, is_a, vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
+    const struct feature round = {v2_dot(n, on_circle), along_circle, along_circle, none, c->radius, v_set(0), n, n};
+    const struct answer answer =
+        tell_touch(&pair, c->separation, n, of_b ? &round : &of_run, of_b ? &of_run : &round, has_reaches(call));
+    const vi feature = of_b ? vi_shift_right(answer.feature, 8) : answer.feature;
     char *place[V_WIDTH];
     find_places(call, pairs, vm_and(keep, is_front(c->info, feature)), place);
     write_rows(call, place, find_numbers(call, pairs), &answer);
@@ -220,32 +163,29 @@ INLINE void write_circles_on_pieces(const struct call *call, const struct placem
 /* Takes pairs of a circle and a piece in the lanes `which`: those that touch are answered, or go to the last stage. Returns
  * those that it took. */
 INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *in, int k,
-                            const struct placement *placement, enum run_side of, vm is_a, vm which,
-                            const struct box_form *a, const struct box_form *b, int32_t number) {
+                            const struct placement *placement, const struct box_form *piece, vf radius, bool of_b,
+                            vm which, int32_t number) {
     const narc_shapes *const shapes = call->batch->shapes;
     const struct pose *const pose = &placement->pose;
+    const int32_t *const shape = (of_b ? in->shape_b : in->shape_a) + k;
     const vi zero = vi_set(0), one = vi_set(1), pairs = vi_add(vi_lanes(), vi_set(number));
-    const vec2 origin = {v_set(0), v_set(0)}, center_b = place_center_b(origin, pose);
-    int32_t shape[V_WIDTH];
+    const vec2 origin = {v_set(0), v_set(0)};
     vf arc_0[4], arc_1[4], arc_2[4], behind[4];
-    vi_store(shape, pick_bits(of, is_a, vi_load(in->shape_a + k), vi_load(in->shape_b + k)));
     v_rows(shapes->fronts->center_0, sizeof *shapes->fronts, shape, arc_0);
     v_rows(shapes->fronts->center_1, sizeof *shapes->fronts, shape, arc_1);
     v_rows(shapes->fronts->normal_2, sizeof *shapes->fronts, shape, arc_2);
     v_rows(shapes->fronts->normal_3, sizeof *shapes->fronts, shape, behind);
     struct circles_on_pieces c;
-    c.of = of;
-    c.is_a = is_a;
     c.info = vi_bits(arc_1[3]);
     const vi last = vi_sub(get_arc_count(c.info), vi_set(5)), ratio = get_extent_ratio(c.info);
     struct run_beside run;
-    run.scale = pick(of, is_a, pose->scale_a, pose->scale_b);
+    run.scale = of_b ? pose->scale_b : pose->scale_a;
     c.concave = has_mark(c.info, NARC_PIECE_CONCAVE);
-    c.radius = v_mul(pick(of, is_a, b->radius, a->radius), pick(of, is_a, pose->scale_b, pose->scale_a));
+    c.radius = v_mul(radius, of_b ? pose->scale_a : pose->scale_b);
     c.thickness = v_mul(behind[3], run.scale);
-    c.center = pick_vec2(of, is_a, center_b, origin);
-    run.p = pick_vec2(of, is_a, center_b, v2_unrotate(pose->rotation, v2_sub(origin, pose->position)));
-    const vf size = v_mul(pick(of, is_a, a->radius, b->radius), run.scale);
+    c.center = of_b ? origin : place_center_b(origin, pose);
+    run.p = of_b ? v2_unrotate(pose->rotation, v2_sub(origin, pose->position)) : c.center;
+    const vf size = v_mul(piece->radius, run.scale);
     const vf extents = v_add(v_mul(size, v_of_int(ratio)), c.radius);
     const vf known_slack =
         v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(pose->position.x), v_abs(pose->position.y)), extents));
@@ -254,7 +194,7 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
 
     /* The arc whose start p lies behind, and the next one. A concave arc is like arc 1. */
     const vec2 normal_1 = {arc_0[2], arc_0[3]}, normal_2 = {arc_2[0], arc_2[1]}, normal_3 = {behind[0], behind[1]};
-    const vf center_3[2] = {pick(of, is_a, a->half.x, b->half.x), pick(of, is_a, a->half.y, b->half.y)};
+    const vf center_3[2] = {piece->half.x, piece->half.y};
     const vec2 u_2 = look_from_arc(&run, arc_2 + 2), u_3 = look_from_arc(&run, center_3);
     const vm past_1 = vm_or(c.concave, v_le(v_set(0), v2_cross(normal_1, look_from_arc(&run, arc_1))));
     const vm past_2 = vm_and(vm_and(past_1, vi_lt(one, last)), v_le(v_set(0), v2_cross(normal_2, u_2)));
@@ -316,10 +256,9 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     for (int f = 0; f < 8; f++)
         touched[f] = v_select(c.at_edge, next[f], here[f]);
     c.number = vi_select(c.concave, zero, vi_add(before, vi_select(c.at_edge, one, zero)));
-    c.touched = place_run_arc(touched, pose, of, is_a);
-    c.before = place_run_arc(here, pose, of, is_a);
-    const vec2 from = pick_vec2(of, is_a, c.touched.center, c.center),
-               to = pick_vec2(of, is_a, c.center, c.touched.center);
+    c.touched = of_b ? place_b(touched, pose) : place_a(touched, pose);
+    c.before = of_b ? place_b(here, pose) : place_a(here, pose);
+    const vec2 from = of_b ? c.center : c.touched.center, to = of_b ? c.touched.center : c.center;
     vec2 way = v2_sub(to, from);
     const vf length = v2_length(way);
     c.separation = v_sub(v_select(c.at_edge, v2_dot(way, c.touched.start), length), v_add(c.touched.radius, c.radius));
@@ -337,16 +276,19 @@ INLINE vm settle_circles_of(const struct call *call, const struct pair_indices *
     const vm found = vm_and(near, is_below(c.separation, placement->margin));
     if (!vm_any(found))
         return taken;
-    const vm deep = vm_and_not(v_lt(c.separation, v_set(0)), are_circles_shallow(call, &c));
+    /* Twice the circle's inner radius, which lacks some roundings; if its middle must be in front, not more than once. */
+    const vf inner = v_mul(v_set(1 - 0x1p-17f), c.radius),
+             most = call->batch->query->front_only ? inner : v_add(inner, inner);
+    const vm deep = vm_and_not(v_lt(c.separation, v_set(0)), is_shallow(most, c.thickness, c.separation));
     const vm at_end = vm_and_not(is_parallel(c.touched.end, c.n), c.concave);
     const vm left = vm_and(found, vm_or(deep, at_end)), keep = vm_and_not(found, left),
              waits = vm_and_not(left, c.concave);
     if (vm_any(waits)) {
         const struct circles_on_pieces copy = c;
-        pass_touching(call, in, k, placement, &copy, waits, pairs);
+        pass_touching(call, in, k, placement, &copy, of_b, waits, number);
     }
     if (vm_any(keep))
-        write_circles_on_pieces(call, placement, &c, keep, pairs);
+        write_circles_on_pieces(call, placement, &c, of_b, keep, pairs);
     return vm_and_not(taken, vm_and_not(left, waits));
 }
 
@@ -359,11 +301,13 @@ NOINLINE vm take_circles_on_pieces(const struct call *call, const struct pair_in
     const vm of_a = vm_and(is_form(&a, NARC_HAS_FRONT), is_form(&b, NARC_IS_CIRCLE)),
              of_b = vm_and(is_form(&b, NARC_HAS_FRONT), is_form(&a, NARC_IS_CIRCLE));
     const vm asked = vm_and(vm_and(which, placement->in_range), vm_or(of_a, of_b));
-    if (!vm_any(asked))
-        return asked;
+    vm taken = vm_front(0);
+    if (vm_any(vm_and(asked, of_b)))
+        taken = settle_circles_of(call, in, k, placement, &b, a.radius, true, vm_and(asked, of_b), number);
     if (vm_any(vm_and(asked, of_a)))
-        return settle_circles_of(call, in, k, placement, ANY_RUN, of_a, asked, &a, &b, number);
-    return settle_circles_of(call, in, k, placement, RUN_IS_B, vm_front(0), asked, &a, &b, number);
+        taken =
+            vm_or(taken, settle_circles_of(call, in, k, placement, &a, b.radius, false, vm_and(asked, of_a), number));
+    return taken;
 }
 
 #endif

@@ -49,16 +49,14 @@ INLINE struct arcs load_piece(const narc_record *records, const struct concave_p
     const vi record = vi_select(pairs->piece_is_a, pairs->ring_a.base, pairs->ring_b.base);
     vf field[8];
     load_records(records, record, field);
-    const struct arcs of_a = place_a(field, &pairs->pose), of_b = place_b(field, &pairs->pose);
-    return select_arcs(pairs->piece_is_a, &of_a, &of_b);
+    return place_arc(field, &pairs->pose, pairs->piece_is_a);
 }
 
 /* The body's arc in a record. */
 INLINE struct arcs load_body_arc(const narc_record *records, const struct concave_pairs *pairs, vi record) {
     vf field[8];
     load_records(records, record, field);
-    const struct arcs of_a = place_a(field, &pairs->pose), of_b = place_b(field, &pairs->pose);
-    return select_arcs(pairs->piece_is_a, &of_b, &of_a);
+    return place_arc(field, &pairs->pose, vm_not(pairs->piece_is_a));
 }
 
 /* From the centre of B's arc to that of A's. */

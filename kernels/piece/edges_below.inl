@@ -192,7 +192,7 @@ NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm
     if (!vm_any(vm_or(rests, lies)))
         return vm_and_not(open, apart);
     const struct pose pose = {position, rotation, item[SCALE_A], item[SCALE_B]};
-    const struct arcs arc = place_run_arc(touched, &pose, ANY_RUN, is_a);
+    const struct arcs arc = place_arc(touched, &pose, is_a);
     if (vm_any(lies))
         pass_to_walk(queues, lies, arc.start, item);
     if (vm_any(rests))
