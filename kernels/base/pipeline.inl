@@ -123,11 +123,11 @@ INLINE void run_stages(const struct call *call, const struct course *course, str
 enum { MANY_RECORDS = 1 << 17 };
 
 /* A side of the pairs of a call, from number `first` to before `end`: first what tells the shapes, then the headers, then the
- * records of pieces. */
+ * records of pieces; `forms`: what circles read of both, instead. */
 enum fetching { FETCH_BODIES, FETCH_HEADERS, FETCH_PIECES };
 
-INLINE void fetch_range(const struct call *call, const struct sources *given, bool of_b, size_t first, size_t end,
-                        enum fetching what) {
+INLINE void fetch_range(const struct call *call, const struct sources *given, bool of_b, bool forms, size_t first,
+                        size_t end, enum fetching what) {
     const narc_shapes *const shapes = call->batch->shapes;
     const narc_index_column selection = given->selection, body = of_b ? given->pairs.b : given->pairs.a;
     const narc_index_column shape = of_b ? given->b.shape : given->a.shape;
@@ -136,6 +136,10 @@ INLINE void fetch_range(const struct call *call, const struct sources *given, bo
         const size_t own = body.base ? narc_index_at(body, number) : number;
         if (what == FETCH_BODIES)
             FETCH(narc_at(shape.base, shape.stride, own));
+        else if (forms && what == FETCH_HEADERS)
+            FETCH(&shapes->boxes[narc_index_at(shape, own)]);
+        else if (forms && shapes->fronts)
+            FETCH(&shapes->fronts[narc_index_at(shape, own)]);
         else if (what == FETCH_HEADERS)
             FETCH(&shapes->headers[narc_index_at(shape, own)]);
         else
@@ -146,20 +150,21 @@ INLINE void fetch_range(const struct call *call, const struct sources *given, bo
 /* What pairs read that come one block, two and three after a vector of them, the first of which is number `first`: the records
  * of pieces, the headers, the bodies; before the first one all up to there. A vector at a time, as the memory takes few
  * requests at once. */
-NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, size_t first) {
+NOINLINE void fetch_ahead(const struct call *call, const struct sources *given, bool of_b, bool forms, size_t first) {
     const size_t bodies = first + 3 * BLOCK, headers = first + 2 * BLOCK, pieces = first + BLOCK;
     HAS_EFFECT;
-    fetch_range(call, given, of_b, first > 0 ? bodies : 0, bodies + V_WIDTH, FETCH_BODIES);
-    fetch_range(call, given, of_b, first > 0 ? headers : 0, headers + V_WIDTH, FETCH_HEADERS);
-    fetch_range(call, given, of_b, first > 0 ? pieces : 0, pieces + V_WIDTH, FETCH_PIECES);
+    fetch_range(call, given, of_b, forms, first > 0 ? bodies : 0, bodies + V_WIDTH, FETCH_BODIES);
+    fetch_range(call, given, of_b, forms, first > 0 ? headers : 0, headers + V_WIDTH, FETCH_HEADERS);
+    fetch_range(call, given, of_b, forms, first > 0 ? pieces : 0, pieces + V_WIDTH, FETCH_PIECES);
 }
 
 /* Where the pairs of a call have pieces, and what became of them. */
 struct pieces_met {
     bool many;       /* are there MANY_RECORDS? */
     bool of_a, of_b; /* has a pair of the last block one? Of the first block: the first pair */
+    bool by_forms;   /* was one taken by its form? */
     bool fetches;    /* so they are asked for ahead: of B, or of A */
-    bool fetches_b;
+    bool fetches_b, fetches_forms;
     bool forms, formed; /* are pairs of forms looked for in this block; have there been any? */
     int tried, dropped; /* so many may have been dropped, and were */
     int asked, settled; /* the same of boxes and capsules on edges */
@@ -187,7 +192,18 @@ INLINE void begin_block_of_pieces(struct pieces_met *met, size_t block) {
     met->formed = false;
     met->fetches = met->many && (met->of_a || met->of_b);
     met->fetches_b = met->of_b;
-    met->of_a = met->of_b = false;
+    met->fetches_forms = met->by_forms;
+    met->of_a = met->of_b = met->by_forms = false;
+}
+
+/* Of pairs that were taken by their forms, the first is looked at. */
+INLINE void note_forms(const struct call *call, struct pieces_met *met, int32_t shape_a, int32_t shape_b) {
+    const narc_box_form *const forms = call->batch->shapes->boxes;
+    const bool of_a = forms[shape_a].info & NARC_HAS_FRONT, of_b = forms[shape_b].info & NARC_HAS_FRONT;
+    met->formed = true;
+    met->of_a = met->of_a || of_a;
+    met->of_b = met->of_b || of_b;
+    met->by_forms = met->by_forms || of_a || of_b;
 }
 
 INLINE void note_pieces(struct pieces_met *met, const vf item[FIELDS]) {
@@ -267,14 +283,17 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             if (NARC_PIECES && !LIKELY(!met.fetches))
-                fetch_ahead(call, &given, met.fetches_b, block + (size_t)k);
+                fetch_ahead(call, &given, met.fetches_b, met.fetches_forms, block + (size_t)k);
             const struct placement placement = place_pairs(call, &given, &indices, k, layout, true);
             vm asked = vm_front(n - k);
             if (course->take && !LIKELY(!call->boxes) && met.forms) {
                 const vm all = asked;
                 asked = course->take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
-                if (NARC_PIECES && !LIKELY(!call->pieces))
-                    met.formed = met.formed || vm_any(vm_and_not(all, asked));
+                const vm taken = vm_and_not(all, asked);
+                if (NARC_PIECES && !LIKELY(!call->pieces) && vm_any(taken)) {
+                    const int lane = k + FIND_LOWEST(vm_bits(taken));
+                    note_forms(call, &met, indices.shape_a[lane], indices.shape_b[lane]);
+                }
                 if (!vm_any(asked))
                     continue;
             }
