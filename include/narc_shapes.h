@@ -366,7 +366,8 @@ NARC_API narc_status narc_compute_union_mass(const narc_arc *arcs, const size_t 
  *
  * Whatever comes and goes, a store has at most four times the memory that its shapes needed when they needed most (or
  * room was reserved for), also while it moves them; and some KB. A shape needs some 40 bytes for each arc and 90 more;
- * a removed one needs nothing, an index that narc_add_shape_at() has left out 52 bytes. */
+ * a removed one needs nothing, an index that narc_add_shape_at() has left out 52 bytes. From the first piece of a chain on
+ * (narc_chains.h) each index takes 64 more. */
 typedef struct narc_shapes narc_shapes;
 
 /* What a store knows of a shape, bits of narc_shape_flags(). */

@@ -10,9 +10,8 @@
  * is less. So where p lies outside by two slacks, and by as much off the normals at both ends of the arc or the edge that
  * holds the foot, every sign of the formula is right (box/circles.inl). Where the foot lies by two slacks beyond an end of
  * the front, no contact is told.
- *   Of a concave arc the formula is a few lines (concave.inl). What a circle that far away, or that deep, has none with by
- * the circles around both is not asked: no such contact lies within the margin, or reaches the arc by the least of both
- * thicknesses. Other pairs are left.
+ *   Of a concave arc the formula is a few lines (concave.inl). The circles around both need not be asked: what they tell
+ * apart is further away than the margin, or deeper than twice the circle's radius. Other pairs are left.
  */
 #ifndef NARC_PIECE_CIRCLES_BESIDE_INL
 #define NARC_PIECE_CIRCLES_BESIDE_INL

@@ -767,6 +767,39 @@ TEST(adds_no_piece_where_one_is_used_most) {
     assert_int_equal(shapes->piece_count, 0);
 }
 
+/* What circles read of pieces is what their records say, wherever these went; other shapes have none. */
+static void expect_piece_forms(const narc_shapes *shapes) {
+    static const narc_piece_form none;
+    for (uint32_t k = 0; k < shapes->count; k++) {
+        const narc_shape_header *const header = &shapes->headers[k];
+        const narc_piece_form *const form = &shapes->fronts[k];
+        const bool is_piece = narc_has_shape(shapes, k) && narc_is_of_chain(header);
+        assert_int_equal((shapes->boxes[k].info & NARC_HAS_FRONT) != 0, is_piece);
+        if (!is_piece) {
+            assert_memory_equal(form, &none, sizeof none);
+            continue;
+        }
+        const narc_record *const arcs = narc_arcs_of(shapes, header);
+        const narc_stored_arc *arc[4];
+        for (size_t i = 0; i < 4; i++)
+            arc[i] = &arcs[(i + header->count - (header->first_arc & NARC_FIRST_ARC)) % header->count].arc;
+        const float *const normal[] = {&arc[1]->start_x, &arc[1]->end_x, &arc[2]->end_x};
+        assert_memory_equal(form->center_0, &arc[0]->center_x, sizeof form->center_0);
+        assert_memory_equal(form->center_1, &arc[1]->center_x, 3 * sizeof(float)); /* and the radius */
+        assert_memory_equal(form->center_2, &arc[2]->center_x, sizeof form->center_2);
+        assert_memory_equal(&shapes->boxes[k], &arc[3]->center_x, sizeof form->center_0);
+        assert_memory_equal(form->normal_1, normal[0], sizeof form->normal_1);
+        assert_memory_equal(form->normal_2, normal[1], sizeof form->normal_2);
+        assert_memory_equal(form->normal_3, normal[2], sizeof form->normal_3);
+        assert_memory_equal(&form->radius_2, &arc[2]->radius, sizeof(float));
+        assert_memory_equal(&form->thickness, &arcs[header->count].solid.thickness, sizeof(float));
+        assert_memory_equal(&shapes->boxes[k].radius, &header->bound_radius, sizeof(float));
+        assert_int_equal(form->info & 0xff, header->count);
+        assert_int_equal(form->info >> 8 & 0xff, header->first_arc & NARC_PIECE_MARKS);
+        assert_int_equal(form->info >> 24, header->extent_ratio);
+    }
+}
+
 /* Pieces come and go as shapes do, and are none that a list of arcs makes. */
 TEST(keeps_pieces_as_shapes) {
     static narc_chain_entry first[MOST], second[MOST];
@@ -797,6 +830,7 @@ TEST(keeps_pieces_as_shapes) {
     assert_int_equal(narc_replace_shape(shapes, first[run].shape, &ball, 1, NULL), NARC_OK);
     assert_int_equal(shapes->piece_count, shape_count - 1);
     assert_int_equal(narc_shape_flags(shapes, first[run].shape) & NARC_SHAPE_RUN, 0);
+    expect_piece_forms(shapes);
     narc_destroy_shapes(shapes);
     shapes = empty_store();
     add_ring(shapes, 6, first, &count);
@@ -804,9 +838,11 @@ TEST(keeps_pieces_as_shapes) {
         assert_int_equal(narc_remove_shape(shapes, first[k].shape, NULL), NARC_OK);
     assert_int_equal(shapes->piece_count, 0);
     assert_int_equal(shapes->removed_count, shapes->count);
+    expect_piece_forms(shapes);
     for (int k = 0; k < 40; k++) /* in their places, and with memory that moves */
         add_ring(shapes, 6 + (size_t)k, first, &count);
     assert_int_equal(shapes->piece_count + shapes->removed_count, shapes->count);
+    expect_piece_forms(shapes);
     narc_destroy_shapes(shapes);
 }
 
