@@ -522,12 +522,11 @@ gate() {
     trap 'exit 1' INT TERM HUP
     build_app dem dem -DNARC_BUILD_TESTS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
     check_style
-    test_app dem -E '^dem_case_(pile|hopper)$' # `dem cases` has them at full length
+    test_app dem -E '^dem_case_(pile|hopper|shear)$' # `dem cases` has them at full length
     # With so few trials the kernels' are those that the first half has run.
     NARC_TEST_TRIALS="$few_trials" ctest --preset ci -L 'slow|bench' \
         -E '^(package_meson_subproject|(broad_phase|rays|casts|thin_bodies|follow|ground_casts)_all)$' || fail "tests failed in build/ci"
-    # Python is tested where it is new enough, as in build/ci.
-    check_some asan "" "narc_tool example_world $([ ! -d build/ci/bindings/python/narc ] || echo python_modules)"
+    check_some asan "" "narc_tool example_world $([ ! -d build/ci/bindings/python/narc ] || echo python_modules)" # new enough a Python
     test_dem_with_sanitizers
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
