@@ -175,8 +175,8 @@ TEST(keeps_chains) {
     struct test_random random = test_random_named("chains there and back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
         const narc_arc disc = {0, 0, 1, 0, 6.283185307179586};
-        AUTO(free_at)
-        struct turtle open = walk_ground(&random, 200, 1.2), closed = walk_gear(3 + random_below(&random, 20), 1);
+        AUTO(free_at) struct turtle open = walk_ground(&random, 200, 1.2);
+        AUTO(free_at) struct turtle closed = walk_gear(3 + random_below(&random, 20), 1);
         for (size_t k = 0; k < closed.count; k++) {
             const double round = 6.283185307179586 * (double)random_below(&random, 2);
             closed.arcs[k].start -= round;

@@ -346,11 +346,10 @@ TEST(test_simplexes_of_a_batch) {
     struct test_random random = test_random_named("gjk simplexes");
     const struct scene *const scene = &corpora[0].scene;
     const size_t count = scene->pair_count, first = 64, size = count * sizeof(uint32_t);
-    narc_workers three;
-    narc_openmp_workers(3, &three);
-    AUTO(free_at)
-    uint32_t *const right = create_simplexes(count), *const start = create_simplexes(count),
-                    *selection = make_junk(size);
+    const narc_workers three = openmp_workers(3);
+    AUTO(free_at) uint32_t *const right = create_simplexes(count);
+    AUTO(free_at) uint32_t *const start = create_simplexes(count);
+    AUTO(free_at) uint32_t *selection = make_junk(size);
     for (uint32_t k = 0; k < count; k++) {
         start[k] = random_below(&random, 4) ? (uint32_t)random_bits(&random) : 0;
         selection[k] = (uint32_t)count - 1 - k;

@@ -227,8 +227,7 @@ static void check_separations(const struct few *few, const narc_step_result *r) 
 TEST(workers_share_a_step) {
     AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 600, NULL);
     struct test_random random = test_random_named("shared steps");
-    narc_workers workers;
-    narc_openmp_workers(3, &workers);
+    const narc_workers workers = openmp_workers(3);
     narc_contacts *const alone = few->contacts, *const shared = make_contacts(NARC_MANIFOLD_ROWS, NULL);
     const uint32_t box = store_shape(few->store, box_of(0.9, 0.9, 0));
     size_t pairs = 0;

@@ -79,8 +79,7 @@ static void check_world(struct test_random random, bool ground, size_t steps) {
     static struct memory memory;
     static struct given given;
     AUTO(destroy_step_world_at) struct step_world *const w = make_step_world(random, ground);
-    narc_workers workers;
-    narc_openmp_workers(3, &workers);
+    const narc_workers workers = openmp_workers(3);
     narc_contacts *const all = make_contacts(NARC_MANIFOLD_ROWS, NULL), *const listed = make_contacts(0, NULL),
                          *const shared = make_contacts(0, NULL), *const own = make_contacts(0, NULL),
                          *const loaded = make_contacts(0, NULL), *const within = make_within(),

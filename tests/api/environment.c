@@ -262,8 +262,7 @@ TEST(test_names) {
         assert_string_equal(narc_kernel_name(k), kernels[k]);
     assert_null(narc_kernel_name(kernel_count));
     assert_null(narc_kernel_name(SIZE_MAX));
-    narc_workers workers;
-    narc_openmp_workers(0, &workers);
+    const narc_workers workers = openmp_workers(0);
     assert_true(workers.count >= 1);
     assert_string_equal(narc_status_name(NARC_OK), "NARC_OK");
     assert_string_equal(narc_status_name(NARC_ERROR_ISA_UNSUPPORTED), "NARC_ERROR_ISA_UNSUPPORTED");

@@ -45,8 +45,7 @@ static void check_call(const struct question *question, struct call call, narc_s
                        const char *const texts[], size_t text_count) {
     AUTO(free_at) struct outputs *out = make_junk(sizeof *out);
     for (unsigned threads = 0; threads < 3; threads++) {
-        narc_workers workers;
-        narc_openmp_workers(threads, &workers);
+        const narc_workers workers = openmp_workers(threads);
         call.query.workers = &workers;
         narc_error error = {0};
         const narc_status status = run(question, &call, out, &error);
@@ -214,8 +213,7 @@ TEST(test_first_wrong_pair) {
     AUTO(free_at) uint8_t *outcomes = make_junk(MANY);
     scene.pairs[8111].a = scene.pairs[4055].b = scene.pairs[4056].a = 5005;
     for (size_t k = 0; k < 6 * question_count; k++) {
-        narc_workers workers;
-        narc_openmp_workers((unsigned)(k % 6), &workers);
+        const narc_workers workers = openmp_workers((unsigned)(k % 6));
         const narc_query query = {.workers = &workers};
         size_t found;
         const struct asked asked = {shapes, &bodies, &pairs, &query, rows, MANY, &found, outcomes};
@@ -376,8 +374,7 @@ TEST(test_no_pairs) {
     f.pairs = (narc_pairs){0};
     for (size_t k = 0; k < 6 * question_count; k++) {
         const struct question *question = &questions[k / 6];
-        narc_workers workers;
-        narc_openmp_workers((unsigned)(k % 3), &workers);
+        const narc_workers workers = openmp_workers((unsigned)(k % 3));
         f.call.query = (narc_query){.dense = k % 2, .workers = &workers};
         f.bodies.count = k % 6 < 3 ? 0 : BODIES;
         out->skipped = 12345;
@@ -409,8 +406,7 @@ TEST(test_capacity) {
         const size_t fixed[] = {0, 1, 63, 64, 65, all.count - 1, all.count};
         assert_true(all.count > 100);
         for (size_t trial = 0; trial < 24; trial++) {
-            narc_workers workers;
-            narc_openmp_workers((unsigned)(trial % 4), &workers);
+            const narc_workers workers = openmp_workers((unsigned)(trial % 4));
             const size_t capacity = trial < 7 ? fixed[trial] : random_below(&random, all.count);
             AUTO(guard_release_at) void *shorter = guard_allocate(answer_size(question, capacity));
             size_t skipped = 12345, needed;

@@ -24,8 +24,7 @@ static narc_pairs view(halves *pairs, size_t count) {
 
 static void match(narc_broad_phase *broad, const narc_pairs *olds, const narc_pairs *news, unsigned threads,
                   uint32_t *out) {
-    narc_workers workers;
-    narc_openmp_workers(threads, &workers);
+    const narc_workers workers = openmp_workers(threads);
     assert_int_equal(narc_match_pairs(broad, olds, news, &workers, out), NARC_OK);
 }
 

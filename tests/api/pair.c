@@ -30,8 +30,7 @@ static void check_same_answers(const struct scene *scene, const narc_bodies *bod
     static const uint32_t selection[] = {7, PAIRS - 1, 0, 300, 64, 63, 1};
     const narc_bodies right_bodies = scene_bodies(scene);
     const narc_pairs right_pairs = scene_pairs(scene);
-    narc_workers workers;
-    narc_openmp_workers(2, &workers);
+    const narc_workers workers = openmp_workers(2);
     const narc_query queries[] = {
         {.margin = INFINITY},
         {.margin = 0.1f, .workers = &workers},

@@ -328,8 +328,7 @@ static void check_step(reference *r, const body *bodies, size_t count, bool with
     const bool renew = find_expected(r, bodies, count);
     const narc_pair_list *first = NULL;
     for (size_t t = 0; t < OBJECTS; t++) {
-        narc_workers workers;
-        narc_openmp_workers(thread_counts[t], &workers);
+        const narc_workers workers = openmp_workers(thread_counts[t]);
         size_t none;
         step.workers = &workers;
         if (t == WHOLE)
@@ -579,8 +578,8 @@ TEST(finds_pairs_of_few_that_move) {
 /* Bodies that move by the last bit of a number, with a skin of some of them: as if no pose were known. */
 TEST(notices_the_last_bit) {
     for (int number = 0; number < 4; number++) {
-        AUTO(narc_destroy_broad_phase_at)
-        narc_broad_phase *broad = create_broad_phase(NULL), *other = create_broad_phase(NULL);
+        AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(NULL);
+        AUTO(narc_destroy_broad_phase_at) narc_broad_phase *other = create_broad_phase(NULL);
         body two[] = {body_at(1, 1, LONG), body_at(2, 2, LONG)};
         in_singles = number < 2;
         const narc_bodies bodies = view(two, 2);
@@ -687,8 +686,7 @@ TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady lists");
     struct ledger ledger = {0};
     AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
-    narc_workers workers;
-    narc_openmp_workers(2, &workers);
+    const narc_workers workers = openmp_workers(2);
     const narc_bodies all = view(bodies, COUNT);
     const narc_step step = {
         .bodies = &all, .margin = 0.5f, .skin = 0.125f, .id = NARC_COLUMN(bodies, id), .workers = &workers};

@@ -58,8 +58,7 @@ static size_t arc_count, count, skipped;
 #define TRUE(expression) ((expression) ? NARC_OK : NARC_ERROR_ARGUMENT)
 
 static narc_status count_workers(void) {
-    narc_workers workers;
-    narc_openmp_workers(0, &workers);
+    const narc_workers workers = openmp_workers(0);
     return TRUE(workers.count);
 }
 

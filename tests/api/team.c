@@ -26,8 +26,7 @@ static narc_contact expected[PAIRS];
 static size_t expected_count;
 
 static size_t ask(unsigned threads, narc_contact *rows) {
-    narc_workers workers;
-    narc_openmp_workers(threads, &workers);
+    const narc_workers workers = openmp_workers(threads);
     narc_bodies bodies;
     narc_view_bodies(body, BODIES, &bodies);
     const narc_pairs pairs = {.count = PAIRS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
@@ -86,8 +85,7 @@ static void count_task(void *argument, unsigned index) {
 }
 
 TEST(runs_each_task_once) {
-    narc_workers workers;
-    narc_openmp_workers(4, &workers);
+    const narc_workers workers = openmp_workers(4);
     for (unsigned count = 0; count <= 300 && workers.run; count++) {
         counts c = {0};
         workers.run(workers.context, count, count_task, &c);
@@ -121,8 +119,7 @@ static void stop(int number) {
 }
 
 TEST(waits_for_nobody_who_has_not_begun) {
-    narc_workers workers;
-    narc_openmp_workers(2, &workers);
+    const narc_workers workers = openmp_workers(2);
     meeting m = {.begun = 0};
     char byte = 0;
     if (!workers.run || getenv("OMP_THREAD_LIMIT"))

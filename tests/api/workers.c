@@ -275,8 +275,7 @@ TEST(gives_the_same_bytes_whoever_works) {
                 fail_msg("answer %zu is that of one thread, of %u workers", answer, count);
         assert_false(watched.wrong);
     }
-    narc_workers built_in;
-    narc_openmp_workers(3, &built_in);
+    const narc_workers built_in = openmp_workers(3);
     const answers found = ask(BODIES, &built_in);
     assert_memory_equal(&found, &expected, sizeof found);
 }

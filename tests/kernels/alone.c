@@ -68,8 +68,7 @@ TEST(rays_hit_one_body_as_by_an_index) {
         AUTO(destroy_room) struct room room = create_room(&random, precision, BODIES, 6);
         AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, RAYS, 6);
         const narc_bodies bodies = scene_bodies(&room.scene);
-        narc_workers workers;
-        narc_openmp_workers(3, &workers);
+        const narc_workers workers = openmp_workers(3);
         uint32_t body[RAYS];
         size_t hits = 0;
         rays[5].motion_x = NAN;
@@ -145,8 +144,7 @@ TEST(points_are_within_where_separations_are_below_0) {
         const narc_rays view = view_rays(at, count);
         const narc_points points = {.count = count, .x = view.x, .y = view.y};
         const narc_index_column column = {trial % 5 ? body : &body[count - 1], trial % 5 ? sizeof *body : 0};
-        narc_workers workers;
-        narc_openmp_workers(3, &workers);
+        const narc_workers workers = openmp_workers(3);
         AUTO(guard_release_at) narc_distance *const rows = guard_allocate(count * sizeof *rows);
         AUTO(guard_release_at) uint64_t *const bits = guard_allocate(NARC_BIT_WORDS(count) * sizeof *bits);
         narc_error error;

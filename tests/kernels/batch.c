@@ -184,8 +184,7 @@ static void check_places(const struct place *places, const unsigned char *right,
  * with one margin and with margins of the pairs. */
 static void check_rows(struct test_random *random, const struct batch *batch, float margin, unsigned threads) {
     const size_t count = batch->scene->pair_count, size = batch->question->row_size;
-    narc_workers workers;
-    narc_openmp_workers(threads, &workers);
+    const narc_workers workers = openmp_workers(threads);
     const narc_query plain = {.margin = margin};
     AUTO(free_at) unsigned char *listed = make_junk(count * size);
     AUTO(free_at) uint32_t *selection = make_junk(count * sizeof *selection);
@@ -311,8 +310,7 @@ TEST(test_selected_bits) {
     for (size_t round = 0; round < test_trials(20); round++) {
         const size_t count = 1 + random_below(&random, 5000);
         AUTO(destroy_scene) struct scene scene = make_scene("selected bits", count);
-        narc_workers workers;
-        narc_openmp_workers((unsigned)(round % 4), &workers);
+        const narc_workers workers = openmp_workers((unsigned)(round % 4));
         AUTO(free_at) uint32_t *selection = make_junk(count * sizeof *selection);
         const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
         uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);

@@ -266,8 +266,7 @@ static bool has_none(const struct question *question, const struct answer *answe
 
 static void check_skipped(const struct scene *scene, const struct question *question, const bool *broken,
                           size_t expected, unsigned threads) {
-    narc_workers workers;
-    narc_openmp_workers(threads, &workers);
+    const narc_workers workers = openmp_workers(threads);
     for (size_t m = 0; m < margins_of(question); m++) {
         AUTO(destroy_answer)
         struct answer answer = ask_scene(question, scene, (narc_query){.margin = margins[m], .workers = &workers});

@@ -75,8 +75,7 @@ static void check_box(const struct reference_body *body, const struct question *
 
 static narc_box *compute(const struct scene *scene, const narc_box_options *options, unsigned threads) {
     const narc_bodies bodies = scene_bodies(scene);
-    narc_workers workers;
-    narc_openmp_workers(threads, &workers);
+    const narc_workers workers = openmp_workers(threads);
     narc_box_options all = options ? *options : (narc_box_options){0};
     narc_box *boxes = guard_allocate(bodies.count * sizeof *boxes);
     narc_error error;
@@ -368,8 +367,7 @@ TEST(same_bits_whatever_the_split) {
         for (size_t count = 1; count <= MOST; count += count < 70 ? 1 : 71) {
             AUTO(guard_release_at) narc_box *const boxes = guard_allocate(count * sizeof *boxes);
             const size_t first = random_below(&random, count), rest = count - first;
-            narc_workers workers;
-            narc_openmp_workers((unsigned)random_below(&random, 5), &workers);
+            const narc_workers workers = openmp_workers((unsigned)random_below(&random, 5));
             size_t skipped = 99;
             const narc_box_options options = {.margin = 0.01f,
                                               .out_skipped = &skipped,

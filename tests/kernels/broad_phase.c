@@ -53,10 +53,9 @@ static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t c
     struct pair_list expected = all_pairs(boxes, count, filter);
     AUTO(guard_release_at) narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
     for (size_t t = 0; t < sizeof counts / sizeof counts[0]; t++) {
-        narc_workers workers;
-        narc_openmp_workers(counts[t], &workers);
-        AUTO(guard_release_at)
-        uint32_t *a = guard_allocate(expected.count * sizeof *a), *b = guard_allocate(expected.count * sizeof *b);
+        const narc_workers workers = openmp_workers(counts[t]);
+        AUTO(guard_release_at) uint32_t *a = guard_allocate(expected.count * sizeof *a);
+        AUTO(guard_release_at) uint32_t *b = guard_allocate(expected.count * sizeof *b);
         size_t found = 12345;
         narc_error error;
         assert_int_equal(
@@ -236,8 +235,7 @@ TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
     struct ledger ledger = {0};
     AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = create_broad_phase(&ledger);
-    narc_workers workers;
-    narc_openmp_workers(2, &workers);
+    const narc_workers workers = openmp_workers(2);
     enum { COUNT = 5000, CAPACITY = 100000 };
     AUTO(free_at) narc_box *boxes = malloc(COUNT * sizeof *boxes);
     AUTO(free_at) uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b);

@@ -176,9 +176,8 @@ static void ask_scene(struct trial *t) {
     const narc_step_result *r = NULL;
     AUTO(narc_destroy_contacts_at) narc_contacts *contacts = NULL;
     size_t broken = 0, skipped = 0;
-    AUTO(narc_destroy_index_at)
-    narc_index *const index = index_bodies(t->store, &tried, NULL, boxes), *const mate_index = index_bodies(
-                                                                               t->store, &mates, NULL, mate_boxes);
+    AUTO(narc_destroy_index_at) narc_index *const index = index_bodies(t->store, &tried, NULL, boxes);
+    AUTO(narc_destroy_index_at) narc_index *const mate_index = index_bodies(t->store, &mates, NULL, mate_boxes);
     assert_int_equal(narc_create_contacts(NULL, &contacts, NULL), NARC_OK);
     assert_int_equal(narc_update_contacts(contacts, t->store, &step, &r, NULL), NARC_OK);
     for (size_t k = 0; k < r->count; k++) {

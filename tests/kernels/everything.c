@@ -27,8 +27,7 @@ static void run_backwards(void *context, unsigned count, void (*task)(void *argu
 /* Scalar in one call decides. Returns its answers. */
 static struct answers check_bits(const struct everything *e, const char *how) {
     static const narc_workers backwards = {NULL, 3, run_backwards};
-    narc_workers openmp;
-    narc_openmp_workers(4, &openmp);
+    const narc_workers openmp = openmp_workers(4);
     test_use_isa("scalar");
     struct answers right = ask_everything(e, NULL);
     test_use_isa(test_isa());

@@ -389,11 +389,10 @@ TEST(test_rows_are_kept) {
         const size_t size = q.manifolds ? sizeof(narc_manifold) : sizeof(narc_contact), stride = size + q.more;
         make_world(&world, &random, random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32, SMOOTH_AND_OTHERS, 1,
                    random_below(&random, 2), 0);
-        AUTO(guard_release_at)
-        char *const rows = guard_allocate(PAIRS * stride), *const same = guard_allocate(PAIRS * stride);
-        AUTO(guard_release_at)
-        narc_kept_row *const kept = guard_allocate(PAIRS * sizeof *kept), *const right =
-                                                                              guard_allocate(PAIRS * sizeof *kept);
+        AUTO(guard_release_at) char *const rows = guard_allocate(PAIRS * stride);
+        AUTO(guard_release_at) char *const same = guard_allocate(PAIRS * stride);
+        AUTO(guard_release_at) narc_kept_row *const kept = guard_allocate(PAIRS * sizeof *kept);
+        AUTO(guard_release_at) narc_kept_row *const right = guard_allocate(PAIRS * sizeof *kept);
         uint32_t list[PAIRS], left[PAIRS], right_left[PAIRS];
         size_t touching = 0, found;
         narc_error error;

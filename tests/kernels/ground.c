@@ -105,8 +105,7 @@ static const narc_contact *find_deepest_row(const struct contacts *rows, size_t 
 static void check_forms(const struct ground_bodies *g, const struct contacts *right) {
     const struct scene *scene = &g->scene;
     const size_t count = scene->pair_count, size = right->count * sizeof *right->rows;
-    narc_workers two;
-    narc_openmp_workers(2, &two);
+    const narc_workers two = openmp_workers(2);
     struct contacts rows = ask(g, &(narc_query){.margin = margin, .workers = &two});
     assert_int_equal(rows.count, right->count);
     assert_memory_equal(rows.rows, right->rows, size);
@@ -220,8 +219,8 @@ static void check_formula(const struct ground_bodies *g, const struct contacts *
     }
     assert_int_equal(row, right->count);
     assert_int_equal(all + more, right->count);
-    AUTO(free_at)
-    uint64_t *bits = scene_overlaps(&g->scene), *plain = make_junk(NARC_BIT_WORDS(pairs.count) * sizeof *plain);
+    AUTO(free_at) uint64_t *bits = scene_overlaps(&g->scene);
+    AUTO(free_at) uint64_t *plain = make_junk(NARC_BIT_WORDS(pairs.count) * sizeof *plain);
     narc_kernels_plain.overlap(&batch, 0, pairs.count, &skipped, plain);
     assert_memory_equal(bits, plain, NARC_BIT_WORDS(pairs.count) * sizeof *bits);
 }

@@ -245,8 +245,8 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
     struct test_random random = test_random_named("workers of an index");
     AUTO(free_at) narc_box *const boxes = malloc(COUNT * sizeof *boxes), *const moved = malloc(COUNT * sizeof *moved);
     AUTO(free_at) uint64_t *const category = malloc(COUNT * sizeof *category);
-    AUTO(free_at)
-    uint32_t *const changed = malloc(COUNT * sizeof *changed), *const world = malloc(COUNT * sizeof *world);
+    AUTO(free_at) uint32_t *const changed = malloc(COUNT * sizeof *changed);
+    AUTO(free_at) uint32_t *const world = malloc(COUNT * sizeof *world);
     AUTO(narc_destroy_index_at) narc_index *const expected = create_index(NULL), *const index = create_index(NULL);
     fill_boxes(&random, boxes, COUNT);
     fill_boxes(&random, moved, COUNT);
@@ -257,8 +257,7 @@ TEST(is_the_same_for_all_workers_and_instruction_sets) {
     for (uint32_t trial = 0; trial < 4; trial++)
         for (unsigned workers = 1; workers <= 17; workers += workers < 3 ? 2 : 14) {
             const size_t count = COUNT - 17 * trial;
-            narc_workers some;
-            narc_openmp_workers(workers, &some);
+            const narc_workers some = openmp_workers(workers);
             narc_index_options options = {.category = {trial & 2 ? category : NULL, 8},
                                           .fast = trial & 1,
                                           .world = {trial & 2 ? world : NULL, 4}};

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * metamorphic.c - the same pair seen otherwise: turned, scaled. The answer must follow. everything.c has it moved, pairs.c
- * swapped.
+ * metamorphic.c - the same pair scaled: the answer must follow. everything.c has it moved, pairs.c swapped.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -27,37 +26,6 @@ static struct scene make_scene(const char *name) {
         round_position(&scene.bodies[k], NARC_FLOAT32);
     }
     return scene;
-}
-
-static double bound_of(const struct scene *scene, size_t k) {
-    struct reference_body a = scene_reference(scene, scene->pairs[k].a), b = scene_reference(scene, scene->pairs[k].b);
-    return separation_bound(&a, &b);
-}
-
-/* By any angle. Turning the rounded positions rounds them again, hence doubles. Both answers are within one bound of the
- * same exact value. */
-TEST(test_rotate) {
-    AUTO(destroy_scene) struct scene scene = make_scene("rotate");
-    struct test_random random = test_random_named("angle");
-    const double angle = random_between(&random, -PI, PI), c = cos(angle), s = sin(angle);
-    AUTO(free_at) struct contacts before = scene_contacts(&scene, INFINITY);
-    AUTO(free_at) uint64_t *const bits = scene_overlaps(&scene);
-    scene.precision = NARC_FLOAT64;
-    for (size_t k = 0; k < scene.body_count; k++) {
-        struct body *const body = &scene.bodies[k], was = *body;
-        body->x = c * was.x - s * was.y;
-        body->y = s * was.x + c * was.y;
-        body->cosine = (float)(c * (double)was.cosine - s * (double)was.sine);
-        body->sine = (float)(s * (double)was.cosine + c * (double)was.sine);
-    }
-    AUTO(free_at) struct contacts after = scene_contacts(&scene, INFINITY);
-    AUTO(free_at) uint64_t *const turned = scene_overlaps(&scene);
-    assert_int_equal(before.count, after.count);
-    for (size_t k = 0; k < after.count; k++) {
-        const double gap = (double)before.rows[k].separation, bound = 2 * bound_of(&scene, k);
-        assert_true(fabs(gap - (double)after.rows[k].separation) <= bound);
-        assert_true(bit_is_set(bits, k) == bit_is_set(turned, k) || fabs(gap) <= bound);
-    }
 }
 
 /* A power of two changes exponents only: lengths follow, directions stay to the last bit. `world`: of all; else a scale says

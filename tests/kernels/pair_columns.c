@@ -69,9 +69,8 @@ TEST(test_shifts) {
     struct test_random random = test_random_named("shifts");
     for (int precision = 0; precision < 2; precision++) {
         AUTO(destroy_scene) struct scene scene = make_random_scene(&random, (narc_precision)precision, BODIES, PAIRS);
-        AUTO(guard_release_at)
-        float *const shift_x = guard_allocate(PAIRS * sizeof *shift_x), *const shift_y =
-                                                                            guard_allocate(PAIRS * sizeof *shift_y);
+        AUTO(guard_release_at) float *const shift_x = guard_allocate(PAIRS * sizeof *shift_x);
+        AUTO(guard_release_at) float *const shift_y = guard_allocate(PAIRS * sizeof *shift_y);
         for (size_t k = 0; k < BODIES && precision; k++) {
             scene.bodies[k].x += 1e9;
             scene.bodies[k].y -= 1e9;

@@ -51,9 +51,9 @@ static float random_angle(struct test_random *random) {
 TEST(test_accuracy) {
     struct test_random random = test_random_named("pose accuracy");
     size_t count = test_trials(200000);
-    AUTO(free_at)
-    float *angles = malloc(count * sizeof(float)), *cosines = malloc(count * sizeof(float)),
-          *sines = malloc(count * sizeof(float));
+    AUTO(free_at) float *angles = malloc(count * sizeof(float));
+    AUTO(free_at) float *cosines = malloc(count * sizeof(float));
+    AUTO(free_at) float *sines = malloc(count * sizeof(float));
     for (size_t k = 0; k < count; k++)
         angles[k] = random_angle(&random);
     assert_int_equal(narc_compute_poses(angles, count, cosines, sines, NULL), NARC_OK);
@@ -78,8 +78,9 @@ static void check_same_numbers(const float *expected, const float *values, size_
 
 static void check_count(struct test_random *random, size_t count) {
     size_t size = count * sizeof(float);
-    AUTO(guard_release_at)
-    float *angles = guard_allocate(size), *cosines = guard_allocate(size), *sines = guard_allocate(size);
+    AUTO(guard_release_at) float *angles = guard_allocate(size);
+    AUTO(guard_release_at) float *cosines = guard_allocate(size);
+    AUTO(guard_release_at) float *sines = guard_allocate(size);
     AUTO(guard_release_at) float *expected_cosines = guard_allocate(size), *expected_sines = guard_allocate(size);
     for (size_t k = 0; k < count; k++)
         angles[k] = random_angle(random);

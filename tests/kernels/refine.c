@@ -115,8 +115,7 @@ TEST(test_double_rotations_and_shifts) {
         count_row(&a, &b, &rows.rows[k], &fine[k], &counts);
     }
     check_counts(&counts);
-    narc_workers workers;
-    narc_openmp_workers(3, &workers);
+    const narc_workers workers = openmp_workers(3);
     with.workers = &workers;
     assert_int_equal(narc_refine_contacts(scene.store, &all, &pairs, &with, rows.rows, rows.count, again, NULL),
                      NARC_OK);

@@ -409,8 +409,7 @@ TEST(names_the_first_wrong_shape) {
     many.shape = NARC_ARRAY(shape);
     shape[70000] = shape[70001] = shape[150000] = 12345;
     for (unsigned threads = 1; threads < 5; threads++) {
-        narc_workers workers;
-        narc_openmp_workers(threads, &workers);
+        const narc_workers workers = openmp_workers(threads);
         narc_box_options options = {.workers = &workers};
         REFUSED(INDEX, "body 70000", FIND(store, &many, &options, boxes));
         assert_int_equal(error.index, 70000);
@@ -456,8 +455,7 @@ TEST(refuses_parts) {
     owners[80000] = UINT32_MAX;
     owners[70000] = BODIES;
     for (unsigned threads = 1; threads < 4; threads++) {
-        narc_workers workers;
-        narc_openmp_workers(threads, &workers);
+        const narc_workers workers = openmp_workers(threads);
         REFUSED(INDEX, "part 70000: the owner is 30, but there are 30",
                 narc_place_parts(&bodies, &many, &of_many, &workers, rows, &error));
         assert_int_equal(error.index, 70000);

@@ -18,8 +18,7 @@ TEST(counts_pairs_that_are_too_many) {
     AUTO(narc_destroy_index_at) narc_index *index;
     struct ledger ledger = {0};
     const narc_allocator allocator = ledger_allocator(&ledger);
-    narc_workers workers;
-    narc_openmp_workers(2, &workers);
+    const narc_workers workers = openmp_workers(2);
     assert_int_equal(narc_create_index(&allocator, &index), NARC_OK);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){1, 1, 2, 2};

@@ -53,8 +53,7 @@ static void check_rows(const struct pair_list *expected, const narc_pairs *pairs
 }
 
 static void ask(narc_index *index, const struct question *q, unsigned workers, narc_pairs *out_pairs) {
-    narc_workers some;
-    narc_openmp_workers(workers, &some);
+    const narc_workers some = openmp_workers(workers);
     const narc_owners owners = {.owner = {q->owner, sizeof *q->owner},
                                 .ignored = {q->ignored_owner, sizeof *q->ignored_owner}};
     const narc_index_query query = {.mask = {q->mask, sizeof *q->mask},
@@ -229,9 +228,8 @@ TEST(reads_columns_with_any_stride) {
     static narc_box boxes[COUNT], queries[ASKED];
     static uint64_t category[COUNT], mask[ASKED];
     static uint32_t ignored[ASKED];
-    AUTO(guard_release_at)
-    struct row *const bodies = guard_allocate(COUNT * sizeof *bodies), *const asked =
-                                                                           guard_allocate(ASKED * sizeof *asked);
+    AUTO(guard_release_at) struct row *const bodies = guard_allocate(COUNT * sizeof *bodies);
+    AUTO(guard_release_at) struct row *const asked = guard_allocate(ASKED * sizeof *asked);
     for (size_t k = 0; k < COUNT; k++) {
         boxes[k] = random_box(&random, 3, 0, 2);
         bodies[COUNT - 1 - k].word = category[k] = (uint64_t)1 << random_below(&random, 3) * 21;

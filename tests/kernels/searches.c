@@ -284,8 +284,7 @@ static void check_kind(struct test_random *random, struct search *s, const struc
     narc_inside inside = NARC_INSIDE_STOPS;
     char *all = ask_one_by_one(s, kind, inside);
     for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
-        narc_workers workers;
-        narc_openmp_workers((unsigned)k % 4, &workers);
+        const narc_workers workers = openmp_workers((unsigned)k % 4);
         const bool categories = k % 5 < 3;
         struct options o = options[k];
         narc_index_query search = {.workers = &workers};

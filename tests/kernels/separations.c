@@ -34,8 +34,7 @@ static size_t check_separations(const narc_shapes *store, const narc_bodies *bod
     AUTO(guard_release_at) float *const strided = guard_allocate(pairs->count * STRIDE * sizeof *strided);
     size_t told = 0, skipped = 0, contacts_skipped = 0;
     for (unsigned threads = 1; threads <= 3; threads++) {
-        narc_workers workers;
-        narc_openmp_workers(threads, &workers);
+        const narc_workers workers = openmp_workers(threads);
         AUTO(guard_release_at) float *const found = guard_allocate(pairs->count * sizeof *found);
         query.workers = &workers;
         query.row_stride = 0;
@@ -99,8 +98,8 @@ TEST(test_ground) {
         for (size_t k = 0; k < count; k++)
             pieces[k] =
                 (narc_body){.x = entries[k].x, .y = entries[k].y, .cosine = 1, .scale = 1, .shape = entries[k].shape};
-        AUTO(free_at)
-        uint32_t *const a = malloc(RIDERS * count * sizeof *a), *const b = malloc(RIDERS * count * sizeof *b);
+        AUTO(free_at) uint32_t *const a = malloc(RIDERS * count * sizeof *a);
+        AUTO(free_at) uint32_t *const b = malloc(RIDERS * count * sizeof *b);
         narc_body riders[RIDERS];
         for (uint32_t k = 0; k < RIDERS; k++) {
             const struct shape shape = make_rider(&random, &chain, family);
@@ -130,8 +129,8 @@ TEST(test_some_of_a_batch) {
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     AUTO(free_at) float *const all = find_expected(scene.store, &bodies, &pairs, &(narc_query){.margin = INFINITY});
-    AUTO(free_at)
-    float *const found = make_junk(pairs.count * sizeof *found), *const junk = make_junk(pairs.count * sizeof *junk);
+    AUTO(free_at) float *const found = make_junk(pairs.count * sizeof *found);
+    AUTO(free_at) float *const junk = make_junk(pairs.count * sizeof *junk);
     uint32_t chosen[CHOSEN];
     for (uint32_t k = 0; k < CHOSEN; k++)
         chosen[k] = 7 * (CHOSEN - 1 - k) + 1;

@@ -352,8 +352,8 @@ static narc_shapes *make_ground_store(struct test_random *random) {
 
 TEST(saves_pieces_of_chains) {
     struct test_random random = test_random_named("pieces"), again = random;
-    AUTO(narc_destroy_shapes_at)
-    narc_shapes *const shapes = make_ground_store(&random), *const loaded = save_and_load(shapes);
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = make_ground_store(&random);
+    AUTO(narc_destroy_shapes_at) narc_shapes *const loaded = save_and_load(shapes);
     AUTO(narc_destroy_shapes_at)
     narc_shapes *const same = make_ground_store(&again); /* chains are divided into the same bits */
     assert_int_equal(loaded->piece_count, narc_count_shapes(shapes) - 4);

@@ -177,8 +177,7 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
     }
     for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
         narc_query query = {.margin = margins[m], .flat_angle = flats[random_below(random, 6)]};
-        narc_workers workers;
-        narc_openmp_workers((unsigned)random_below(random, 3), &workers);
+        const narc_workers workers = openmp_workers((unsigned)random_below(random, 3));
         query.second_margin = random_below(random, 2) ? 0 : 0.1f;
         query.workers = &workers;
         if (m == 1)

@@ -95,8 +95,7 @@ static void run_tasks(void *context, unsigned task_count, void (*run)(void *argu
 void run_on_stacks(const struct stack_call *calls, size_t call_count, size_t promised,
                    void (*set_workers)(const narc_workers *workers)) {
     const narc_workers tasks = {.count = 3, .run = run_tasks};
-    narc_workers openmp;
-    narc_openmp_workers(3, &openmp);
+    const narc_workers openmp = openmp_workers(3);
     const narc_workers *const workers[] = {NULL, &openmp, &tasks};
     stack_size = promised;
     call_stack = map_stack();

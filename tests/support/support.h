@@ -56,6 +56,13 @@ size_t test_trials(size_t base);
 /* Makes `name` the instruction set of all calls that follow; fails the test if that can't be done. */
 void test_use_isa(const char *name);
 
+/* narc_openmp_workers() as a value. */
+static inline narc_workers openmp_workers(unsigned count) {
+    narc_workers workers;
+    narc_openmp_workers(count, &workers);
+    return workers;
+}
+
 /* A stream of random numbers (a 64-bit counter put through a mixing function), the same on every machine. */
 struct test_random {
     uint64_t state;

@@ -42,8 +42,8 @@ TEST(test_collision_across_borders) {
                                        {15.65, 8, 100, 0}, {2.8, 8, -100, 0}, {15.76, 1.72, 90, -90}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         const double *p = places[i];
-        AUTO(dem_destroy)
-        dem d = collide_at(p[0], p[1], true, p[2], p[3]), reference = collide_at(p[0], p[1], false, p[2], p[3]);
+        AUTO(dem_destroy) dem d = collide_at(p[0], p[1], true, p[2], p[3]);
+        AUTO(dem_destroy) dem reference = collide_at(p[0], p[1], false, p[2], p[3]);
         size_t crossings = 0, contacts = 0;
         for (int s = 0; s < 1000; s++) {
             const int32_t before = d.bodies[0].cell_x + d.bodies[0].cell_y;

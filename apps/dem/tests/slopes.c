@@ -77,8 +77,8 @@ TEST(test_grains_slide) {
 /* Rolling friction above tan(angle) holds a disc (its torque can be mu_r R m g cos, gravity's is m g sin R), and below
  * it takes away its share. */
 TEST(test_rolling_friction) {
-    AUTO(dem_destroy)
-    dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false), slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
+    AUTO(dem_destroy) dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false);
+    AUTO(dem_destroy) dem slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
     step(&held, 20000);
     step(&slower, 10000); /* until the springs are loaded */
     const double before = slower.bodies[0].velocity.x;
