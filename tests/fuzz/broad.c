@@ -80,17 +80,16 @@ static void ask_pairs(const void *question, const narc_workers *workers, void *o
     const struct world *const w = question;
     struct list *const list = out_list;
     const narc_pair_filter filter = filter_of(w);
-    narc_broad_phase *broad = NULL;
+    AUTO(narc_destroy_broad_phase_at) narc_broad_phase *broad = NULL;
     memset(list, 0, sizeof *list);
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     assert_int_equal(narc_find_pairs(broad, w->boxes, w->count, &filter, workers, list->a, list->b, 0, MOST * MOST,
                                      &list->count, NULL),
                      NARC_OK);
-    narc_destroy_broad_phase(broad);
 }
 
 static void check_pairs(const struct world *w) {
-    struct list *const list = ask_everywhere(ask_pairs, w, sizeof *list, NULL);
+    AUTO(free_at) struct list *const list = ask_everywhere(ask_pairs, w, sizeof *list, NULL);
     size_t at = 0;
     for (uint32_t a = 0; a < w->count; a++)
         for (uint32_t b = a + 1; b < w->count; b++)
@@ -99,7 +98,6 @@ static void check_pairs(const struct world *w) {
                 at++;
             }
     assert_int_equal(at, list->count);
-    free(list);
 }
 
 static narc_index_options options_of(const struct world *w, const narc_workers *workers) {
@@ -123,11 +121,10 @@ static void list_found(const struct world *w, narc_index *index, const narc_work
 static void ask_index(const void *question, const narc_workers *workers, void *out_list) {
     const struct world *const w = question;
     const narc_index_options options = options_of(w, workers);
-    narc_index *index = NULL;
+    AUTO(narc_destroy_index_at) narc_index *index = NULL;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     assert_int_equal(narc_build_index(index, w->boxes, w->count, &options, NULL), NARC_OK);
     list_found(w, index, workers, out_list);
-    narc_destroy_index(index);
 }
 
 /* An index that has followed from the beginning answers as a new one. */
@@ -145,7 +142,7 @@ static void follow(struct world *w, const struct list *expected) {
 }
 
 static void check_index(struct world *w) {
-    struct list *const list = ask_everywhere(ask_index, w, sizeof *list, NULL);
+    AUTO(free_at) struct list *const list = ask_everywhere(ask_index, w, sizeof *list, NULL);
     size_t at = 0;
     for (uint32_t a = 0; a < w->count; a++)
         for (uint32_t b = 0; b < w->count; b++)
@@ -156,7 +153,6 @@ static void check_index(struct world *w) {
             }
     assert_int_equal(at, list->count);
     follow(w, list);
-    free(list);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

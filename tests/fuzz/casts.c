@@ -226,9 +226,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, q.boxes, NULL), NARC_OK);
     assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
     assert_int_equal(narc_build_index(q.index, q.boxes, BODIES, &options, NULL), NARC_OK);
-    struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
+    AUTO(free_at) struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
     check(&q, answer);
-    free(answer);
     narc_destroy_index(q.index);
     destroy_scene(&q.scene);
     return 0;

@@ -305,9 +305,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         q.room = take_below(&from, PAIRS + 1);
         q.target = take_bounded(&from, 0.25);
         q.size = measure(&q.chain);
-        struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
+        AUTO(free_at) struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
         check(&q, answer);
-        free(answer);
     }
     free(q.chain.arcs);
     destroy_scene(&q.scene);

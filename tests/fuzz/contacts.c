@@ -116,9 +116,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     take_flights(&from, &q.scene);
     if (take_below(&from, 4) == 1)
         make_ground(&q);
-    struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
+    AUTO(free_at) struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer, NULL);
     check(&q, answer);
-    free(answer);
     destroy_scene(&q.scene);
     return 0;
 }

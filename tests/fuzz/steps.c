@@ -128,7 +128,7 @@ static void move_ground(struct world *w, bool up) {
 
 static void lay_ground(struct bytes *from, struct world *w) {
     narc_chain_entry entry[GROUND];
-    struct turtle t = create_turtle(-3, -1, 0);
+    AUTO(free_at) struct turtle t = create_turtle(-3, -1, 0);
     for (unsigned k = 2 + take_below(from, 3); k > 0; k--)
         walk_arc(&t, take_below(from, 3) ? 1.5 : 0, (take_number(from, 0.9) < 0 ? -0.8 : 0.8));
     walk_arc(&t, 0, 0);
@@ -143,7 +143,6 @@ static void lay_ground(struct bytes *from, struct world *w) {
         w->run[k] = entry[k].run;
         w->id[k] = IDS + k;
     }
-    free(t.arcs);
 }
 
 static float take_length(struct bytes *from) {
@@ -564,11 +563,10 @@ static void save(struct world *w, const struct object *o) {
     w->saved = malloc(w->saved_size);
     assert_int_equal(narc_save_contacts(o->contacts, w->saved, w->saved_size - 1, NULL), NARC_ERROR_CAPACITY);
     assert_int_equal(narc_save_contacts(o->contacts, w->saved, w->saved_size, NULL), NARC_OK);
-    char *const copy = malloc(w->saved_size);
+    AUTO(free_at) char *const copy = malloc(w->saved_size);
     memcpy(copy, w->saved, w->saved_size);
     sum_up_contacts(copy, w->saved_size);
     assert_memory_equal(copy, w->saved, w->saved_size); /* or what is damaged below is refused for its sum alone */
-    free(copy);
 }
 
 /* Into the other object, which is the same then. */
@@ -586,10 +584,9 @@ static void make_twins(struct world *w, unsigned number) {
     other->contacts = contacts;
     other->r = r;
     w->twins = true;
-    char *const again = malloc(w->saved_size);
+    AUTO(free_at) char *const again = malloc(w->saved_size);
     assert_int_equal(narc_save_contacts(other->contacts, again, w->saved_size, NULL), NARC_OK);
     assert_memory_equal(again, w->saved, w->saved_size);
-    free(again);
 }
 
 /* Bytes of some step before, damaged or not. */

@@ -103,7 +103,7 @@ static void put(struct model *model, narc_shapes *store, uint32_t index, const s
 static narc_shapes *save_and_load(struct bytes *from, narc_shapes *store) {
     enum { AT_CHECKSUM = 32, START = 40 };
     const size_t size = narc_count_saved_bytes(store);
-    uint8_t *const saved = malloc(size);
+    AUTO(free_at) uint8_t *const saved = malloc(size);
     narc_shapes *loaded = NULL, *damaged = NULL;
     uint64_t hash = TEST_HASH_START;
     assert_non_null(saved);
@@ -124,7 +124,6 @@ static narc_shapes *save_and_load(struct bytes *from, narc_shapes *store) {
     }
     narc_destroy_shapes(damaged);
     narc_destroy_shapes(store);
-    free(saved);
     return loaded;
 }
 
