@@ -280,7 +280,7 @@ bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, dou
  * While no point of a body, and no centre of an arc, moves by more than d, no gap along a direction changes by more: there is
  * none below the margin where one exceeds that by d.
  *   Nor is there a contact with the front of a run whose end E lies aside of the body's deepest place p (kernels/piece/
- * beside.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from n, at
+ * edges_below.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from n, at
  * the end, to m beyond it, the gap grows by the turn times how far the centre lies beyond E. That is more than what two gaps
  * are rounded by if it lies NEED beyond. The other normals of the front have smaller gaps where p lies nearer to E along none
  * of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher now.

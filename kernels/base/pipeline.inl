@@ -166,8 +166,7 @@ struct pieces_met {
     bool fetches;    /* so they are asked for ahead: of B, or of A */
     bool fetches_b, fetches_forms;
     bool forms, formed; /* are pairs of forms looked for in this block; have there been any? */
-    int tried, dropped; /* so many may have been dropped, and were */
-    int asked, settled; /* the same of boxes and capsules on edges */
+    int asked, settled; /* boxes and capsules on edges that may have been settled, and were */
 };
 
 INLINE bool begins_with_piece(const struct call *call, narc_index_column body, narc_index_column shape) {

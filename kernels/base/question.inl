@@ -24,6 +24,10 @@ struct box_queue;
 typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
 enum { OF_BOXES, OF_CAPSULES, WITH_CIRCLE, BOX_QUEUES };
 
+/* Answers pairs of a box or a capsule on an edge of a run; returns the lanes that it settles (piece/edges_below.inl). */
+struct edge_contact;
+typedef vm edge_answer(const struct call *call, const struct edge_contact *contact);
+
 /* What a row is (write_rows() in rows.inl). */
 enum row_kind { CONTACT_ROWS, MANIFOLD_ROWS, SEPARATION_ROWS };
 
@@ -35,6 +39,7 @@ struct question {
     /* What answers pairs that may have second points; NULL: nobody asks, and all rows are of one point. */
     stage *edges, *polygons;
     box_stage *boxes, *capsules;
+    edge_answer *on_edges;
 };
 
 /* What finds their answers (sat/search.c): the stages but for those that write rows, and what answers pairs with a concave

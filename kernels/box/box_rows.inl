@@ -25,17 +25,28 @@
 #include "sat/manifold_edges.inl"
 #include "simd/simd.h"
 
-/* What a box touches the other one with: a corner, or its edge. */
+/* The arcs at both ends of a side, in the order of `low` and `high`, and that of the two that touches: their radii, and
+ * the caller's numbers of the one before the edge and of the one behind it. */
+struct side_arcs {
+    vf radius_low, radius_high, radius;
+    vi before, behind;
+};
+
+/* What a side touches the other one with: a corner, or its edge. */
 struct box_touch {
-    vf radius;           /* outwards along n: of B, which is touched on its side -n, below 0 */
+    struct side_arcs arcs;
     vm parallel;         /* n is the edge's normal */
     vf sine, cosine;     /* from the edge's normal to n */
     vf across, min, max; /* as of a feature */
 };
 
-INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radius, bool is_b) {
-    struct box_touch touch = {.radius = radius, .sine = v2_cross(side->normal, n), .cosine = v2_dot(side->normal, n)};
-    const vec2 step = v2_scale(n, radius), low = v2_add(side->low, step), high = v2_add(side->high, step);
+/* Outwards along n: B is touched on its side -n. */
+INLINE vf turn_radius(vf radius, bool is_b) { return is_b ? v_neg(radius) : radius; }
+
+INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, const struct side_arcs *arcs, bool is_b) {
+    struct box_touch touch = {.arcs = *arcs, .sine = v2_cross(side->normal, n), .cosine = v2_dot(side->normal, n)};
+    const vec2 low = v2_add(side->low, v2_scale(n, turn_radius(arcs->radius_low, is_b))),
+               high = v2_add(side->high, v2_scale(n, turn_radius(arcs->radius_high, is_b)));
     const vm at_low = is_b ? side->behind : vm_not(side->behind);
     const vf along_low = v2_cross(n, low), along_high = v2_cross(n, high);
     touch.parallel = v_le(v_abs(touch.sine), v_set(PARALLEL));
@@ -45,30 +56,40 @@ INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radiu
     return touch;
 }
 
-/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. Of a capsule
- * the arc at -x, its corners 1 and 2, is stored first. */
-INLINE vi find_box_arc(const struct box_pair *pair, vi i, int shift) {
-    const vi first = vi_shift_right(get_box_code(pair), shift);
-    if (pair->capsules)
-        return vi_and(vi_add(vi_shift_right(vi_add(i, vi_set(3)), 1), first), vi_set(1));
-    return vi_and(vi_add(i, first), vi_set(3));
+/* The caller's number of corner i, or of the edge before it. Of a capsule the arc at -x, its corners 1 and 2, is stored
+ * first. */
+INLINE vi number_box_arc(vi i, vi first, bool capsules) {
+    return capsules ? vi_and(vi_add(vi_shift_right(vi_add(i, vi_set(3)), 1), first), vi_set(1))
+                    : vi_and(vi_add(i, first), vi_set(3));
+}
+
+/* Of both boxes the radius of all corners. */
+INLINE struct side_arcs find_box_arcs(const struct box_pair *pair, const struct box_side *side, bool is_b) {
+    const vf radius = get_box_field(pair, is_b ? BOX_RADIUS_B : BOX_RADIUS_A);
+    const vi first = vi_shift_right(get_box_code(pair), is_b ? 6 : 4);
+    return (struct side_arcs){radius, radius, radius,
+                              number_box_arc(vi_sub(side->edge, vi_set(1)), first, pair->capsules),
+                              number_box_arc(side->edge, first, pair->capsules)};
+}
+
+INLINE vi find_touching_arc(const struct box_side *side, const struct box_touch *touch) {
+    return vi_select(side->behind, touch->arcs.behind, touch->arcs.before);
 }
 
 /* What touches, as a contact has it. */
-INLINE vi find_box_feature(const struct box_pair *pair, const struct box_side *side, const struct box_touch *touch,
-                           int shift) {
-    const vi edge = vi_add(find_box_arc(pair, side->edge, shift), vi_set(NARC_FEATURE_EDGE));
-    return vi_select(touch->parallel, edge, find_box_arc(pair, find_box_touching(side), shift));
+INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *touch) {
+    return vi_select(touch->parallel, vi_add(touch->arcs.behind, vi_set(NARC_FEATURE_EDGE)),
+                     find_touching_arc(side, touch));
 }
 
 /* The reaches of a corner, as find_reach() has them, with the edge next to it. */
-INLINE vi find_box_reach(const struct box_pair *pair, const struct box_side *side, const struct box_touch *touch) {
+INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *touch, bool capsules) {
     const vf zero = v_set(0), one = v_set(1), full = v_set(NARC_REACH_ONE);
     if (!vm_any(vm_not(touch->parallel)))
         return vi_set(0);
     const vf turn = v_select(side->behind, touch->sine, v_neg(touch->sine)); /* away from the edge */
     vf sine = v_min(v_max(turn, zero), one), other = v_select(v_lt(zero, turn), v_min(touch->cosine, one), one);
-    if (pair->capsules) { /* the other edge is half a turn away */
+    if (capsules) { /* the other edge is half a turn away */
         sine = v_select(v_lt(zero, touch->cosine), sine, one);
         other = one;
     }
@@ -78,36 +99,35 @@ INLINE vi find_box_reach(const struct box_pair *pair, const struct box_side *sid
     return pack_halves(vi_truncate(v_select(side->behind, near, far)), vi_truncate(v_select(side->behind, far, near)));
 }
 
-/* Places of an edge whose outward normal is `normal`, seen along n. */
-INLINE void place_box_edge(struct edge *edge, const struct box_side *side, vec2 normal, vf radius, vec2 n,
-                           vf arc_radius, bool turned) {
-    const vec2 step = v2_scale(normal, radius);
-    const vec2 low = v2_add(turned ? side->high : side->low, step),
-               high = v2_add(turned ? side->low : side->high, step);
-    edge->low = (struct edge_end){v2_cross(n, low), v2_dot(n, low), arc_radius};
-    edge->high = (struct edge_end){v2_cross(n, high), v2_dot(n, high), arc_radius};
+/* Places of a side's edge, seen along n. */
+INLINE void place_box_edge(struct edge *edge, const struct box_side *side, const struct side_arcs *arcs, vec2 n,
+                           bool is_b) {
+    const vec2 low = v2_add(side->low, v2_scale(side->normal, turn_radius(arcs->radius_low, is_b))),
+               high = v2_add(side->high, v2_scale(side->normal, turn_radius(arcs->radius_high, is_b)));
+    edge->low = (struct edge_end){v2_cross(n, low), v2_dot(n, low), arcs->radius_low};
+    edge->high = (struct edge_end){v2_cross(n, high), v2_dot(n, high), arcs->radius_high};
 }
 
-/* The edge of a box as find_manifold_points() takes it. That of a capsule may lie along n, and then not look like an edge
+/* The edge of a side as find_manifold_points() takes it. That of a capsule may lie along n, and then not look like an edge
  * from there: the one on the other side is asked. */
-INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_side *side,
-                                 const struct box_touch *touch, vec2 n, vf flat_sine, int shift, bool is_b) {
-    const vf radius = is_b ? v_neg(touch->radius) : touch->radius;
+INLINE struct edge find_box_edge(const struct box_side *side, const struct box_touch *touch, vec2 n, vf flat_sine,
+                                 bool capsules, bool is_b) {
     struct edge edge = {.is_edge = vm_front(V_WIDTH),
                         .offered = v_le(v_abs(touch->sine), flat_sine),
                         .parallel = touch->parallel,
-                        .before = find_box_arc(pair, vi_sub(side->edge, vi_set(1)), shift),
-                        .after = find_box_arc(pair, side->edge, shift),
-                        .arc_radius = radius};
-    place_box_edge(&edge, side, side->normal, touch->radius, n, radius, false);
-    if (pair->capsules) {
+                        .before = touch->arcs.before,
+                        .after = touch->arcs.behind,
+                        .arc_radius = touch->arcs.radius};
+    place_box_edge(&edge, side, &touch->arcs, n, is_b);
+    if (capsules) {
         edge.is_edge = v_lt(edge.low.along, edge.high.along);
         edge.offered = vm_and(edge.offered, edge.is_edge);
         const vm again = vm_not(edge.is_edge);
         if (vm_any(again)) {
+            const vec2 back = {v_neg(side->normal.x), v_neg(side->normal.y)};
+            const struct box_side turned = {.normal = back, .low = side->high, .high = side->low};
             struct edge other;
-            place_box_edge(&other, side, (vec2){v_neg(side->normal.x), v_neg(side->normal.y)}, touch->radius, n, radius,
-                           true);
+            place_box_edge(&other, &turned, &touch->arcs, n, is_b);
             edge.low = select_edge_end(again, &other.low, &edge.low);
             edge.high = select_edge_end(again, &other.high, &edge.high);
             edge.is_edge = v_lt(edge.low.along, edge.high.along);
@@ -116,19 +136,60 @@ INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_s
     return edge;
 }
 
-INLINE struct sides find_box_sides(const struct call *call, const struct box_pair *pair, const struct box_contact *c,
-                                   const struct box_touch *on_a, const struct box_touch *on_b, vec2 place, vf margin) {
+/* Two sides that touch: their arcs, the pairs, A's rotation in the world, and B's position in A's frame. */
+struct touching_sides {
+    struct side_arcs a, b;
+    vi pairs;
+    vec2 to_world, position_b;
+    bool capsules;
+    const vi *reaches; /* of both, as rows have them; NULL: of capsules, or boxes */
+};
+
+/* What rows say of them. */
+struct told_sides {
+    struct box_touch a, b;
+    vec2 place;
+    struct answer answer;
+};
+
+INLINE struct told_sides tell_sides(const struct box_contact *c, const struct touching_sides *t) {
+    const vec2 n = c->normal;
+    struct told_sides told = {.a = find_touch(&c->a, n, &t->a, false), .b = find_touch(&c->b, n, &t->b, true)};
+    const struct box_touch *const on_a = &told.a, *const on_b = &told.b;
+    const vf half = v_set(0.5f), flat = v_set(INFINITY), across = v_mul(half, v_add(on_a->across, on_b->across));
+    told.place = (vec2){across, v_mul(half, v_add(v_max(on_a->min, on_b->min), v_min(on_a->max, on_b->max)))};
+    told.answer = (struct answer){
+        .separation = c->separation,
+        .normal = v2_rotate(t->to_world, n),
+        .point = v2_rotate(t->to_world, v2_rotate(n, told.place)),
+        .feature = vi_add(find_box_feature(&c->a, on_a), vi_shift_left(find_box_feature(&c->b, on_b), 8)),
+        .radius_a = v_select(on_a->parallel, flat, t->a.radius),
+        .radius_b = v_select(on_b->parallel, flat, t->b.radius)};
+    return told;
+}
+
+/* Writes them. `edges`: are second points asked for? */
+INLINE void write_touching(const struct call *call, const struct box_contact *c, const struct touching_sides *t,
+                           struct told_sides *told, vf margin, char *const *place, bool edges) {
+    const vec2 n = c->normal;
+    if (!edges) {
+        write_rows(call, place, find_numbers(call, t->pairs), &told->answer);
+        return;
+    }
     const vf flat_sine = v_set(call->batch->flat_sine);
-    return (struct sides){.a = find_box_edge(pair, &c->a, on_a, c->normal, flat_sine, 4, false),
-                          .b = find_box_edge(pair, &c->b, on_b, c->normal, flat_sine, 6, true),
-                          .number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
-                          .number_b = find_box_arc(pair, find_box_touching(&c->b), 6),
-                          .n = c->normal,
-                          .to_world = get_box_vec2(pair, BOX_ROTATION_A),
-                          .position_b = get_box_vec2(pair, BOX_POSITION),
-                          .place = place,
-                          .margin = margin,
-                          .named = vm_front(V_WIDTH)};
+    const struct sides sides = {.a = find_box_edge(&c->a, &told->a, n, flat_sine, t->capsules, false),
+                                .b = find_box_edge(&c->b, &told->b, n, flat_sine, t->capsules, true),
+                                .number_a = find_touching_arc(&c->a, &told->a),
+                                .number_b = find_touching_arc(&c->b, &told->b),
+                                .n = n,
+                                .to_world = t->to_world,
+                                .position_b = t->position_b,
+                                .place = told->place,
+                                .margin = margin,
+                                .named = vm_front(V_WIDTH)};
+    told->answer.reach_a = t->reaches ? t->reaches[0] : find_box_reach(&c->a, &told->a, t->capsules);
+    told->answer.reach_b = t->reaches ? t->reaches[1] : find_box_reach(&c->b, &told->b, t->capsules);
+    write_sides(call, place, t->pairs, &told->answer, &sides);
 }
 
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
@@ -146,34 +207,6 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
     }
 }
 
-/* Writes the rows of pairs in the lanes `keep`, of which the first `live` are asked of. */
-INLINE void write_boxes(const struct call *call, const struct box_pair *pair, const struct box_contact *c, int live,
-                        vm keep, vf margin, bool edges) {
-    const vi pairs = vi_bits(get_box_field(pair, BOX_PAIR));
-    const vec2 n = c->normal, to_world = get_box_vec2(pair, BOX_ROTATION_A);
-    const struct box_touch on_a = find_touch(&c->a, n, get_box_field(pair, BOX_RADIUS_A), false);
-    const struct box_touch on_b = find_touch(&c->b, n, v_neg(get_box_field(pair, BOX_RADIUS_B)), true);
-    const vf half = v_set(0.5f), flat = v_set(INFINITY), across = v_mul(half, v_add(on_a.across, on_b.across));
-    const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
-    const vi of_a = find_box_feature(pair, &c->a, &on_a, 4), of_b = find_box_feature(pair, &c->b, &on_b, 6);
-    struct answer answer = {.separation = c->separation,
-                            .normal = v2_rotate(to_world, n),
-                            .point = v2_rotate(to_world, v2_rotate(n, place)),
-                            .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
-                            .radius_a = v_select(on_a.parallel, flat, get_box_field(pair, BOX_RADIUS_A)),
-                            .radius_b = v_select(on_b.parallel, flat, get_box_field(pair, BOX_RADIUS_B))};
-    char *to[V_WIDTH];
-    find_box_places(call, pair->queue, pair->k + live - 1, pairs, keep, to);
-    if (edges) {
-        const struct sides sides = find_box_sides(call, pair, c, &on_a, &on_b, place, margin);
-        answer.reach_a = find_box_reach(pair, &c->a, &on_a);
-        answer.reach_b = find_box_reach(pair, &c->b, &on_b);
-        write_sides(call, to, pairs, &answer, &sides);
-    } else {
-        write_rows(call, to, find_numbers(call, pairs), &answer);
-    }
-}
-
 /* Answers the pairs k ... of a queue, or returns false. `edges`: are second points asked for? */
 INLINE bool answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
                          bool edges) {
@@ -184,8 +217,18 @@ INLINE bool answer_boxes(const struct call *call, const struct box_queue *queue,
     const vm keep = vm_and(open, is_below(c.separation, margin));
     if (BLOCK == 1 && vm_any(c.left))
         return false;
-    if (vm_any(keep))
-        write_boxes(call, &pair, &c, live, keep, margin, edges);
+    if (!vm_any(keep))
+        return true;
+    const struct touching_sides sides = {.a = find_box_arcs(&pair, &c.a, false),
+                                         .b = find_box_arcs(&pair, &c.b, true),
+                                         .pairs = vi_bits(get_box_field(&pair, BOX_PAIR)),
+                                         .to_world = get_box_vec2(&pair, BOX_ROTATION_A),
+                                         .position_b = get_box_vec2(&pair, BOX_POSITION),
+                                         .capsules = capsules};
+    char *place[V_WIDTH];
+    struct told_sides told = tell_sides(&c, &sides);
+    find_box_places(call, queue, k + live - 1, sides.pairs, keep, place);
+    write_touching(call, &c, &sides, &told, margin, place, edges);
     return true;
 }
 

@@ -13,30 +13,35 @@
  * between them. Its tangent goes on for 4 s or more, and the gap falls on at first; where it need not, it is below
  * -0.65 s, and along the bottom below -s, if p lies no further than 2 s from the origin. So p may be s / 4 below the edge.
  *   Where a side of the body is parallel to the edge, up to LEAST_ANGLE, the gap falls beyond both normals alike, with the
- * corner of that side which is farther from the end. What lies between them only the formula tells: it walks past the two
- * (search.inl). Such pairs go there with a slack below 0, which says so.
+ * corner of that side which is farther from the end. What lies between them two sides that face each other tell as those of
+ * boxes do (box/box_contact.inl), if no other normal does: the arcs at the edge's ends turn by SIDE_ANGLE at least. Where
+ * one corner faces another, or the side's normal is told and that is not the edge's, the pair is left.
  *   The gap along n is a bound in any case: where it exceeds the margin by a slack, there is no contact.
+ *   Nor is there with a run beside whose front a body lies, as where ground is cut: it lies over two runs and touches one. The
+ * other one's greatest gap is along the tangent beyond its front, whose normal m is that of the far edge there
+ * (soa/chain_pieces.c). Let E be the end of the front, and p the body's deepest point along the normal n there. No gap along a
+ * normal of the front exceeds (p - E) along that, the greatest of which is at one of the front's ends if p lies beyond n. So if
+ * it is greater along m, by the slack (base/pair_setup.inl: the formula may be off by a quarter of it, twice, and this by
+ * less), the formula tells of no front.
  */
 #ifndef NARC_PIECE_EDGES_BELOW_INL
 #define NARC_PIECE_EDGES_BELOW_INL
 
 #include <string.h>
 
-#include "base/bodies.inl"
 #include "base/call.inl"
-#include "base/pair_setup.inl"
 #include "base/question.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
-#include "kernels.h"
 #include "piece/circles_beside.inl"
+#include "piece/edge_rows.inl"
 #include "piece/pieces.inl"
 #include "sat/certificates.inl"
 #include "simd/simd.h"
 
-/* Edges of a front that are looked at. */
-enum { MOST_EDGES = 3 };
+/* The least sine of what an arc turns by that is more than LEAST_ANGLE. */
+#define SIDE_ANGLE (2 * LEAST_ANGLE)
 
 /* A body with the form of a box or a capsule, in the frame of a run at world scale. */
 struct edged_body {
@@ -45,29 +50,44 @@ struct edged_body {
     vm capsule;
 };
 
-/* What a body does above the edge before an arc of the front. */
-struct edge_below {
-    vm rests, lies; /* is the gap largest along its normal; along that, or of a side of the body that is parallel? */
-    vm apart;       /* is it above the margin? */
-    vi corner;      /* of the body: its record, less the first one */
-};
+/* Its corner that is lowest along n, in its own axes; *out_n: these along n. */
+INLINE vec2 find_lowest_corner(const struct edged_body *body, vec2 n, vec2 *out_n) {
+    const vf zero = v_set(0);
+    *out_n = (vec2){v2_dot(body->x_axis, n), v2_cross(body->x_axis, n)};
+    return (vec2){v_select(v_lt(zero, out_n->x), v_neg(body->half_x), body->half_x),
+                  v_select(v_lt(zero, out_n->y), v_neg(body->half_y), body->half_y)};
+}
 
-/* The ends of a front: the normals behind them, and how far they are from the middle, squared. */
-struct front_ends {
-    vec2 begin, end;
-    vf square;
-};
+/* Does it lie beside the end of the front? By the arc that turns there to the closure, or from it, and that at the other end. */
+INLINE vm is_beyond(const struct edged_body *body, const vf here[8], const vf other[8], vf scale, bool is_last,
+                    vf slack) {
+    const vec2 start = {here[4], here[5]}, stop = {here[6], here[7]}, n = is_last ? start : stop,
+               m = is_last ? stop : start, other_n = {other[is_last ? 6 : 4], other[is_last ? 7 : 5]};
+    vec2 axes;
+    const vec2 way = v2_sub(body->center, v2_scale((vec2){here[0], here[1]}, scale)),
+               corner = find_lowest_corner(body, n, &axes);
+    const vec2 p = v2_sub(v2_add(way, v2_rotate(body->x_axis, corner)), v2_scale(n, body->radius));
+    const vf beyond = is_last ? v2_cross(n, p) : v2_cross(p, n);
+    const vf x_m = v_mul(body->half_x, v_abs(v2_dot(body->x_axis, m))),
+             y_m = v_mul(body->half_y, v_abs(v2_cross(body->x_axis, m)));
+    const vf along_m = v_sub(v2_dot(way, m), v_add(v_add(x_m, y_m), body->radius));
+    return vm_and(v_le(v_set(0), beyond), v_lt(v_add(v_max(v2_dot(p, n), v2_dot(p, other_n)), slack), along_m));
+}
 
-/* `from`: where the edge begins; `field`: of the arc where it ends. */
-INLINE struct edge_below look_below(const struct edged_body *body, const struct front_ends *ends, vec2 from,
-                                    const vf field[8], vf scale, vf limit, vf two) {
+/* What a body does above the edge. Is the gap largest along its normal, so that it rests; along that, or of a side that is
+ * parallel: it lies? Returns whether it is above the margin. `first`, `end`: the arcs at the ends of the front. */
+INLINE vm look_below(const struct edged_body *body, const vf first[8], const vf end[8], vf scale, vf least_edge,
+                     vf slack, struct edge_contact *e) {
+    const vf *const before = e->before, *const field = e->behind;
     const vf zero = v_set(0), turn = v_set(LEAST_ANGLE);
     const vec2 n = {field[4], field[5]}, to = v2_scale((vec2){field[0], field[1]}, scale);
-    const vf x_n = v2_dot(body->x_axis, n), y_n = v2_cross(body->x_axis, n);
-    const vm left = v_lt(zero, x_n), below = v_lt(zero, y_n);
-    const vf x = v_select(left, v_neg(body->half_x), body->half_x),
-             y = v_select(below, v_neg(body->half_y), body->half_y);
-    const vec2 p = v2_add(body->center, v2_rotate(body->x_axis, (vec2){x, y}));
+    const vec2 from = v2_scale((vec2){before[0], before[1]}, scale),
+               middle = v2_scale((vec2){first[0], first[1]}, scale);
+    const vec2 n_first = {first[4], first[5]}, n_end = {end[6], end[7]}; /* behind the ends */
+    const vf far = v2_dot(middle, middle);
+    const vec2 corner = find_lowest_corner(body, n, &e->axes),
+               p = v2_add(body->center, v2_rotate(body->x_axis, corner));
+    const vf x = corner.x, y = corner.y, x_n = e->axes.x, y_n = e->axes.y;
     /* Along a side that is parallel to the edge both its corners are lowest. */
     const vm flat_x = v_lt(v_abs(x_n), turn), flat_y = vm_and_not(v_lt(v_abs(y_n), turn), body->capsule);
     const vec2 q = v2_add(
@@ -75,129 +95,94 @@ INLINE struct edge_below look_below(const struct edged_body *body, const struct 
     const vf height = v_sub(v_min(v2_dot(v2_sub(p, to), n), v2_dot(v2_sub(q, to), n)), v_mul(field[2], scale));
     const vf next = v_max(v2_cross(n, v2_sub(to, p)), v2_cross(n, v2_sub(to, q)));
     const vf last = v_max(v2_cross(n, v2_sub(p, from)), v2_cross(n, v2_sub(q, from)));
-    const vf cosine_next = v2_dot(n, ends->end), cosine_last = v2_dot(n, ends->begin);
-    const vf falls_next = v_add(v_mul(next, cosine_next), v_mul(height, v2_cross(n, ends->end)));
-    const vf falls_last = v_add(v_mul(last, cosine_last), v_mul(height, v2_cross(ends->begin, n)));
-    const vm within = v_lt(two, v_min(v_min(next, last), v_min(falls_next, falls_last)));
+    const vf cosine_next = v2_dot(n, n_end), cosine_last = v2_dot(n, n_first);
+    const vf falls_next = v_add(v_mul(next, cosine_next), v_mul(height, v2_cross(n, n_end)));
+    const vf falls_last = v_add(v_mul(last, cosine_last), v_mul(height, v2_cross(n_first, n)));
+    const vf sure = v_min(v_min(next, last), v_min(falls_next, falls_last));
+    /* Nor is the edge, or a side of the body, what rounding may have made. */
+    const vf side = v_min(body->half_x, v_select(body->capsule, body->half_x, body->half_y));
+    const vf length = v2_cross(n, v2_sub(to, from)), least = v_min(v_min(sure, side), length);
+    const vm within = vm_and(v_lt(v_add(slack, slack), least), v_lt(least_edge, length));
     const vm narrow = v_lt(zero, v_min(cosine_next, cosine_last));
     const vf depth = v_max(v_neg(height), zero), square = v_max(v2_dot(p, p), v2_dot(q, q));
-    const vm near =
-        vm_and(v_le(v_mul(v_set(16), v_mul(depth, depth)), ends->square), v_le(square, v_mul(v_set(4), ends->square)));
-    const vm one_maximum = vm_and(vm_and(within, narrow), near);
-    struct edge_below edge;
-    edge.rests = vm_and_not(one_maximum, vm_or(flat_x, flat_y));
-    edge.lies = vm_and(one_maximum, vm_xor(flat_x, flat_y));
-    edge.apart = v_lt(limit, v_sub(height, body->radius));
-    const vi of_box = vi_select(below, vi_select(left, vi_set(2), vi_set(3)), vi_select(left, vi_set(1), vi_set(0)));
-    edge.corner = vi_select(body->capsule, vi_select(left, vi_set(0), vi_set(1)), of_box);
-    return edge;
+    const vm near = vm_and(v_le(v_mul(v_set(16), v_mul(depth, depth)), far), v_le(square, v_mul(v_set(4), far)));
+    const vm one_maximum = vm_and(vm_and(within, narrow), near), flat = vm_or(flat_x, flat_y);
+    const vf turned = v_min(v2_cross((vec2){before[4], before[5]}, n), v2_cross(n, (vec2){field[6], field[7]}));
+    const vm parts = vm_and_not(v_lt(v_set(SIDE_ANGLE), turned), vm_and(flat_x, flat_y));
+    /* Of two sides that are equally near none is told, nor of a capsule that stands upright. */
+    const vf off = v_select(body->capsule, v_set(0x1p-7f), v_abs(x_n)), by = v_abs(y_n);
+    const vm nearer = vm_or(v_lt(off, by), vm_and_not(v_lt(by, off), body->capsule));
+    const vm apart = v_lt(v_add(e->margin, slack), v_sub(height, body->radius));
+    const vm touches = vm_and_not(one_maximum, apart);
+    e->rests = vm_and(vm_and_not(touches, flat), nearer);
+    e->lies = vm_and(touches, vm_and(flat, parts));
+    return apart;
 }
 
-/* Pairs in the lanes `lies` go to the walk past the edge's normal and that of a side of the body. */
-INLINE void pass_to_walk(struct queue *queues, vm lies, vec2 normal, const vf item[FIELDS]) {
-    vf own[FIELDS];
-    memcpy(own, item, sizeof own);
-    set_vec2(own, DIRECTION, normal);
-    own[SLACK] = v_neg(item[SLACK]);
-    push(&queues[DECIDE], lies, own, ROW_FIELDS);
-}
-
-/* Tells the last stages that pairs in the lanes `which` touch: the run with an arc and its record, the body with a corner. */
-INLINE void settle_on_edges(const struct call *call, struct queue *queues, vm is_a, vm which, vf margin,
-                            const struct pose *pose, const struct arcs *arc, vi arc_record, vi corner_record,
-                            const vf item[FIELDS]) {
-    const narc_record *const records = call->batch->shapes->records;
-    int32_t index[V_WIDTH];
-    vf corner[4], own[FIELDS];
-    vi_store(index, vi_select(which, corner_record, vi_set(0)));
-    v_rows(records, sizeof *records, index, corner);
-    const vec2 center = {corner[0], corner[1]};
-    const vec2 of_body = v2_select(is_a, place_center_b(center, pose), v2_scale(center, pose->scale_a));
-    const vf radius = v_mul(corner[2], v_select(is_a, pose->scale_b, pose->scale_a));
-    const vec2 u = v2_sub(v2_select(is_a, of_body, arc->center), v2_select(is_a, arc->center, of_body));
-    const vf separation = v_sub(v2_dot(u, arc->start), v_add(arc->radius, radius));
-    const vm found = vm_and(which, is_below(separation, margin));
-    if (!vm_any(found))
-        return;
-    memcpy(own, item, sizeof own);
-    own[SEPARATION] = separation;
-    set_vec2(own, NORMAL, arc->start);
-    own[RECORD_A] = v_of_bits(vi_select(is_a, arc_record, corner_record));
-    own[RECORD_B] = v_of_bits(vi_select(is_a, corner_record, arc_record));
-    push(&queues[call->question->kind == MANIFOLD_ROWS ? ANSWER_EDGES : ANSWER], found, own, ROW_FIELDS);
-}
-
-/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others. */
-NOINLINE vm settle_above_edges(const struct call *call, struct queue *queues, vm open, vf margin,
+/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others. Looked at is the edge
+ * behind the last arc whose start the body's middle lies behind. */
+NOINLINE vm settle_above_edges(const struct call *call, edge_answer *answer, vm open, vf margin,
                                const vf item[FIELDS]) {
     const narc_shapes *const shapes = call->batch->shapes;
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
     const vm is_a = has_mark(info_a, NARC_PIECE_RUN);
-    const vi info = vi_select(is_a, info_a, info_b), other_info = vi_select(is_a, info_b, info_a);
-    const vi last = vi_sub(get_arc_count(info), vi_set(5));
-    const vm which = vm_and(open, vi_lt(last, vi_set(MOST_EDGES + 1)));
-    if (!vm_any(which))
-        return open;
+    const vi info = vi_select(is_a, info_a, info_b), zero = vi_set(0);
     const vi first_a = get_item_bits(item, FIRST_RECORD_A), first_b = get_item_bits(item, FIRST_RECORD_B);
     const struct ring ring = make_ring(vi_select(is_a, first_a, first_b), info);
-    const vi body_base = find_first_arc(vi_select(is_a, first_b, first_a), other_info);
     const vf scale = v_select(is_a, item[SCALE_A], item[SCALE_B]),
              other_scale = v_select(is_a, item[SCALE_B], item[SCALE_A]);
-    const struct run_beside run = {
-        .ring = {vi_select(which, ring.base, vi_set(0)), vi_select(which, ring.count, vi_set(6))},
-        .first = vi_select(which, get_first_arc(info), vi_set(0))};
+    struct edge_contact e = {.item = item, .is_a = is_a, .margin = margin, .solid = vi_add(ring.base, ring.count)};
     int32_t index[V_WIDTH];
-    vf form[4], field[8], behind[8], touched[8];
+    vf first[8], end[8];
     vi_store(index, get_item_bits(item, BODY_SHAPE));
-    v_rows(shapes->boxes, sizeof *shapes->boxes, index, form);
-    const vi kind = vi_bits(form[3]), zero = vi_set(0);
-    const vm capsule = vi_lt(zero, vi_and(kind, vi_set((int32_t)NARC_IS_CAPSULE)));
-    const vm tried = vm_and(which, vi_lt(zero, vi_and(kind, vi_set((int32_t)(NARC_IS_BOX | NARC_IS_CAPSULE)))));
+    v_rows(shapes->boxes, sizeof *shapes->boxes, index, e.form);
+    const vi kind = vi_bits(e.form[3]);
+    e.capsule = vi_lt(zero, vi_and(kind, vi_set((int32_t)NARC_IS_CAPSULE)));
+    e.first_arc = vi_and(kind, vi_set(3));
+    const vm tried = vm_and(open, vi_lt(zero, vi_and(kind, vi_set((int32_t)(NARC_IS_BOX | NARC_IS_CAPSULE)))));
     if (!vm_any(tried))
         return open;
     const vec2 position = {item[POSITION], item[POSITION + 1]}, rotation = {item[ROTATION], item[ROTATION + 1]};
     const struct edged_body body = {.center = v2_select(is_a, position, v2_unrotate_opposite(rotation, position)),
                                     .x_axis = {rotation.x, v_select(is_a, rotation.y, v_neg(rotation.y))},
-                                    .half_x = v_mul(form[0], other_scale),
-                                    .half_y = v_select(capsule, v_set(0), v_mul(form[1], other_scale)),
-                                    .radius = v_mul(form[2], other_scale),
-                                    .capsule = capsule};
-    load_records(shapes->records, find_run_record(&run, zero), field);
-    load_records(shapes->records, find_run_record(&run, vi_select(tried, last, one)), behind);
-    vec2 from = v2_scale((vec2){field[0], field[1]}, scale);
-    const struct front_ends ends = {{field[4], field[5]}, {behind[6], behind[7]}, v2_dot(from, from)};
-    const vf slack = item[SLACK], two = v_add(slack, slack), limit = v_add(margin, slack);
-    vm rests = vm_front(0), lies = rests, apart = rests;
-    vi arc_record = zero, corner_record = zero;
-    memcpy(touched, field, sizeof touched);
-    for (int i = 1; i <= MOST_EDGES; i++) {
-        const vm here = vm_and_not(vm_and(tried, vi_lt(vi_set(i - 1), last)), vm_or(vm_or(rests, lies), apart));
-        if (!vm_any(here))
-            break;
-        const vi record = find_run_record(&run, vi_select(here, vi_set(i), one));
-        load_records(shapes->records, record, field);
-        const struct edge_below edge = look_below(&body, &ends, from, field, scale, limit, two);
-        const vm at = vm_and(here, vm_or(edge.rests, edge.lies));
-        apart = vm_or(apart, vm_and(here, edge.apart));
-        rests = vm_or(rests, vm_and(here, edge.rests));
-        lies = vm_or(lies, vm_and(here, edge.lies));
-        arc_record = vi_select(at, record, arc_record);
-        corner_record = vi_select(at, vi_add(body_base, edge.corner), corner_record);
-        for (int f = 0; f < 8; f++)
-            touched[f] = v_select(at, field[f], touched[f]);
-        from = v2_scale((vec2){field[0], field[1]}, scale);
+                                    .half_x = v_mul(e.form[0], other_scale),
+                                    .half_y = v_select(e.capsule, v_set(0), v_mul(e.form[1], other_scale)),
+                                    .radius = v_mul(e.form[2], other_scale),
+                                    .capsule = e.capsule};
+    const struct run_beside run = {.ring = {vi_select(tried, ring.base, zero), vi_select(tried, ring.count, vi_set(6))},
+                                   .first = vi_select(tried, get_first_arc(info), zero),
+                                   .scale = scale,
+                                   .p = body.center};
+    e.last = vi_sub(run.ring.count, vi_set(5));
+    e.number = one;
+    load_records(shapes->records, find_run_record(&run, zero), first);
+    load_records(shapes->records, find_run_record(&run, e.last), end);
+    memcpy(e.before, first, sizeof first);
+    memcpy(e.behind, end, sizeof end);
+    if (vm_any(vi_lt(one, e.last))) {
+        vi low = zero, high = e.last; /* arcs whose starts the middle lies behind, and does not */
+        for (vm halves = vi_lt(one, high); vm_any(halves); halves = vi_lt(vi_add(low, one), high)) {
+            const vi arc = vi_shift_right(vi_add(low, high), 1);
+            load_records(shapes->records, find_run_record(&run, arc), e.before);
+            const vm behind = is_behind_start(&run, e.before);
+            low = vi_select(vm_and(halves, behind), arc, low);
+            high = vi_select(vm_and_not(halves, behind), arc, high);
+        }
+        e.number = high;
+        load_records(shapes->records, find_run_record(&run, low), e.before);
+        load_records(shapes->records, find_run_record(&run, high), e.behind);
     }
-    rests = vm_and_not(rests, apart);
-    lies = vm_and_not(lies, apart);
-    if (!vm_any(vm_or(rests, lies)))
-        return vm_and_not(open, apart);
-    const struct pose pose = {position, rotation, item[SCALE_A], item[SCALE_B]};
-    const struct arcs arc = place_arc(touched, &pose, is_a);
-    if (vm_any(lies))
-        pass_to_walk(queues, lies, arc.start, item);
-    if (vm_any(rests))
-        settle_on_edges(call, queues, is_a, rests, margin, &pose, &arc, arc_record, corner_record, item);
-    return vm_and_not(open, vm_or(vm_or(rests, lies), apart));
+    const vf slack = item[SLACK], least_edge = v_mul(v_set(2), v_mul(scale, find_least_edge(info)));
+    vm settled = vm_and(tried, look_below(&body, first, end, scale, least_edge, slack, &e));
+    const vm left = vm_and_not(tried, vm_or(settled, vm_or(e.rests, e.lies)));
+    if (V_WIDTH > 4 && vm_any(left)) /* in few lanes a look costs what it saves */
+        settled = vm_or(settled, vm_and(tried, vm_or(is_beyond(&body, first, end, scale, false, slack),
+                                                     is_beyond(&body, end, first, scale, true, slack))));
+    e.rests = vm_and_not(vm_and(tried, e.rests), settled);
+    e.lies = vm_and_not(vm_and(tried, e.lies), settled);
+    if (vm_any(vm_or(e.rests, e.lies)))
+        settled = vm_or(settled, answer(call, &e));
+    return vm_and_not(open, settled);
 }
 
 #endif

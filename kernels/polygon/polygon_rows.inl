@@ -17,88 +17,57 @@
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_contact.inl"
+#include "box/box_rows.inl"
 #include "piece/pieces.inl"
 #include "polygon/polygon_contact.inl"
 #include "sat/manifold_edges.inl"
 #include "simd/simd.h"
 
-/* Is n the edge's normal? */
-INLINE vm lies_on_edge(const struct polygon_touch *t) { return v_le(v_abs(t->sine), v_set(PARALLEL)); }
-
-/* As find_feature_at() has it. */
-INLINE struct feature find_polygon_feature(const struct polygon_touch *t, vec2 n, bool is_b) {
-    const vm parallel = lies_on_edge(t);
-    const struct arcs other = {.center = t->other, .radius = t->corner.radius};
-    const vec2 point = find_point(&t->corner, n, is_b);
-    const vf along = v2_cross(n, point), there = v2_cross(n, find_point(&other, n, is_b));
-    return (struct feature){.across = v2_dot(n, point),
-                            .along_min = v_select(parallel, v_min(along, there), along),
-                            .along_max = v_select(parallel, v_max(along, there), along),
-                            .record = vi_select(vm_and(parallel, t->at_end), t->next, t->record),
-                            .radius = t->corner.radius,
-                            .start = t->corner.start,
-                            .end = t->corner.end};
+/* The edge next to the corner that touches, as a side of a box. */
+INLINE struct box_side find_polygon_side(const struct polygon_touch *t, bool is_b) {
+    const vm here_is_low = is_b ? vm_not(t->at_end) : t->at_end;
+    return (struct box_side){.normal = t->normal,
+                             .low = v2_select(here_is_low, t->corner.center, t->other),
+                             .high = v2_select(here_is_low, t->other, t->corner.center),
+                             .behind = vm_not(t->at_end)};
 }
 
-/* As find_edge() has it. */
-INLINE struct edge find_touching_edge(const struct call *call, const struct queue *queue, int k,
-                                      const struct polygon_touch *t, vec2 n, bool is_b) {
-    const struct arcs other = {.center = t->other, .radius = t->corner.radius};
-    const struct edge_end here = find_edge_end(&t->corner, t->normal, n, is_b),
-                          there = find_edge_end(&other, t->normal, n, is_b);
-    const vm here_is_low = is_b ? vm_not(t->at_end) : t->at_end;
-    return (struct edge){
-        .is_edge = vm_front(V_WIDTH),
-        .offered = v_le(v_abs(t->sine), v_set(call->batch->flat_sine)),
-        .parallel = lies_on_edge(t),
-        .low = select_edge_end(here_is_low, &here, &there),
-        .high = select_edge_end(here_is_low, &there, &here),
-        .before = find_number_of(queue, k, vi_select(t->at_end, t->record, t->next), is_b),
-        .after = find_number_of(queue, k, vi_select(t->at_end, t->next, t->record), is_b),
-        .arc_radius = t->corner.radius,
-    };
+INLINE struct side_arcs find_polygon_arcs(const struct queue *queue, int k, const struct polygon_touch *t, bool is_b) {
+    const vf radius = t->corner.radius;
+    const vi count = get_arc_count(get_bits(queue, is_b ? INFO_B : INFO_A, k));
+    const vi before = find_number_of(queue, k, vi_select(t->at_end, t->record, t->next), is_b);
+    const vi behind = vi_add(before, vi_set(1));
+    return (struct side_arcs){radius, radius, radius, before, vi_select(vi_lt(behind, count), behind, vi_set(0))};
+}
+
+INLINE vi find_polygon_reach(const struct polygon_touch *t, vec2 n, vi info) {
+    const struct feature corner = {.start = t->corner.start, .end = t->corner.end};
+    return find_reach(&corner, n, info, v_le(v_abs(t->sine), v_set(PARALLEL)));
 }
 
 /* Writes the rows of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void write_polygons(const struct call *call, const struct queue *queue, int k, vm keep, vf margin,
                            const struct polygon_contact *c, bool edges) {
-    const vec2 n = c->normal, to_world = get_vec2(queue, ROTATION_A, k);
-    const struct feature on_a = find_polygon_feature(&c->a, n, false), on_b = find_polygon_feature(&c->b, n, true);
-    const vec2 place = find_contact_place(&on_a, &on_b);
-    const vm edge_a = lies_on_edge(&c->a), edge_b = lies_on_edge(&c->b);
-    const vi pairs = get_bits(queue, PAIR, k);
-    const vi number_a = find_number_of(queue, k, on_a.record, false),
-             number_b = find_number_of(queue, k, on_b.record, true);
-    const vi of_edge = vi_set(NARC_FEATURE_EDGE), zero = vi_set(0);
-    const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
-    const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
-    const vf flat = v_set(INFINITY);
-    const bool reaches = has_reaches(call);
-    const struct answer answer = {.separation = c->separation,
-                                  .normal = v2_rotate(to_world, n),
-                                  .point = v2_rotate(to_world, v2_rotate(n, place)),
-                                  .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
-                                  .radius_a = v_select(edge_a, flat, on_a.radius),
-                                  .radius_b = v_select(edge_b, flat, on_b.radius),
-                                  .reach_a = reaches ? find_reach(&on_a, n, get_bits(queue, INFO_A, k), edge_a) : zero,
-                                  .reach_b = reaches ? find_reach(&on_b, n, get_bits(queue, INFO_B, k), edge_b) : zero};
-    char *to[V_WIDTH];
-    find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
-    if (edges) {
-        const struct sides sides = {.a = find_touching_edge(call, queue, k, &c->a, n, false),
-                                    .b = find_touching_edge(call, queue, k, &c->b, n, true),
-                                    .number_a = number_a,
-                                    .number_b = number_b,
-                                    .n = n,
-                                    .to_world = to_world,
-                                    .position_b = get_vec2(queue, POSITION, k),
-                                    .place = place,
-                                    .margin = margin,
-                                    .named = vm_front(V_WIDTH)};
-        write_sides(call, to, pairs, &answer, &sides);
-    } else {
-        write_rows(call, to, find_numbers(call, pairs), &answer);
-    }
+    const vec2 n = c->normal;
+    const struct box_contact contact = {c->separation, n, find_polygon_side(&c->a, false),
+                                        find_polygon_side(&c->b, true), keep};
+    const vi reaches[] = {find_polygon_reach(&c->a, n, get_bits(queue, INFO_A, k)),
+                          find_polygon_reach(&c->b, n, get_bits(queue, INFO_B, k))};
+    const struct touching_sides sides = {.a = find_polygon_arcs(queue, k, &c->a, false),
+                                         .b = find_polygon_arcs(queue, k, &c->b, true),
+                                         .pairs = get_bits(queue, PAIR, k),
+                                         .to_world = get_vec2(queue, ROTATION_A, k),
+                                         .position_b = get_vec2(queue, POSITION, k),
+                                         .reaches = reaches};
+    struct told_sides told = tell_sides(&contact, &sides);
+    const vi feature = told.answer.feature;
+    char *place[V_WIDTH];
+    find_places(
+        call, sides.pairs,
+        keep_fronts(call, queue, k, keep, c->separation, n, vi_and(feature, vi_set(0xff)), vi_shift_right(feature, 8)),
+        place);
+    write_touching(call, &contact, &sides, &told, margin, place, edges);
 }
 
 #endif

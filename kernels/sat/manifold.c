@@ -14,6 +14,7 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "piece/edge_rows.inl"
 #include "polygon/polygon_rows.inl"
 #include "sat/answers.inl"
 
@@ -38,6 +39,10 @@ static void answer_edges_of_capsules(const struct call *call, const struct box_q
     answer_boxes(call, queue, k, live, true, true);
 }
 
+static vm answer_manifolds_on_edges(const struct call *call, const struct edge_contact *contact) {
+    return answer_on_edges(call, contact, true);
+}
+
 size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                             const narc_rows *out) {
     static const struct question manifolds = {.kind = MANIFOLD_ROWS,
@@ -46,7 +51,9 @@ size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count,
                                               .edges = answer_edges,
                                               .polygons = NARC_SHORTCUTS ? answer_edges_of_polygons : NULL,
                                               .boxes = NARC_SHORTCUTS ? answer_edges_of_boxes : NULL,
-                                              .capsules = NARC_SHORTCUTS ? answer_edges_of_capsules : NULL};
+                                              .capsules = NARC_SHORTCUTS ? answer_edges_of_capsules : NULL,
+                                              .on_edges =
+                                                  NARC_PIECES && NARC_CIRCLE_FORMS ? answer_manifolds_on_edges : NULL};
     struct rows rows;
     const struct call call = begin_rows(&manifolds, batch, first, count, skipped, out, &rows);
     NARC_NAMED(find_rows)(&call);

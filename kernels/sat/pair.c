@@ -98,7 +98,7 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
     const struct queue *const queue = &queues[DECIDE];
     const vm live = vm_front(1);
     vm certain;
-    struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, false, &certain);
+    struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, &certain);
     if (HAS_FORMULA && !vm_any(certain))
         gap = find_gap(call->batch->shapes, queue, 0, live, true);
     else if (!vm_any(certain))

@@ -21,7 +21,6 @@
 #include "box/box_rows.inl"
 #include "box/circles.inl"
 #include "kernels.h"
-#include "piece/beside.inl"
 #include "piece/circles_beside.inl"
 #include "piece/concave_detour.inl"
 #include "piece/edges_below.inl"
@@ -54,44 +53,25 @@ static void answer_rows(const struct call *call, struct queue *queues, int begin
     answer_settled(call, queues, begin, false);
 }
 
-static void answer_settled_rows(const struct call *call, struct queue *queues) {
-    const bool edges = call->question->kind == MANIFOLD_ROWS;
-    if (queues[ANSWER].count >= FLUSH)
-        run_stage(call, answer_rows, queues, ANSWER);
-    if (edges && queues[ANSWER_EDGES].count >= FLUSH)
-        run_stage(call, call->question->edges, queues, ANSWER_EDGES);
+static vm answer_rows_on_edges(const struct call *call, const struct edge_contact *contact) {
+    return answer_on_edges(call, contact, false);
 }
 
 /* To settle pairs by their forms is worth a try if one in four is. */
-NOINLINE vm settle_some(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
-                        struct pieces_met *met) {
+INLINE vm settle_some(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met) {
     if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
         return open;
-    const vm left = settle_above_edges(call, queues, open, margin, item);
+    edge_answer *const second = call->question->on_edges;
+    const vm left = settle_above_edges(call, second ? second : answer_rows_on_edges, open, margin, item);
     met->asked += COUNT_BITS(vm_bits(open));
     met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
-    answer_settled_rows(call, queues);
-    if (queues[DECIDE].count >= FLUSH) {
-        run_stage(call, NARC_NAMED(search).stages[DECIDE], queues, DECIDE);
-        answer_settled_rows(call, queues);
-    }
     return left;
-}
-
-/* To look which pairs can be dropped is worth it if one in eight can; in few lanes a look costs what it saves. */
-INLINE vm drop_some(const struct call *call, vm open, const vf item[FIELDS], struct pieces_met *met) {
-    if (V_WIDTH <= 4 || (met->tried >= 2 * BLOCK && 8 * met->dropped < met->tried))
-        return open;
-    const vm kept = drop_beside(call, open, item);
-    met->tried += COUNT_BITS(vm_bits(open));
-    met->dropped += COUNT_BITS(vm_bits(vm_and_not(open, kept)));
-    return kept;
 }
 
 static vm settle_runs(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
                       struct pieces_met *met) {
-    open = settle_some(call, queues, open, margin, item, met);
-    return vm_any(open) ? drop_some(call, open, item, met) : open;
+    (void)queues;
+    return settle_some(call, open, margin, item, met);
 }
 
 /* Pairs of a circle and a piece come before those of two forms. Others come behind, out of order. */

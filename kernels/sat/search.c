@@ -45,7 +45,7 @@ static void climb_rows(const struct call *call, struct queue *queues, int begin)
 NOINLINE void decide_gap(const narc_shapes *shapes, const struct queue *queue, int k, vm live, struct gap *out_gap) {
     vm certain = vm_front(0);
     if (NARC_SHORTCUTS)
-        *out_gap = walk_near(shapes->records, queue, k, live, NARC_PIECES, &certain);
+        *out_gap = walk_near(shapes->records, queue, k, live, &certain);
     if (NARC_SHORTCUTS && !vm_any(vm_and_not(live, certain)))
         return;
     const struct gap gap = find_gap(shapes, queue, k, vm_and_not(live, certain), true);

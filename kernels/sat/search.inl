@@ -220,10 +220,8 @@ INLINE struct certified_maximum climb_and_certify(const narc_record *records, co
  * last bit the formula's. Of two equal values it takes the one that it meets first, from +x on. F and G are less than a
  * right angle apart: docs/algorithm.md, section 9. */
 
-/* The walk begins that much (radians) before the direction of the local maximum; at an edge of a run, which may end near
- * it, less. */
+/* The walk begins that much (radians) before the direction of the local maximum. */
 #define WALK_BACK 0x1p-6f
-#define WALK_EDGE 0x1p-11f
 
 /* Is a direction of length 1 within the sectors of both arcs, not close to an end? */
 INLINE vm is_well_inside(const struct arc_pair *arcs, vec2 n) {
@@ -232,11 +230,6 @@ INLINE vm is_well_inside(const struct arc_pair *arcs, vec2 n) {
     const vf starts = v_min(find_sine(mirror(n), mirror(arcs->a.start), no_circle),
                             find_sine(mirror(n), mirror(arcs->b.start), no_circle));
     return v_le(v_set(LEAST_ANGLE), v_min(ends, starts));
-}
-
-/* Up to an angle, are two directions of length 1 one? */
-INLINE vm is_close(vec2 m, vec2 n, float angle) {
-    return vm_and(v_le(v_abs(v2_cross(m, n)), v_set(angle)), v_lt(v_set(0), v2_dot(m, n)));
 }
 
 /* The fan at a direction: what comes before it belongs to the next round. */
@@ -254,24 +247,19 @@ INLINE struct fan start_fan_at(const narc_record *records, const struct queue *q
     return fan;
 }
 
-/* The gap near DIRECTION of the pairs k ... of a queue; *out_certain: it is the formula's answer. `edges`: there may be pairs
- * with a slack below 0, of which all is known but what lies between DIRECTION, the normal of a run's edge, and that of a side
- * of the body (piece/edges_below.inl). F and G must be these two. */
-INLINE struct gap walk_near(const narc_record *records, const struct queue *queue, int k, vm live, bool edges,
-                            vm *out_certain) {
+/* The gap near DIRECTION of the pairs k ... of a queue; *out_certain: it is the formula's answer. */
+INLINE struct gap walk_near(const narc_record *records, const struct queue *queue, int k, vm live, vm *out_certain) {
     const struct pose pose = get_pose(queue, k);
     const vec2 d = get_vec2(queue, DIRECTION, k), n = v2_divide(d, v2_length(d));
     const vf slack = get(queue, SLACK, k);
-    const vm none = vm_front(0), all = vm_front(V_WIDTH), of_edge = edges ? v_lt(slack, v_set(0)) : none;
-    const vf back = edges ? v_select(of_edge, v_set(WALK_EDGE), v_set(WALK_BACK)) : v_set(WALK_BACK);
-    const vec2 begin = v2_add(n, v2_scale(v2_right(n), back));
+    const vm none = vm_front(0), all = vm_front(V_WIDTH);
+    const vec2 begin = v2_add(n, v2_scale(v2_right(n), v_set(WALK_BACK)));
     struct fan fan = start_fan_at(records, queue, k, &pose, begin);
     const struct arc_pair arcs_before = fan.arcs;
     const vec2 f = get_fan_end(&fan);
-    const vm inside = vm_and(live, is_well_inside(&fan.arcs, begin)), f_of_a = fan.a_is_next;
+    const vm inside = vm_and(live, is_well_inside(&fan.arcs, begin));
     pass_junction(&fan, records, &pose);
     const vec2 g = get_fan_end(&fan);
-    const vm g_of_a = fan.a_is_next;
     const struct candidate found = find_candidate(&fan.arcs, f, g, all);
     const struct gap from_f = {found.value, v2_select(found.inside, found.u, f),
                                v_select(found.inside, found.length, v_set(1)), fan.record_a, fan.record_b};
@@ -293,15 +281,7 @@ INLINE struct gap walk_near(const narc_record *records, const struct queue *queu
                                     find_sine(mirror(f), mirror(arcs_before.b.start), none), v2_cross(f, u_before), all,
                                     ends_f.before, v_neg(value_f), slack);
     const vm narrow = vm_and(vm_and(ends_f.narrow, ends_g.narrow), v_lt(v_set(0), v2_dot(f, g)));
-    const vm clear = vm_and(narrow, vm_and(after, before));
-    *out_certain = vm_and(inside, clear);
-    if (edges) {
-        const vm f_of_run = vm_not(vm_xor(f_of_a, has_mark(get_bits(queue, INFO_A, k), NARC_PIECE_RUN)));
-        const vm here = is_close(v2_select(f_of_run, f, g), n, 0x1p-21f);
-        const vm beside = is_close(v2_select(f_of_run, g, f), n, 2 * LEAST_ANGLE);
-        const vm by_both = vm_and(vm_xor(f_of_a, g_of_a), vm_and(here, beside));
-        *out_certain = vm_and(inside, vm_or(vm_and(of_edge, by_both), vm_and_not(clear, of_edge)));
-    }
+    *out_certain = vm_and(inside, vm_and(narrow, vm_and(after, before)));
     return gap;
 }
 

@@ -12,6 +12,7 @@
 #include "guard.h"
 #include "merge.h"
 #include "narc_broad_phase.h"
+#include "plain.h"
 #include "plain_kernels.h"
 
 enum { ENTRIES = 400, MOST_ROWS = 64 };
@@ -342,7 +343,7 @@ static struct ground_bodies *begin_lines(struct test_random *random, size_t bodi
     struct ground_bodies *g = begin_chain(0, 0, random_between(random, -PI, PI));
     const size_t lines = 1 + random_below(random, 3);
     for (size_t k = 0; k < lines; k++) {
-        walk_line(&g->walk, random_log_between(random, 0.3, 4));
+        walk_line(&g->walk, random_log_between(random, random_below(random, 8) ? 0.3 : 1e-4, 4));
         const double turn = random_below(random, 3) ? random_log_between(random, 1e-5, 1e-3) : 0.15;
         walk_arc(&g->walk, random_below(random, 2) ? 0 : random_log_between(random, 0.1, 2), turn);
     }
@@ -352,7 +353,7 @@ static struct ground_bodies *begin_lines(struct test_random *random, size_t bodi
     return g;
 }
 
-/* Boxes and capsules on edges and near their ends, a side along them or nearly, or a corner. Between the normals of an edge
+/* Boxes and capsules on edges and near their ends, a side along them or nearly, or a corner: contacts, and manifolds. Between the normals of an edge
  * and of a side there may be that of the next edge. */
 TEST(test_sides_on_edges) {
     enum { BODIES = 200 };
@@ -360,7 +361,8 @@ TEST(test_sides_on_edges) {
     for (size_t round = 0; round < test_trials(120); round++) {
         struct ground_bodies *g = begin_lines(&random, BODIES);
         for (uint32_t k = 0; k < BODIES; k++) {
-            const double x = random_log_between(&random, 0.05, 1), y = random_log_between(&random, 0.05, 1);
+            const double thin = random_below(&random, 8) ? 0.05 : 1e-5; /* a side may be as short as rounding */
+            const double x = random_log_between(&random, 0.05, 1), y = random_log_between(&random, thin, 1);
             const double radius = random_below(&random, 2) ? 0 : random_log_between(&random, 0.02, 1);
             const struct shape capsule = {.count = 2,
                                           .arcs = {{x, 0, y, -PI / 2, PI / 2}, {-x, 0, y, PI / 2, 3 * PI / 2}}};
@@ -394,6 +396,14 @@ TEST(test_sides_on_edges) {
         }
         struct contacts right = ask(g, &(narc_query){.margin = margin});
         check_formula(g, &right);
+        const narc_bodies bodies = scene_bodies(&g->scene);
+        const narc_pairs pairs = scene_pairs(&g->scene);
+        struct manifolds rows = scene_manifolds(&g->scene, margin),
+                         plain = find_plain_manifolds(g->scene.store, &bodies, &pairs, &(narc_query){.margin = margin});
+        assert_int_equal(rows.count, plain.count);
+        assert_memory_equal(rows.rows, plain.rows, plain.count * sizeof *plain.rows);
+        free(rows.rows);
+        free(plain.rows);
         free(right.rows);
         end_chain(g);
     }

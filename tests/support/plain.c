@@ -53,9 +53,8 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
     return plain;
 }
 
-/* Manifolds, with the margins and angles of a query. */
-static struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies,
-                                             const narc_pairs *pairs, const narc_query *query) {
+struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                      const narc_query *query) {
     const narc_batch batch = begin_plain(shapes, bodies, pairs, query);
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
     plain.count = find_rows(narc_kernels_plain.manifold, &batch, sizeof *plain.rows, plain.rows);

@@ -29,6 +29,10 @@ struct plain_batch make_plain_batch(const struct scene *scene, const narc_bodies
 void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);
 void check_plain_contacts(const struct plain_batch *batch, const narc_query *query);
 
+/* What the deciding formula tells, with the margins and angles of a query; of no pair with a concave arc. */
+struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                      const narc_query *query);
+
 /* Arrays or structures. */
 enum layout any_layout(struct test_random *random);
 
