@@ -199,7 +199,6 @@ INLINE void begin_block_of_pieces(struct pieces_met *met, size_t block) {
 INLINE void note_forms(const struct call *call, struct pieces_met *met, int32_t shape_a, int32_t shape_b) {
     const narc_box_form *const forms = call->batch->shapes->boxes;
     const bool of_a = forms[shape_a].info & NARC_HAS_FRONT, of_b = forms[shape_b].info & NARC_HAS_FRONT;
-    met->formed = true;
     met->of_a = met->of_a || of_a;
     met->of_b = met->of_b || of_b;
     met->by_forms = met->by_forms || of_a || of_b;
@@ -291,7 +290,9 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
                 const vm taken = vm_and_not(all, asked);
                 if (NARC_PIECES && !LIKELY(!call->pieces) && vm_any(taken)) {
                     const int lane = k + FIND_LOWEST(vm_bits(taken));
-                    note_forms(call, &met, indices.shape_a[lane], indices.shape_b[lane]);
+                    met.formed = true;
+                    if (met.many)
+                        note_forms(call, &met, indices.shape_a[lane], indices.shape_b[lane]);
                 }
                 if (!vm_any(asked))
                     continue;
