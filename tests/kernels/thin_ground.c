@@ -359,4 +359,19 @@ TEST(test_front_only) {
         }
 }
 
+/* Balls in a shallow bowl of thick ground, no deeper than they are wide, or as their middle is in front. */
+TEST(test_balls_in_a_thick_bowl) {
+    const double sine = sin(0.25), cosine = cos(0.25);
+    struct turtle t = create_turtle(20 * sine, 20 - 20 * cosine, PI / 2 + 0.25);
+    walk_arc(&t, 20, -0.5);
+    AUTO(destroy_ground_scene_at)
+    struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){.thickness = 10});
+    const uint32_t shape = add_shape(s, circle_of(0.5));
+    for (double y = 0.61; y > -0.8; y -= 0.05) {
+        const struct body body = turn_body(shape, 0, y, 0);
+        assert_int_equal(ask(s, &body, (narc_query){0})->count, y < 0.5 && y > -0.5);
+        assert_int_equal(ask(s, &body, (narc_query){.front_only = 1})->count, y < 0.5 && y > 0);
+    }
+}
+
 TEST_MAIN("thin ground")
