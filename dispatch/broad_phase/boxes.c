@@ -281,22 +281,6 @@ void narc_forget_poses(narc_broad_phase *broad) {
         memset(broad->known.moved, 1, broad->body_capacity);
 }
 
-/* Are the listed bodies, and their shapes, there? */
-static narc_status check_moved(const narc_shapes *shapes, const narc_step *step, narc_error *error) {
-    const narc_bodies *const bodies = step->bodies;
-    for (size_t i = 0; i < step->moved_count; i++) {
-        const uint32_t body = narc_index_at(step->moved, i);
-        size_t one = 1;
-        if (body >= bodies->count)
-            return narc_fail(error, NARC_ERROR_INDEX, i, body, "step.moved[%zu] is body %lu, but there are %zu bodies",
-                             i, (unsigned long)body, bodies->count);
-        const narc_status status = narc_check_bodies(shapes, bodies, body, &one, NULL, error);
-        if (status != NARC_OK)
-            return status;
-    }
-    return NARC_OK;
-}
-
 bool narc_are_poses_known(const narc_broad_phase *broad, const narc_shapes *shapes, const narc_step *step) {
     const narc_known_poses *const known = &broad->known;
     return known->precision == step->bodies->x.precision && known->shapes == shapes &&
@@ -329,7 +313,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     narc_status status = NARC_OK;
     if (listed) {
         job.moved = step->moved;
-        status = check_moved(shapes, step, error);
+        status = narc_check_named(shapes, bodies, step->moved, step->moved_count, "step.moved", step->workers, error);
     } else
         status = narc_check_bodies(shapes, bodies, 0, &count, step->workers, error);
     if (status == NARC_OK)

@@ -104,6 +104,27 @@ static size_t find_next(const changes *all, narc_byte_column kind, size_t from, 
                             : narc_find_flag(broad->known.moved, from, end);
 }
 
+/* Pairs that are given have no boxes. */
+static inline bool has_moved(const narc_broad_phase *broad, size_t body) {
+    return broad->known.moved[body] && !broad->is_given;
+}
+
+/* What one body asks for: nothing, or LEFT and REST. */
+static inline unsigned look_at_body(const changes *all, const narc_pair_filter *filter, size_t k) {
+    const narc_broad_phase *const broad = all->update->broad;
+    const narc_box *const box = &broad->boxes_now[k];
+    unsigned other = 0;
+    bool left =
+        has_moved(broad, k) && (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k));
+    if (all->use_kinds)
+        other = kind_at(filter->kind, k) ^ broad->kinds[k];
+    if (all->use_sets) {
+        const narc_body_filter now = narc_read_filter(filter, k);
+        left |= is_other_set(&now, &broad->filters[k]);
+    }
+    return (left || other & (NARC_STATIC | NARC_SENSOR) ? LEFT : 0u) | (other & NARC_ASLEEP ? REST : 0u);
+}
+
 /* Bodies first .. end - 1, whose kept boxes and filters are those of the last list. */
 static void look_at_some(void *argument, size_t part, size_t first, size_t end) {
     changes *const all = argument;
@@ -111,38 +132,25 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     const narc_broad_phase *const broad = u->broad;
     const narc_pair_filter filter = filter_in_use(u); /* a copy, which nothing that is written could change */
     const float half = narc_find_kept_skin(u->step) / 2;
-    bool left = false, rest = false;
+    unsigned found = 0;
     size_t fresh_count = 0, k = first;
     (void)part;
     if (all->marks)
         memset(broad->fresh + first, 0, end - first);
     for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
-        const narc_box *const box = &u->broad->boxes_now[k], *const kept = &broad->kept_boxes[k];
-        const bool moved = broad->known.moved[k] && !broad->is_given; /* pairs that are given have no boxes */
-        bool out = false;
-        if (all->use_kinds) {
-            const unsigned other = kind_at(filter.kind, k) ^ broad->kinds[k];
-            out = other & (NARC_STATIC | NARC_SENSOR);
-            rest |= (other & NARC_ASLEEP) != 0;
-        }
-        if (all->use_sets) {
-            const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
-            out |= is_other_set(&now, then);
-        }
-        if (!moved && !out)
-            continue;
-        const bool has = narc_is_box(box);
-        out |= moved && (has ? !is_inside(box, kept) : has_kept_box(broad, k));
-        left |= out;
+        const narc_box *const box = &broad->boxes_now[k];
+        const unsigned own = look_at_body(all, &filter, k);
+        found |= own;
         if (!all->marks)
             continue;
-        const bool fresh = out || (moved && has && !is_near(box, kept, half));
+        const bool fresh =
+            own & LEFT || (has_moved(broad, k) && narc_is_box(box) && !is_near(box, &broad->kept_boxes[k], half));
         broad->fresh[k] = fresh;
         fresh_count += fresh;
     }
     atomic_fetch_add_explicit(&all->fresh_count, fresh_count, memory_order_relaxed);
-    if (left || rest)
-        atomic_fetch_or_explicit(&all->found, (left ? LEFT : 0u) | (rest ? REST : 0u), memory_order_relaxed);
+    if (found)
+        atomic_fetch_or_explicit(&all->found, found, memory_order_relaxed);
 }
 
 /* Are the pairs others than the last list's, whatever bodies do now: given ones, or found ones and no longer given, or were
@@ -184,22 +192,14 @@ static bool may_trust(const update *u, const narc_shapes *shapes) {
 static unsigned look_at_listed(const update *u) {
     const narc_broad_phase *const broad = u->broad;
     const narc_kept_list *const last = &broad->lists[broad->last];
+    const narc_pair_filter filter = filter_in_use(u);
+    const changes all = {.update = u, .use_kinds = broad->has_filter, .use_sets = broad->has_sets};
     unsigned found = 0;
-    for (size_t i = 0; i < u->step->moved_count; i++) {
+    for (size_t i = 0; i < u->step->moved_count && !(found & LEFT); i++) {
         const size_t k = narc_index_at(u->step->moved, i);
-        const narc_box *const box = &u->broad->boxes_now[k];
-        if ((last->has_ids && id_of(u, k) != last->ids[k]) ||
-            (!broad->is_given && (narc_is_box(box) ? !is_inside(box, &broad->kept_boxes[k]) : has_kept_box(broad, k))))
-            return WHOLE;
-        if (!broad->has_filter)
-            continue;
-        const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
-        const unsigned other = now.kind ^ broad->kinds[k];
-        if (other & (NARC_STATIC | NARC_SENSOR) || is_other_set(&now, then))
-            return WHOLE;
-        found |= other & NARC_ASLEEP ? REST : 0;
+        found |= last->has_ids && id_of(u, k) != last->ids[k] ? LEFT : look_at_body(&all, &filter, k);
     }
-    return found;
+    return found & LEFT ? WHOLE : found;
 }
 
 /* Are body k and body k of the last list the same, for all of both? */

@@ -349,11 +349,15 @@ TEST(says_what_is_wrong) {
     expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
     step.moved = NARC_ARRAY(moved);
     step.moved_count = 2;
-    expect_refused(contacts, w->store, &step, NARC_ERROR_INDEX, "step.moved[1] is body 160");
+    expect_refused(contacts, w->store, &step, NARC_ERROR_INDEX, "step.moved 1: the body is 160");
     w->body[1].shape = 9999;
     expect_refused(contacts, w->store, &step, NARC_ERROR_INDEX, "body 1: shape is 9999");
     w->body[1].shape = 0;
     step.moved_count = 1;
+    expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
+    w->body[1].shape = 9999;
+    expect_refused(contacts, w->store, &step, NARC_ERROR_INDEX, "step.moved 0: body 1 has shape 9999");
+    w->body[1].shape = 0;
     expect_ok(narc_update_contacts(contacts, w->store, &step, &r, &error), &error);
     const size_t count = r->count;
     step.moved_count = 0;
