@@ -110,7 +110,8 @@ static inline bool was_ground(const pair_view *v, size_t k) {
 
 /* What is known of a pair with ground while it is planned. FIRST: it is the first one of its body; RESTS: neither body moves.
  * OLD: it must be asked, whatever has moved; OTHER: so must all ground of the body, as a pair was ground, or is no sensor's
- * any more. What all pairs of the body are lies in the bits from OF_BODY on. */
+ * any more. HELD: its bodies have not moved too far for what is kept of it. What all pairs of the body are lies in the bits from
+ * OF_BODY on of its first one. */
 enum {
     OF_FIRST = 1,
     OF_RESTS = 2,
@@ -120,9 +121,9 @@ enum {
     OF_MOVING = 32,
     OF_KEPT = 64,
     OF_BARE = 128,
-    OF_TOUCHING = 256,
-    OF_BODY = 512,
-    OF_PAIR = OF_BODY - 1
+    OF_HELD = 256,
+    OF_TOUCHING = 512,
+    OF_BODY = 1024
 };
 
 /* Of the body of pair k, was another pair ground that is none? */
@@ -178,41 +179,30 @@ static inline unsigned find_look(const pair_view *v, const narc_pair_work *work)
            (v->state[work->slot] & NARC_TOUCHING) * LOOK_TOUCHING;
 }
 
-/* What a pair is, with what those behind it of its body are; `all` is that on return, or 0 in front of the first one. */
-static inline uint32_t gather_back(unsigned what, uint32_t *all) {
-    const uint32_t both = *all | what;
-    *all = both & ((what & OF_FIRST) - 1u);
-    return what + both * OF_BODY;
-}
-
-/* The same of all pairs of its body, from what gather_back() has made. */
-static inline uint32_t gather(uint32_t what, uint32_t *all) {
-    const uint32_t is_first = 0u - (what & OF_FIRST), own = what & OF_PAIR;
-    *all = ((what - own) & is_first) | (*all & ~is_first);
-    return own | *all;
-}
-
 /* Finds what all pairs of ground are, and lists in `ground_asked` those of which something is kept that may decide, of bodies of
  * which something has changed. Returns how many these are. */
-static size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, uint32_t *out, uint32_t keeps) {
+NOINLINE size_t look_at_all_ground(const narc_contact_step *s, const pair_view *v, uint32_t *out, uint32_t keeps) {
     const narc_contacts *const c = s->contacts;
     const narc_pair_work *const pairs = c->ground_pairs;
     const size_t count = c->ground_pair_count;
     uint32_t *const known = c->known, *const asked = c->ground_asked;
-    uint32_t looks[LOOKS], all = 0;
+    uint32_t looks[LOOKS];
     size_t kept = 0;
     list_looks(looks);
-    for (size_t i = count; i-- > 0;) {
-        unsigned what = pairs[i].what | looks[find_look(v, &pairs[i])];
-        if (!c->ground_known && what & OF_FIRST)
-            what |= find_other(v, pairs[i].pair, s->list->pairs.count);
-        out[i] = gather_back(what, &all);
-    }
-    for (size_t i = 0; i < count; i++) {
-        out[i] = gather(out[i], &all);
-        known[kept] = pairs[i].slot;
-        asked[kept] = pairs[i].pair;
-        kept += (out[i] & keeps) == keeps;
+    for (size_t i = 0; i < count;) {
+        const size_t first = i, before = kept;
+        uint32_t all = c->ground_known ? 0 : find_other(v, pairs[i].pair, s->list->pairs.count);
+        do {
+            const narc_pair_work pair = pairs[i];
+            const uint32_t own = pair.what | looks[find_look(v, &pair)];
+            known[kept] = pair.slot;
+            asked[kept] = pair.pair;
+            kept += (own & keeps) == keeps;
+            out[i] = own;
+            all |= own;
+        } while (++i < count && !(pairs[i].what & OF_FIRST));
+        out[first] |= all * OF_BODY;
+        kept = all & OF_CHANGED ? kept : before;
     }
     for (size_t i = 0; s->step->ahead.base && i < count; i++)
         c->ground_margins[pairs[i].pair] = narc_find_margin(s, v->a[pairs[i].pair], v->b[pairs[i].pair]);
@@ -229,70 +219,48 @@ static bool may_more_follow(const narc_contact_step *s, const narc_pair_work *wo
     return may;
 }
 
-/* The pairs of ground while it is found out what is done with them. */
-typedef struct ground_plan {
-    const narc_pair_work *pairs;
-    const uint32_t *what;
-    size_t count;
-    uint32_t keeps;       /* what a pair is of which something is kept that may decide; */
-    const uint32_t *left; /* those whose bodies have moved too far for it */
-    size_t moved, moved_count;
-} ground_plan;
-
-/* Does what is kept of pair i count still? Pairs are asked about in their order. */
-static inline uint32_t take_held(ground_plan *p, size_t i) {
-    const uint32_t kept = (p->what[i] & p->keeps) == p->keeps;
-    const uint32_t goes = kept & (p->moved < p->moved_count) & (p->left[p->moved] == p->pairs[i].pair);
-    p->moved += goes;
-    return kept - goes;
-}
-
-/* What is done with all pairs of a body, the first one of which is number `first`. All its rows with ground follow it, if there
- * are some; rows tell of other ground only while none moves. */
-static unsigned plan_body(const narc_contact_step *s, const pair_view *v, const ground_plan *plan, size_t first) {
-    const uint32_t all = plan->what[first] / OF_BODY;
-    const bool touches = all & OF_TOUCHING;
-    ground_plan p = *plan;
-    bool follows =
-        s->step->recycling > 0 && touches && !(all & (OF_OLD | OF_OTHER)) && !(all & OF_MOVING && all & OF_BARE);
-    bool all_held = true;
-    size_t end = first;
-    do {
-        const bool held = take_held(&p, end);
-        all_held = all_held && held;
-        if (follows && p.what[end] & OF_TOUCHING)
-            follows = held && may_more_follow(s, &p.pairs[end]);
-    } while (++end < p.count && !(p.what[end] & OF_FIRST));
-    bool apart = !touches && !all_held; /* one that touches is better asked */
-    for (size_t i = first; apart && i < end; i++)
-        apart = are_apart(v, v->a[p.pairs[i].pair], v->b[p.pairs[i].pair]);
-    return follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
-}
-
 /* Pairs of a body are asked together, as their rows are merged; but those that have none are not while what is kept of them
- * holds. */
+ * holds. All its rows with ground follow it, if there are some; rows tell of other ground only while none moves. */
 static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
     narc_contacts *const c = s->contacts;
+    const narc_pair_work *const pairs = c->ground_pairs;
     narc_pair_work *const work = c->work;
     uint32_t *const asked = c->ground_asked, *const what = c->asked; /* which is not in use yet */
+    uint32_t *const left = c->left;                                  /* of `asked`, as it was, in its order */
     const bool recycles = s->step->recycling > 0;                    /* rows follow, or pairs without one stay so */
-    const uint32_t keeps = OF_CHANGED * OF_BODY + (recycles ? OF_KEPT : OF_KEPT | OF_BARE);
+    const uint32_t keeps = recycles ? OF_KEPT : OF_KEPT | OF_BARE;
     const size_t kept_count = look_at_all_ground(s, v, what, keeps), moved_count = narc_find_moved(s, kept_count);
-    ground_plan plan = {c->ground_pairs, what, c->ground_pair_count, keeps, c->left, 0, moved_count};
-    unsigned planned = NARC_ASK_GROUND;
-    size_t to = 0, asked_count = 0;
-    for (size_t i = 0; i < plan.count; i++) {
-        const uint32_t one = what[i], changed = one / (OF_CHANGED * OF_BODY) & 1;
-        if (one & OF_TOUCHING * OF_BODY && !recycles)
-            planned = NARC_ASK_GROUND;
-        else if (one & OF_FIRST && changed)
-            planned = plan_body(s, v, &plan, i);
-        const uint32_t held = take_held(&plan, i) & one / OF_BARE;
-        const unsigned own = one & OF_RESTS ? NARC_REST : planned, asks = own == NARC_ASK_GROUND;
-        work[to] = (narc_pair_work){plan.pairs[i].pair, plan.pairs[i].slot, own};
-        to += changed & ~(asks & held);
-        asked[asked_count] = plan.pairs[i].pair;
-        asked_count += changed & asks & ~held;
+    const size_t count = c->ground_pair_count;
+    size_t to = 0, asked_count = 0, moved = 0;
+    left[moved_count] = UINT32_MAX; /* no pair */
+    for (size_t first = 0, end = 0; first < count; first = end) {
+        const uint32_t all = what[first] / OF_BODY, changed = (all & OF_CHANGED) != 0;
+        const bool touches = all & OF_TOUCHING;
+        bool all_held = true,
+             follows = recycles && touches && !(all & (OF_OLD | OF_OTHER)) && !(all & OF_MOVING && all & OF_BARE);
+        do {
+            const uint32_t own = what[end], goes = left[moved] == pairs[end].pair;
+            const uint32_t held = changed & ((own & keeps) == keeps) & ~goes;
+            moved += goes;
+            what[end] = own | held * OF_HELD;
+            all_held &= held != 0;
+            if (follows && own & OF_TOUCHING)
+                follows = held && may_more_follow(s, &pairs[end]);
+        } while (++end < count && !(what[end] & OF_FIRST));
+        if (!changed)
+            continue;
+        bool apart = !touches && !all_held; /* one that touches is better asked */
+        for (size_t i = first; apart && i < end; i++)
+            apart = are_apart(v, v->a[pairs[i].pair], v->b[pairs[i].pair]);
+        const unsigned planned = follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
+        for (size_t i = first; i < end; i++) {
+            const unsigned own = what[i] & OF_RESTS ? NARC_REST : planned, asks = own == NARC_ASK_GROUND;
+            const unsigned idle = asks & ((what[i] & (OF_HELD | OF_BARE)) == (OF_HELD | OF_BARE));
+            work[to] = (narc_pair_work){pairs[i].pair, pairs[i].slot, own};
+            asked[asked_count] = pairs[i].pair;
+            to += 1 - idle;
+            asked_count += asks - idle;
+        }
     }
     c->work_count = to;
     c->ground_count = asked_count;
