@@ -47,7 +47,7 @@ static void expect_area(const char *text, const char *layer, size_t contours, do
 static const double PI_ = 3.14159265358979323846;
 
 TEST(arcs_stay_arcs) {
-    narc_path *path;
+    AUTO(narc_destroy_path_at) narc_path *path;
     narc_arc_chains chains;
     narc_error error;
     size_t arcs = 0, lines = 0;
@@ -64,7 +64,6 @@ TEST(arcs_stay_arcs) {
     assert_int_equal(arcs, 6);
     assert_int_equal(lines, 6);
     narc_release_chains(&chains);
-    narc_destroy_path(path);
     expect_area(BEGIN ROUND_BOX SLOT END, "plate", 1, 6000 - (4 - PI_) * 100);
     expect_area(BEGIN ROUND_BOX SLOT END, "slot", 1, 80 + 4 * PI_);
 }

@@ -107,19 +107,17 @@ static void expect_polygon(const narc_point *points, size_t count, size_t parts)
 
 TEST(an_l_is_two_boxes) {
     const narc_point l[] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     narc_arc box[NARC_MAX_ARCS];
     size_t count;
     draw_polygon(path, l, 6);
-    cuts *of = cut(path);
+    AUTO(free_at) cuts *of = cut(path);
     assert_int_equal(of->count, 2);
     for (size_t k = 0; k < 2; k++) {
         assert_int_equal(narc_build_box(of->parts[k].area, 1, 0, box, &count, NULL), NARC_OK);
         assert_memory_equal(of->parts[k].arcs, box, sizeof *box * 4);
     }
     assert_true(of->parts[0].area + of->parts[1].area == 3);
-    free(of);
-    narc_destroy_path(path);
     expect_polygon(l, 6, 2);
 }
 
@@ -200,9 +198,8 @@ TEST(random_stars) {
             draw_polygon(path, points, 3);
             inwards += 3;
         }
-        narc_contours flat = flatten(path);
+        AUTO(narc_release_contours) narc_contours flat = flatten(path);
         const bool inside = is_inside(&flat, (narc_point){0, 0});
-        narc_release_contours(&flat);
         if (inside && corners > 7) { /* holes are within */
             AUTO(free_at) cuts *of = cut(path);
             if (of->count > inwards + 1 - holes)

@@ -249,7 +249,7 @@ TEST(survives_damage) {
     enum { FEWEST = 40 }; /* of fewer none need open, or all may */
     const size_t asked = test_trials(200), trials = asked < FEWEST ? FEWEST : asked;
     size_t size, opened = 0;
-    char *data = make_type1_font(operators, steps, &size);
+    AUTO(free_at) char *data = make_type1_font(operators, steps, &size);
     for (size_t trial = 0; trial < trials; trial++) {
         const size_t kept = trial % 2 ? size : random_below(&random, size) + 1;
         AUTO(free_at) unsigned char *copy = malloc(kept);
@@ -270,7 +270,6 @@ TEST(survives_damage) {
             narc_close_font(font);
         }
     }
-    free(data);
     assert_true(opened > 0 && opened < trials);
 }
 

@@ -59,7 +59,7 @@ static point mean_of(const struct reference_hull *hull) {
 
 /* From left to right and back: what does not turn left is no corner. */
 struct reference_hull reference_wrap(const narc_point *points, size_t count, narc_point origin) {
-    point *p = claim(count * sizeof *p);
+    AUTO(free_at) point *p = claim(count * sizeof *p);
     for (size_t k = 0; k < count; k++)
         p[k] = (point){(real)points[k].x - (real)origin.x, (real)points[k].y - (real)origin.y};
     qsort(p, count, sizeof *p, compare_points);
@@ -74,7 +74,6 @@ struct reference_hull reference_wrap(const narc_point *points, size_t count, nar
         hull.corners[hull.count++] = next;
     }
     hull.count -= hull.count > 1; /* the first, again */
-    free(p);
     const point mean = mean_of(&hull);
     for (size_t k = 0; k < hull.count; k++) {
         const point a = hull.corners[k], b = hull.corners[(k + 1) % hull.count];

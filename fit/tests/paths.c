@@ -25,7 +25,7 @@ static narc_status draw(narc_path *path, unsigned degree, const narc_point *poin
 
 TEST(refuses_to_draw_without_contour) {
     static const narc_point points[] = {{1, 2}, {3, 4}, {5, 6}};
-    narc_path *path = make_path();
+    AUTO(narc_destroy_path_at) narc_path *path = make_path();
     for (unsigned degree = 0; degree <= 3; degree++) {
         narc_error error;
         expect_error(draw(NULL, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
@@ -34,11 +34,9 @@ TEST(refuses_to_draw_without_contour) {
             assert_int_equal(draw(path, degree, points, NULL), NARC_ERROR_ARGUMENT);
         }
     }
-    narc_contours contours = flatten(path);
+    AUTO(narc_release_contours) narc_contours contours = flatten(path);
     assert_int_equal(contours.count, 0);
     assert_int_equal(contours.point_count, 0);
-    narc_release_contours(&contours);
-    narc_destroy_path(path);
     narc_destroy_path(NULL);
     narc_release_contours(NULL);
     assert_int_equal(narc_create_path(NULL), NARC_ERROR_ARGUMENT);

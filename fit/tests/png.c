@@ -248,9 +248,8 @@ TEST(reads_each_kind_of_format) {
             inverse[k] = (uint16_t)(FULL - blob[k]);
             full[k] = FULL;
         }
-        const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, full, blob);
+        AUTO(free_at) const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, full, blob);
         AUTO(narc_release_contours) narc_contours expected = read_png(file, 0.5);
-        free(file.bytes);
         for (int depth = 8; depth <= 16; depth *= 2) {
             const struct png_format gray = {depth, PNG_COLOR_TYPE_GRAY, false};
             const struct png_format gray_alpha = {depth, PNG_COLOR_TYPE_GRAY_ALPHA, false};

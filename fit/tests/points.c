@@ -180,7 +180,7 @@ TEST(refuses_odd_json) {
                  "line 2: a NUL byte");
     expect_error(read_exactly(narc_read_json, "{\"a\\u0000\":\n[[1, 1]]}", 21, path, &error), NARC_ERROR_FORMAT, &error,
                  "line 1: a NUL character");
-    char *deep = malloc(100001); /* nesting that would use up the stack */
+    AUTO(free_at) char *deep = malloc(100001); /* nesting that would use up the stack */
     assert_non_null(deep);
     memset(deep, '[', 100000);
     deep[100000] = 0;
@@ -193,7 +193,6 @@ TEST(refuses_odd_json) {
     deep[1000] = 'x';
     expect_error(read_exactly(narc_read_json, deep, 1001, path, &error), NARC_ERROR_FORMAT, &error,
                  "line 1: not valid JSON here: 'x'");
-    free(deep);
     expect_unchanged(path);
 }
 

@@ -326,9 +326,9 @@ TEST(leaves_out_faint_shadows) {
 /* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
 /* A pixel of strong ink at a side of the page, and faint ink next to it: all within eight pixels counts, and is one. */
 TEST(keeps_faint_ink_at_sides) {
+    AUTO(narc_release_contours)
     narc_contours whole = read_contours("viewBox='0 0 100 100'", "<rect width='100' height='1'/>");
     const double pixel = whole.flatness;
-    narc_release_contours(&whole);
     for (int side = 0; side < 4; side++) {
         char body[300];
         snprintf(body, sizeof body,

@@ -300,7 +300,7 @@ TEST(test_frames) {
     struct corpus corpus = make_corpus("gjk frames", NARC_FLOAT64, 0.3, false);
     solve_corpus(&corpus);
     const size_t count = corpus.scene.pair_count;
-    uint32_t *simplexes = create_simplexes(count);
+    AUTO(free_at) uint32_t *simplexes = create_simplexes(count);
     size_t wrong = check_warm_starts(&corpus, simplexes, "zeros, then own");
     for (size_t k = 0; k < count; k++)
         assert_true(simplexes[k] != 0);
@@ -310,7 +310,6 @@ TEST(test_frames) {
         solve_corpus(&corpus);
         wrong += check_warm_starts(&corpus, simplexes, "after a step");
     }
-    free(simplexes);
     destroy_corpus(&corpus);
     assert_int_equal(wrong, 0);
 }

@@ -469,10 +469,9 @@ TEST(test_circles_in_one_place) {
                                              .tolerance = ways[k].tolerance,
                                              .iterations = ways[k].iterations,
                                              .out_outcomes = &outcome};
-        struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
+        AUTO(free_at) struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
         assert_int_equal(outcome, ways[k].outcome);
         assert_true(fabs((double)found.rows[0].separation + 2) <= ways[k].off);
-        free(found.rows);
         AUTO(free_at) uint64_t *bits = query_overlaps(&scene, &options, NULL);
         assert_true(bit_is_set(bits, 0) && outcome == NARC_OUTCOME_DONE);
     }

@@ -587,13 +587,11 @@ TEST(saves_how_long_no_entry_is_made) {
         few->contacts = loaded;
         step_few(few);
         const size_t size = narc_count_contact_bytes(kept);
-        char *const one = malloc(size), *const other = malloc(size);
+        AUTO(free_at) char *const one = malloc(size), *const other = malloc(size);
         assert_true(one && other && narc_count_contact_bytes(loaded) == size);
         assert_int_equal(narc_save_contacts(kept, one, size, NULL), NARC_OK);
         assert_int_equal(narc_save_contacts(loaded, other, size, NULL), NARC_OK);
         assert_memory_equal(one, other, size);
-        free(one);
-        free(other);
         few->contacts = kept;
     }
 }

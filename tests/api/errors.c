@@ -272,7 +272,7 @@ TEST(test_selections) {
     struct call range = f.call;
     range.query = (narc_query){.first = 64};
     selection[1] = 4;
-    struct outputs *out = make_junk(sizeof *out);
+    AUTO(free_at) struct outputs *out = make_junk(sizeof *out);
     for (size_t q = 0; q < question_count; q++) {
         narc_error error;
         if (questions[q].polygons)
@@ -282,7 +282,6 @@ TEST(test_selections) {
         expect_ok(run(&questions[q], &f.call, out, &error), &error);
         assert_int_equal(out->count, 4);
     }
-    free(out);
     static const size_t too_many[] = {PAIRS + 1, UINT32_MAX, SIZE_MAX};
     for (size_t k = 0; k < sizeof too_many / sizeof *too_many; k++) {
         f.call.query.selection_count = too_many[k];

@@ -89,7 +89,7 @@ static void check_events(float sleep_time, uint64_t seed) {
     settings.sleep_time = sleep_time;
     run r = begin_run("rain", settings, seed);
     world *w = &r.world;
-    record *seen = calloc(1, sizeof *seen);
+    AUTO(free_at) record *seen = calloc(1, sizeof *seen);
     assert_non_null(seen);
     struct test_random random = {seed};
     world_body eye = w->bodies[1];
@@ -120,7 +120,6 @@ static void check_events(float sleep_time, uint64_t seed) {
     }
     print_message("%zu begin, %zu end, %zu bodies of %d\n", seen->begins, seen->ends, w->body_count, (int)w->last_id);
     assert_true(seen->begins > 100 && seen->ends > 100);
-    free(seen);
     end_run(&r);
 }
 

@@ -211,12 +211,11 @@ static void check_rows(struct test_random *random, const struct batch *batch, fl
     assert_memory_equal(rows, dense, count * size);
 
     /* From the last one in memory backwards. */
-    struct place *backwards = make_junk(count * sizeof *backwards);
+    AUTO(free_at) struct place *backwards = make_junk(count * sizeof *backwards);
     query.row_stride = -(ptrdiff_t)sizeof *places;
     assert_int_equal(ask(batch, &query, &backwards[count - 1].row, count, &again, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_memory_equal(&backwards[k], &places[count - 1 - k], sizeof *places);
-    free(backwards);
     query.row_stride = 0;
 
     /* Some pairs, in any order, and a sub-range of these: listed in that order, dense in the rows of the batch. */

@@ -101,7 +101,7 @@ TEST(an_index_far_away_has_the_same_answers) {
     struct test_random random = test_random_named("far");
     for (size_t trial = 0; trial < test_trials(6); trial++) {
         struct room room = create_room(&random, NARC_FLOAT64, BODIES, 30);
-        struct test_ray *const rays = make_rays(&random, &room, RAYS, 30);
+        AUTO(free_at) struct test_ray *const rays = make_rays(&random, &room, RAYS, 30);
         room.scene.bodies[11] = room.scene.bodies[10]; /* it has flown away */
         move_to(room.scene.bodies, BODIES, (narc_point){-1e6, 0});
         for (size_t k = 0; k < RAYS; k++)
@@ -130,7 +130,6 @@ TEST(an_index_far_away_has_the_same_answers) {
         for (size_t k = 0; k < BODIES; k++)
             impacts += here.impact[k].count == NARC_CAST_HIT;
         assert_true(hits > RAYS / 4 && impacts > BODIES / 8);
-        free(rays);
         narc_destroy_index(room.index);
         free(room.boxes);
         free(room.category);

@@ -201,7 +201,7 @@ static void check_frame(const struct world *world, const struct question *q, nar
 static void check_world(struct world *world, struct test_random *random, struct question q, double step,
                         struct counts *moved) {
     enum { FRAMES = 8, TELEPORT = 5 };
-    narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
+    AUTO(guard_release_at) narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
     narc_entry_ends *const ends = q.manifolds ? guard_allocate(PAIRS * sizeof *ends) : NULL;
     struct counts counts = {0};
     memset(entries, 0, PAIRS * sizeof *entries);
@@ -217,7 +217,6 @@ static void check_world(struct world *world, struct test_random *random, struct 
         q.margin = margins[k] * (float)world->size;
         check_frame(world, &q, entries, ends, &counts);
     }
-    guard_release(entries);
     if (ends)
         guard_release(ends);
 }
@@ -299,7 +298,7 @@ TEST(test_made_up_rows) {
         struct question q = make_question(&random, 1);
         q.shifted = q.selected = false;
         make_world(&world, &random, NARC_FLOAT32, SMOOTH_AND_OTHERS, 1, true, 0);
-        narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
+        AUTO(guard_release_at) narc_entry *const entries = guard_allocate(PAIRS * sizeof *entries);
         narc_entry_ends *const ends = q.manifolds ? guard_allocate(PAIRS * sizeof *ends) : NULL;
         narc_manifold rows[PAIRS];
         memset(rows, 0, sizeof rows);
@@ -337,7 +336,6 @@ TEST(test_made_up_rows) {
         store_shape(world.scene.store, make_shape(&random, FAMILY_MANY));
         check_frame(&later, &q, entries, ends, &counts);
         assert_true(counts.smooth_left < counts.smooth);
-        guard_release(entries);
         if (ends)
             guard_release(ends);
         destroy_scene(&world.scene);

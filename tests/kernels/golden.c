@@ -340,12 +340,11 @@ static uint64_t hash_worlds(const struct scene *scene, int way) {
     narc_pairs found;
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     narc_find_pairs(broad, boxes, BODIES, &filter, NULL, NULL, NULL, 0, 0, &count, NULL);
-    uint32_t *const rows = calloc(2 * count, sizeof *rows);
+    AUTO(free_at) uint32_t *const rows = calloc(2 * count, sizeof *rows);
     assert_int_equal(narc_find_pairs(broad, boxes, BODIES, &filter, NULL, rows, rows + count, 0, count, &count, NULL),
                      NARC_OK);
     printf("  %zu pairs of boxes in worlds\n", count);
     uint64_t hash = test_hash_items(TEST_HASH_START, rows, 2 * count, sizeof *rows);
-    free(rows);
     for (size_t k = 0; k + 7 < BODIES; k += 7) {
         const narc_box box = boxes[k];
         boxes[k] = boxes[k + 7];
@@ -459,12 +458,12 @@ TEST(test_ground) {
     const narc_pairs pairs = {.count = pair_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b), .other_bodies = &pieces};
     check_bits(scene.store, &bodies, &pairs);
     hashes[0] = hash_query(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f, .flat_angle = 0.25f});
+    AUTO(free_at)
     struct manifolds merged = find_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f});
     printf("  %zu manifolds on ground\n", merged.count);
     assert_true(merged.count > GUESTS / 2);
     merged.count = narc_merge_manifolds(&pairs, NARC_ARRAY(runs), merged.rows, merged.count);
     hashes[1] = hash_reach_rows(hash_manifold_rows(TEST_HASH_START, merged), merged);
-    free(merged.rows);
     for (int turning = 0; turning < 2; turning++) {
         const narc_motions motions = {.x = NARC_ARRAY(motion),
                                       .y = {motion + GUESTS, -(ptrdiff_t)sizeof *motion},

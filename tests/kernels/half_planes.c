@@ -607,15 +607,13 @@ TEST(a_store_has_one_half_plane) {
     assert_false(narc_get_aabb(shapes, plane, 1, 0, 1, &box));
     assert_int_equal(shapes->plane_count, 1);
     const size_t size = narc_count_saved_bytes(shapes);
-    unsigned char *const bytes = malloc(size), *const others = malloc(size);
+    AUTO(free_at) unsigned char *const bytes = malloc(size), *const others = malloc(size);
     expect_ok(narc_save_shapes(shapes, bytes, size, &error), &error);
     expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
     assert_int_equal(loaded->plane_count, 1);
     expect_ok(narc_save_shapes(loaded, others, size, &error), &error);
     assert_memory_equal(bytes, others, size);
     narc_destroy_shapes(loaded);
-    free(bytes);
-    free(others);
     expect_ok(narc_remove_shape(shapes, plane, &error), &error);
     expect_ok(narc_remove_shape(shapes, plane, &error), &error);
     assert_int_equal(shapes->plane_count + shapes->piece_count, 0);

@@ -196,13 +196,13 @@ TEST(lives_as_its_boxes_do) {
                                                 .world = {worlds ? h->world : NULL, sizeof *h->world}};
             live(&random, h, trial & 4);
             narc_box *const boxes = guard_copy(h->boxes, h->count * sizeof *h->boxes);
+            AUTO(guard_release_at)
             uint32_t *const changed = guard_copy(h->changed, h->changed_count * sizeof *h->changed);
             const narc_index_column column = {changed, sizeof *changed};
             assert_int_equal(narc_update_index(index, boxes, h->count, lists ? &column : NULL,
                                                lists ? h->changed_count : 0, &options, NULL),
                              NARC_OK);
             guard_release(boxes);
-            guard_release(changed);
             check_index(index, h->boxes, h->count, masks ? h->category : NULL, worlds ? h->world : NULL);
         }
     }

@@ -75,7 +75,7 @@ static void check_question(narc_index *index, const struct question *q) {
     for (unsigned way = 0; way < 3; way++) {
         const narc_index_options options = {
             .category = {q->category, sizeof *q->category}, .fast = way == 1, .world = {q->world, sizeof *q->world}};
-        narc_box *other = NULL;
+        AUTO(free_at) narc_box *other = NULL;
         if (way == 2) {
             other = malloc((q->box_count + 1) * sizeof *other);
             for (size_t k = 0; k < q->box_count; k++)
@@ -84,7 +84,6 @@ static void check_question(narc_index *index, const struct question *q) {
         assert_int_equal(narc_build_index(index, other ? other : q->boxes, q->box_count, &options, NULL), NARC_OK);
         if (other)
             assert_int_equal(narc_update_index(index, q->boxes, q->box_count, NULL, 0, &options, NULL), NARC_OK);
-        free(other);
         for (unsigned w = 0; w < 4; w++) {
             narc_pairs pairs;
             ask(index, q, workers[w], &pairs);

@@ -432,14 +432,13 @@ TEST(longest_ways_go_by_number) {
         }
         index_room(&s.room, false, false);
         for (int kind = 0; kind < KINDS; kind++) {
-            char *const all = ask_one_by_one(&s, &kinds[kind], NARC_INSIDE_STOPS);
+            AUTO(free_at) char *const all = ask_one_by_one(&s, &kinds[kind], NARC_INSIDE_STOPS);
             for (size_t k = s.count; k < s.count * BODIES && kind != POINTS; k++) {
                 struct found a, b;
                 memcpy(&a, all + k * kinds[kind].size, sizeof a);
                 memcpy(&b, all + (k - s.count) * kinds[kind].size, sizeof b);
                 same += a.count && b.count && a.key > 0 && a.key == b.key;
             }
-            free(all);
             check_kind(&random, &s, &kinds[kind]);
         }
     }

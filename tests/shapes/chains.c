@@ -225,7 +225,7 @@ TEST(divides_rings) {
         AUTO(free_at) struct turtle t = walk_gear(teeth, 0.5);
         check_division(t.arcs, t.count, &ring);
     }
-    struct turtle shoe = create_turtle(2, 0, 0); /* a horseshoe */
+    AUTO(free_at) struct turtle shoe = create_turtle(2, 0, 0); /* a horseshoe */
     walk_arc(&shoe, 2, PI);
     walk_arc(&shoe, 0, PI / 2);
     walk_line(&shoe, 1);
@@ -235,12 +235,10 @@ TEST(divides_rings) {
     walk_line(&shoe, 1);
     walk_arc(&shoe, 0, PI / 2);
     assert_int_equal(check_division(shoe.arcs, shoe.count, &ring), 8);
-    free(shoe.arcs);
-    struct turtle cave = create_turtle(-1, 0, 0); /* a round hole */
+    AUTO(free_at) struct turtle cave = create_turtle(-1, 0, 0); /* a round hole */
     walk_arc(&cave, 1, -PI);
     walk_arc(&cave, 1, -PI);
     assert_int_equal(check_division(cave.arcs, cave.count, &ring), 4);
-    free(cave.arcs);
     for (size_t corners = 3; corners < 400; corners = corners * 3 / 2) { /* convex polygons, from a plain point on */
         AUTO(free_at) struct turtle t = create_turtle(1, 0, 0);
         for (size_t k = 0; k < corners; k++) {
@@ -256,7 +254,7 @@ TEST(divides_rings) {
 
 /* Corners that turn so much that a piece between two cuts has no other feature. */
 TEST(divides_sharp_corners) {
-    struct turtle sliver = create_turtle(0, 0, 0);
+    AUTO(free_at) struct turtle sliver = create_turtle(0, 0, 0);
     const double tip = 2.9;
     walk_line(&sliver, 4 * cos(PI - tip));
     walk_arc(&sliver, 0, tip);
@@ -265,8 +263,7 @@ TEST(divides_sharp_corners) {
     walk_line(&sliver, 2);
     walk_arc(&sliver, 0, tip);
     assert_int_equal(check_division(sliver.arcs, sliver.count, &(narc_chain_options){.closed = 1}), 4);
-    free(sliver.arcs);
-    struct turtle spike = create_turtle(4, 0, PI / 2); /* up and down from level ground */
+    AUTO(free_at) struct turtle spike = create_turtle(4, 0, PI / 2); /* up and down from level ground */
     walk_arc(&spike, 0, 0);
     walk_line(&spike, 2);
     walk_arc(&spike, 0, -1.4);
@@ -277,7 +274,6 @@ TEST(divides_sharp_corners) {
     walk_line(&spike, 2);
     walk_arc(&spike, 0, 0);
     assert_int_equal(check_division(spike.arcs, spike.count, NULL), 6);
-    free(spike.arcs);
     struct turtle cusp = create_turtle(4, 0, PI / 2); /* between two concave arcs, without an edge */
     walk_arc(&cusp, 2, -1.5);
     walk_arc(&cusp, 0, 3);

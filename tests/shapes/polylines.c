@@ -52,7 +52,7 @@ TEST(polylines_are_within_the_tolerance) {
         const double size = 2 * oracle_reach(shape.arcs, shape.count, samples.point[0]);
         const double tolerance = size * random_log_between(&random, 1e-5, 0.1), rounding = 1e-9 * size + samples.defect;
         size_t count;
-        narc_point *const line = flatten(shape.arcs, shape.count, true, NULL, tolerance, &count);
+        AUTO(free_at) narc_point *const line = flatten(shape.arcs, shape.count, true, NULL, tolerance, &count);
         for (size_t k = 0; k < samples.count; k++) {
             const double way = find_way_to(line, count, true, samples.point[k]);
             assert_true(way <= tolerance + rounding);
@@ -71,7 +71,6 @@ TEST(polylines_are_within_the_tolerance) {
             assert_true(count < 2 || hypot(b.x - a.x, b.y - a.y) > tolerance * 0x1p-10);
         }
         assert_true(area >= -rounding * size); /* counter-clockwise */
-        free(line);
         oracle_free(&samples);
     }
     assert_true(worst > 0.5);

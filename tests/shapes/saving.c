@@ -342,9 +342,8 @@ static narc_shapes *make_ground_store(struct test_random *random) {
     size_t count;
     narc_error error;
     for (int k = 0; k < 4; k++) {
-        struct turtle t = walk_ground(random, 20, 1.2);
+        AUTO(free_at) struct turtle t = walk_ground(random, 20, 1.2);
         expect_ok(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, 400, &count, &error), &error);
-        free(t.arcs);
         store_shape(shapes, box_of(1, 2 + k, 0));
     }
     return shapes;

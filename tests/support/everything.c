@@ -110,12 +110,11 @@ static void ask_lists(const struct everything *e, narc_index *index, const narc_
     const narc_status status =
         narc_find_pairs(broad, boxes, e->indexed, NULL, workers, NULL, NULL, 0, 0, &found, &error);
     assert_int_equal(status, found > 0 ? NARC_ERROR_CAPACITY : NARC_OK);
+    AUTO(guard_release_at)
     uint32_t *const a = guard_allocate(found * sizeof *a), *const b = guard_allocate(found * sizeof *b);
     expect_ok(narc_find_pairs(broad, boxes, e->indexed, NULL, workers, a, b, 0, found, &found, &error), &error);
     pairs = (narc_pairs){.count = found, .a = {a, sizeof *a}, .b = {b, sizeof *b}};
     hash = hash_pairs(hash, &pairs, near);
-    guard_release(a);
-    guard_release(b);
     narc_destroy_broad_phase(broad);
     memcpy(add_rows(answers, ANSWER_LISTS, 1), &hash, sizeof hash);
 }

@@ -181,11 +181,9 @@ void check_plain_scene(struct test_random *random, const struct scene *scene, co
         query.workers = &workers;
         if (m == 1)
             query.margins = (narc_float_column){each, sizeof *each};
-        struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
-        struct manifolds found = find_manifolds(scene->store, &columns.bodies, pairs, &query);
+        AUTO(free_at) struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
+        AUTO(free_at) struct manifolds found = find_manifolds(scene->store, &columns.bodies, pairs, &query);
         check_rows(scene, &right, &found, name);
-        free(right.rows);
-        free(found.rows);
         if (m != 1)
             check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .workers = &workers});
     }

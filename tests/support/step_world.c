@@ -60,9 +60,8 @@ static void lay_world(struct step_world *w) {
     narc_chain_entry entries[ROOM / 2];
     narc_error error;
     const enum chain_family families[] = {CHAIN_HILLS, CHAIN_BOWLS, CHAIN_MIXED, CHAIN_STEPS};
-    const struct chain chain = make_chain(&w->random, families[random_below(&w->random, 4)]);
+    AUTO(free_at) const struct chain chain = make_chain(&w->random, families[random_below(&w->random, 4)]);
     expect_ok(narc_add_chain(w->store, chain.arcs, chain.count, NULL, entries, ROOM / 2, &w->ground, &error), &error);
-    free(chain.arcs);
     for (size_t k = 0; k < w->ground; k++) {
         make_body(w, w->count + k);
         w->body[w->count + k] = (narc_body){entries[k].x, entries[k].y, 1, 0, 1, entries[k].shape};
