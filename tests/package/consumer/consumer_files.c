@@ -13,7 +13,7 @@ int main(void) {
     narc_shapes *shapes = NULL;
     narc_shape_list *list = NULL;
     narc_error error;
-    AUTO(free_at) char *text = NULL;
+    char *text = NULL;
     size_t size = 0;
     memset(&error, 0, sizeof error);
     if (narc_create_shapes(NULL, &shapes) || narc_read_shapes(file, strlen(file), NULL, shapes, &list, &error) ||
@@ -25,6 +25,7 @@ int main(void) {
     const size_t block = narc_find_named_shape(list, "block");
     const int good = block == 1 && list->items[block].arc_count == 4 && narc_count_shapes(shapes) == 2 &&
                      narc_find_named_shape(list, "cube") == list->count && text[size] == 0;
+    free(text);
     narc_destroy_shape_list(list);
     narc_destroy_shapes(shapes);
     return good ? 0 : 1;
