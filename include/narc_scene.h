@@ -247,8 +247,8 @@ typedef struct narc_ray_hit {
  * larger ones change no bit. Pieces of chains (narc_chains.h) are hit from the air: a
  * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
  * bodies, and those whose shape does not exist, are not hit: so that a single ray takes no longer where there are many
- * bodies, they are not looked at beforehand. Rays that start at the same place and follow each other in the order of
- * their directions, such as a scanner's, share their way.
+ * bodies, they are not looked at beforehand. Rays that start at the same place, ask of the same bodies and follow each other in
+ * the order of their directions, such as a scanner's, share their way.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_CAPACITY, and those for NARC_ISA.
  * Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 15. */

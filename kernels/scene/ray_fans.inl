@@ -53,10 +53,9 @@ struct nearest {
 struct fan {
     struct read_rays *rays;
     size_t first, count;
-    size_t left, right;                     /* the outermost */
-    float left_x, left_y, right_x, right_y; /* their directions */
+    float left_x, left_y, right_x, right_y; /* directions: none is further out */
     float limit;                            /* the largest */
-    struct chosen chosen;                   /* their world, all masks together */
+    struct chosen chosen;                   /* for all */
     float *limits;
     bool in_lanes;
     struct walk walks[MOST_TOGETHER]; /* in lanes: the first, and those that are asked alone */
@@ -65,16 +64,15 @@ struct fan {
 
 INLINE bool goes_in_lanes(const struct fan *f) { return IN_LANES && f->in_lanes; }
 
-/* Does a ray go the way of another one? */
-INLINE bool joins(const struct read_rays *rays, size_t first, size_t k) {
-    return rays->origin_x[k] == rays->origin_x[first] && rays->origin_y[k] == rays->origin_y[first] &&
-           rays->length[k] > 0 && (rays->x.inverse[k] < 0) == (rays->x.inverse[first] < 0) &&
-           (rays->y.inverse[k] < 0) == (rays->y.inverse[first] < 0);
+/* Do two rays ask of the same bodies? */
+INLINE bool is_alike(narc_index_column column, size_t a, size_t b) {
+    return !column.base || narc_index_at(column, a) == narc_index_at(column, b);
 }
 
-INLINE bool have_one_world(const narc_ray_batch *batch, const struct read_rays *rays, size_t first, size_t k) {
-    const narc_index_column world = batch->options->search.world;
-    return !world.base || narc_index_at(world, rays->number[first]) == narc_index_at(world, rays->number[k]);
+INLINE bool ask_alike(const narc_index_query *search, size_t a, size_t b) {
+    return is_alike(search->world, a, b) && is_alike(search->ignored, a, b) &&
+           (!search->mask.base || narc_word_at(search->mask, a) == narc_word_at(search->mask, b)) &&
+           (!search->owners || is_alike(search->owners->ignored, a, b));
 }
 
 /* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow, and unless
@@ -86,30 +84,67 @@ INLINE bool is_open(const narc_ray_batch *batch, const narc_box *scene, const st
            o.y <= (double)scene->max_y && rays->room[k] <= 0x1p80f && !batch->options->any;
 }
 
-/* Gathers the rays from `first` on that go together; how many are they? */
+/* The outermost of rays, on one side, in lanes: how far to that side of a direction it goes, and its own. */
+struct outermost {
+    vd sine;
+    vec2d direction;
+};
+
+INLINE void widen(struct outermost *side, vl in, vd sine, vec2d direction) {
+    const vl out = in & d_lt(side->sine, sine);
+    side->sine = d_select(out, sine, side->sine);
+    side->direction = d_select2(out, direction, side->direction);
+}
+
+INLINE void put_outermost(const struct outermost *side, float *out_x, float *out_y) {
+    double sine[D_WIDTH], x[D_WIDTH], y[D_WIDTH];
+    int most = 0;
+    d_store(sine, side->sine);
+    d_store(x, side->direction.x);
+    d_store(y, side->direction.y);
+    for (int l = 1; l < D_WIDTH; l++)
+        most = sine[l] > sine[most] ? l : most;
+    *out_x = (float)x[most];
+    *out_y = (float)y[most];
+}
+
+/* Gathers the rays from `first` on that go together: of one start, into one quadrant, not far apart, asking the same. How many
+ * are they? The wedge may be that of some that come behind them, too. */
 INLINE size_t gather_fan(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays, size_t first,
                          struct fan *f) {
-    const place direction = {rays->direction_x[first], rays->direction_y[first]};
-    const size_t left = rays->count - first, end = first + (left < MOST_TOGETHER ? left : MOST_TOGETHER);
-    double most = 0, least = 0;
-    size_t k = first + 1;
-    if (!NARC_SHORTCUTS || k == end || !joins(rays, first, k) || !is_open(batch, scene, rays, first))
+    const narc_index_query *const search = &batch->options->search;
+    const vd x = d_set(rays->origin_x[first]), y = d_set(rays->origin_y[first]), zero = d_set(0);
+    const vd inverse_x = d_set((double)rays->x.inverse[first]), inverse_y = d_set((double)rays->y.inverse[first]);
+    const vec2d direction = d_set2((place){rays->direction_x[first], rays->direction_y[first]});
+    const size_t left = rays->count - first, most = left < MOST_TOGETHER ? left : MOST_TOGETHER;
+    struct outermost to_left = {zero, direction}, to_right = to_left;
+    uint64_t company = 0;
+    if (!NARC_SHORTCUTS || most == 1 || rays->origin_x[first + 1] != rays->origin_x[first] ||
+        !is_open(batch, scene, rays, first))
         return 1;
-    f->left = f->right = first;
-    for (; k < end && joins(rays, first, k) && have_one_world(batch, rays, first, k); k++) {
-        const place other = {rays->direction_x[k], rays->direction_y[k]};
-        const double sine = find_cross(direction, other);
-        if (find_dot(direction, other) <= COHERENT)
-            break;
-        f->left = sine > most ? k : f->left;
-        f->right = sine < least ? k : f->right;
-        most = find_most(most, sine);
-        least = find_least(least, sine);
+    for (size_t k = 0; k < most && company + 1 == (uint64_t)1 << k; k += D_WIDTH) {
+        const size_t at = first + k;
+        const vd other_x = d_load(rays->origin_x + at), other_y = d_load(rays->origin_y + at);
+        const vec2d other = {d_load(rays->direction_x + at), d_load(rays->direction_y + at)};
+        const vd sine = d_cross(direction, other);
+        const vl joins = d_le(x, other_x) & d_le(other_x, x) & d_le(y, other_y) & d_le(other_y, y) &
+                         d_lt(zero, d_load(rays->length + at)) & d_lt(d_set(COHERENT), d_dot(direction, other)) &
+                         d_lt(zero, d_of_floats(rays->x.inverse + at) * inverse_x) &
+                         d_lt(zero, d_of_floats(rays->y.inverse + at) * inverse_y);
+        widen(&to_left, joins, sine, other);
+        widen(&to_right, joins, -sine, other);
+        company |= (uint64_t)d_bits(joins) << k;
     }
+    company &= UINT64_MAX >> (64 - most);
+    const bool alike = !search->world.base && !search->ignored.base && !search->mask.base && !search->owners;
+    size_t count = alike ? (size_t)FIND_LOWEST_64(~company) : 1;
+    while (company >> count & 1 && ask_alike(search, rays->number[first], rays->number[first + count]))
+        count++;
+    put_outermost(&to_left, &f->left_x, &f->left_y);
+    put_outermost(&to_right, &f->right_x, &f->right_y);
     f->rays = rays;
     f->first = first;
-    f->count = k - first;
-    return f->count;
+    return f->count = count;
 }
 
 /* The largest limit of all. */
@@ -125,21 +160,13 @@ INLINE float find_largest_limit(const struct fan *f) {
 }
 
 INLINE void begin_fan(const narc_ray_batch *batch, struct fan *f) {
-    const narc_index_query *const search = &batch->options->search;
     struct read_rays *const rays = f->rays;
     f->limits = rays->limit + f->first;
     f->limit = find_largest_limit(f);
-    f->left_x = (float)rays->direction_x[f->left];
-    f->left_y = (float)rays->direction_y[f->left];
-    f->right_x = (float)rays->direction_x[f->right];
-    f->right_y = (float)rays->direction_y[f->right];
-    f->in_lanes = IN_LANES && batch->most == 1 && !search->owners && !search->ignored.base && !batch->index->masks &&
-                  !search->mask.base;
-    f->chosen = read_chosen(search, rays->number[f->first]);
-    for (size_t k = 0; k < (goes_in_lanes(f) ? 1 : f->count); k++) {
+    f->in_lanes = IN_LANES && batch->most == 1 && !batch->options->search.owners;
+    for (size_t k = 0; k < (goes_in_lanes(f) ? 1 : f->count); k++)
         begin_walk(batch, rays, f->first + k, &f->walks[k]);
-        f->chosen.mask |= f->walks[k].chosen.mask;
-    }
+    f->chosen = f->walks->chosen;
     if (!goes_in_lanes(f))
         return;
     f->nearest.waiting = 0;
@@ -252,12 +279,10 @@ INLINE uint32_t cast_lanes(struct fan *f, const struct body_frame *frame, uint32
     struct nearest *const nearest = &f->nearest;
     const struct read_rays *const all = f->rays;
     const size_t at = f->first + k;
-    const struct lane_rays rays = {f->walks[0].ray.origin, all->direction_x + at, all->direction_y + at,
-                                   all->inverse_length + at};
     struct entry_lanes entries;
     struct half_met met[LANE_HALVES];
     float lanes[V_WIDTH];
-    if (!meet_in_lanes(frame, &rays, ignores, &entries, met, lanes))
+    if (!meet_in_lanes(frame, all, at, ignores, &entries, met, lanes))
         return 0;
     const vf fraction = v_load(lanes), least = v_load(nearest->fraction + k);
     const vi number = vi_set((int32_t)(body ^ 0x80000000u));
@@ -329,19 +354,15 @@ INLINE bool visit_leaf_together(const narc_ray_batch *batch, struct fan *f, size
     unsigned slot;
     for (; slots; slots &= ~(1u << slot)) {
         slot = find_nearest_slot(slots, near);
-        const size_t number = NARC_NODE_SLOTS * leaf + slot;
         uint32_t rays = find_rays(f, &index->nodes[leaf], slot);
         struct body_frame frame;
-        const uint32_t body = index->body[number];
-        if (!rays || !load_body_frame(batch->shapes, batch->bodies, body, &frame))
+        const uint32_t body = index->body[NARC_NODE_SLOTS * leaf + slot];
+        if (!rays || body == f->chosen.ignored || !load_body_frame(batch->shapes, batch->bodies, body, &frame))
             continue;
         if (goes_in_lanes(f) && !narc_is_piece(frame.header))
             rays = cast_in_lanes(batch, f, &frame, body, rays);
-        for (; rays; rays &= rays - 1) {
-            const unsigned k = (unsigned)FIND_LOWEST(rays);
-            if (goes_in_lanes(f) || (index->masks ? index->masks[number] : UINT64_MAX) & f->walks[k].chosen.mask)
-                cast_one(batch, f, &frame, body, k);
-        }
+        for (; rays; rays &= rays - 1)
+            cast_one(batch, f, &frame, body, (unsigned)FIND_LOWEST(rays));
     }
     const float limit = f->limit;
     f->limit = find_largest_limit(f);

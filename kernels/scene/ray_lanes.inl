@@ -17,6 +17,7 @@
 #include "base/vec2.inl"
 #include "scene/body_frame.inl"
 #include "scene/ray_entry.inl"
+#include "scene/ray_reading.inl"
 #include "simd/doubles.h"
 
 enum { LANE_HALVES = V_WIDTH / D_WIDTH };
@@ -159,18 +160,13 @@ INLINE vd enter_arc_lanes(const struct arc_lanes *arcs, int l, struct half_met *
     return d_dot(v, center) + radius * d_select(is_within, -half, d_dot(v, met->normal));
 }
 
-/* Rays of one origin, each column from the first of them on. */
-struct lane_rays {
-    place origin;
-    const double *direction_x, *direction_y, *inverse_length;
-};
-
-/* Where they meet a body that is no piece, all in front of them: out_fraction is at least 0, -1 of those that are to be
- * asked alone, and NaN of others. `ignores`: those that start in the body are not asked. False if it is that of all. */
-INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays *rays, bool ignores,
+/* Where rays of one origin, from one on, meet a body that is no piece, all in front of them: out_fraction is at least 0, -1 of
+ * those that are to be asked alone, and NaN of others. `ignores`: those that start in the body are not asked. False if it is
+ * that of all. */
+INLINE bool meet_in_lanes(const struct body_frame *frame, const struct read_rays *rays, size_t first, bool ignores,
                           struct entry_lanes *entries, struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
     const narc_shape_header *const header = frame->header;
-    const place way = {frame->position.x - rays->origin.x, frame->position.y - rays->origin.y};
+    const place way = {frame->position.x - rays->origin_x[first], frame->position.y - rays->origin_y[first]};
     const place turned = turn_to_shape(frame, way), middle = {(double)header->bound_x, (double)header->bound_y};
     const vec2d center =
         d_set2((place){turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y});
@@ -180,7 +176,7 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
     UNROLL
     for (int h = 0; h < LANE_HALVES; h++) {
         const int l = h * D_WIDTH;
-        const vec2d world = {d_load(rays->direction_x + l), d_load(rays->direction_y + l)};
+        const vec2d world = {d_load(rays->direction_x + first + l), d_load(rays->direction_y + first + l)};
         const vec2d v = {d_dot(rotation, world), d_cross(rotation, world)};
         const vd beside = d_cross(v, center), ahead = d_dot(v, center);
         const vl meets = d_le(d_abs(beside), radius) & ~d_lt(ahead, -radius);
@@ -215,7 +211,7 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct lane_rays
             met[h].normal = on_edges ? d_select2(on_edge, normal, met[h].normal) : met[h].normal;
         }
         const vd distance = (met[h].ahead + along) * d_set(frame->scale);
-        const vd fraction = distance * d_load(rays->inverse_length + l);
+        const vd fraction = distance * d_load(rays->inverse_length + first + l);
         const vd told = d_select(d_le(fraction, d_set((double)FLT_MAX)), fraction, nan);
         met[h].distance = distance;
         d_put_floats(out_fraction + l, d_select(d_lt(d_set(0), distance), told, ignores ? nan : d_set(-1)));

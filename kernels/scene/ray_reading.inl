@@ -39,7 +39,7 @@ struct read_axis {
 struct read_rays {
     size_t count;
     uint32_t number[READ];
-    double origin_x[READ], origin_y[READ], direction_x[READ_ROOM], direction_y[READ_ROOM];
+    double origin_x[READ_ROOM], origin_y[READ_ROOM], direction_x[READ_ROOM], direction_y[READ_ROOM];
     double length[READ_ROOM]; /* 0: it has no answer */
     double inverse_length[READ_ROOM];
     double base[READ]; /* where it meets the scene; -1: it never does */

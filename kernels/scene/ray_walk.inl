@@ -212,34 +212,28 @@ INLINE bool replace_row(struct walk *w, uint32_t owner, const narc_ray_hit *hit)
     return true;
 }
 
-/* A row for a part, if none of its thing is before it. Of a thing that the ray starts in, that of its end, or none. */
-INLINE bool find_part_row(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame,
-                          narc_ray_hit *out) {
-    const narc_inside inside = batch->options->inside;
-    const uint32_t owner = find_owner(&w->chosen, out->body);
-    const bool is_part = owner != UINT32_MAX;
-    struct meeting met;
-    if (!is_chosen(&w->chosen, out->body) ||
-        !find_meeting(frame, &w->ray, is_part && inside == NARC_INSIDE_IGNORES ? NARC_INSIDE_LEAVES : inside, false,
-                      &met))
-        return false;
-    if (!is_part || inside == NARC_INSIDE_STOPS || !met.is_within)
-        return put_meeting(frame, &w->ray, &met, w->limit_fraction, out) &&
-               (!is_part || inside == NARC_INSIDE_STOPS || !starts_in(batch, w, owner)) &&
-               (!is_part || replace_row(w, owner, out));
-    return inside == NARC_INSIDE_LEAVES && put_meeting(frame, &w->ray, &met, INFINITY, out) &&
-           leave_thing(batch, w, owner, met.distance, out) && replace_row(w, owner, out);
-}
-
-/* ------------------------------------------------------------------------------------------------ a body */
-
+/* Casts a ray at a part: it has a row if none of its thing is before it. Of a thing that the ray starts in, that of its end, or
+ * none. Is it done? */
 NOINLINE bool cast_at_part(const narc_ray_batch *batch, struct walk *w, struct body_frame frame, uint32_t body) {
+    const narc_inside inside = batch->options->inside;
+    const uint32_t owner = find_owner(&w->chosen, body);
+    const bool is_part = owner != UINT32_MAX, goes_out = is_part && inside != NARC_INSIDE_STOPS;
     narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
-    if (!find_part_row(batch, w, &frame, &hit))
+    struct meeting met;
+    if (!is_chosen(&w->chosen, body) ||
+        !find_meeting(&frame, &w->ray, goes_out ? NARC_INSIDE_LEAVES : inside, false, &met))
+        return false;
+    const bool leaves = goes_out && met.is_within;
+    if ((leaves && inside == NARC_INSIDE_IGNORES) ||
+        !put_meeting(&frame, &w->ray, &met, leaves ? INFINITY : w->limit_fraction, &hit) ||
+        (leaves ? !leave_thing(batch, w, owner, met.distance, &hit) : goes_out && starts_in(batch, w, owner)) ||
+        (is_part && !replace_row(w, owner, &hit)))
         return false;
     keep_hit(w, batch->most, &hit);
     return batch->options->any;
 }
+
+/* ------------------------------------------------------------------------------------------------ a body */
 
 /* Casts a ray at a body. Is it done? */
 NOINLINE bool cast_at_frame(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame,

@@ -146,6 +146,10 @@ INLINE void take_way_out(const struct thing *thing, const struct body_frame *fra
         *best = (struct way_out){distance, at, n, body, curve->feature, is_corner ? 0 : curve->radius};
 }
 
+INLINE float find_reach_key(const struct way_out *best) {
+    return find_limit_key((float)find_least(best->distance, (double)FARTHEST));
+}
+
 /* The feet on a part. */
 INLINE void look_at_feet(const struct thing *thing, const struct body_frame *frame, uint32_t body,
                          struct way_out *best) {
@@ -257,22 +261,22 @@ NOINLINE void look_at_crossings(const struct thing *thing, const struct body_fra
 NOINLINE bool find_way_out(const struct thing *thing, uint32_t part, struct way_out *out) {
     struct body_frame frame;
     struct near_walk walk;
+    uint32_t body;
     *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
     if (load_body_frame(thing->shapes, thing->bodies, part, &frame)) /* often its feet lie outside */
         look_at_feet(thing, &frame, part, out);
     for (int crossings = 0; crossings < 2; crossings++) { /* all feet first, which bring the limit nearer */
-        if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point,
-                             find_limit_key((float)find_least(out->distance, (double)FARTHEST))))
+        if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point, find_reach_key(out)))
             break;
-        while (find_next_near(&walk, &part)) {
-            if (find_owner(thing->chosen, part) != thing->owner || !is_chosen(thing->chosen, part) ||
-                !load_body_frame(thing->shapes, thing->bodies, part, &frame) || narc_is_piece(frame.header))
+        while (find_next_near(&walk, &body)) {
+            if (find_owner(thing->chosen, body) != thing->owner || !is_chosen(thing->chosen, body) ||
+                !load_body_frame(thing->shapes, thing->bodies, body, &frame) || narc_is_piece(frame.header))
                 continue;
             if (crossings)
-                look_at_crossings(thing, &frame, part, out);
-            else
-                look_at_feet(thing, &frame, part, out);
-            walk.limit_key = find_limit_key((float)find_least(out->distance, (double)FARTHEST));
+                look_at_crossings(thing, &frame, body, out);
+            else if (body != part)
+                look_at_feet(thing, &frame, body, out);
+            walk.limit_key = find_reach_key(out);
         }
     }
     return out->distance < INFINITY;

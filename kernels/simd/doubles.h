@@ -22,7 +22,7 @@ INLINE vd d_select(vl m, vd a, vd b) { return m ? a : b; }
 INLINE vd d_sqrt(vd a) { return sqrt(a); }
 INLINE vd d_abs(vd a) { return fabs(a); }
 INLINE vd d_min(vd a, vd b) { return a < b ? a : b; }
-INLINE int d_any(vl m) { return m != 0; }
+INLINE uint32_t d_bits(vl m) { return m & 1; }
 INLINE vl d_of_lanes(vm m, int h) { return -(vl)(m << h); }
 INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
 INLINE vd d_of_floats(const float *p) { return (double)*p; }
@@ -54,7 +54,7 @@ INLINE vd d_select(vl m, vd a, vd b) { return _mm512_mask_blend_pd((__mmask8)m, 
 INLINE vd d_sqrt(vd a) { return _mm512_sqrt_pd(a); }
 INLINE vd d_abs(vd a) { return _mm512_abs_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
-INLINE int d_any(vl m) { return (__mmask8)m != 0; }
+INLINE uint32_t d_bits(vl m) { return (__mmask8)m; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)m >> h; }
 INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); }
 INLINE vd d_of_floats(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
@@ -69,7 +69,7 @@ INLINE vd d_pack(vl m, vd a) { return (vd)v_pack(vm_packing((vm)m), (vf)a); }
 INLINE vd d_select(vl m, vd a, vd b) { return _mm256_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm256_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm256_min_pd(a, b); }
-INLINE int d_any(vl m) { return _mm256_movemask_pd((vd)m) != 0; }
+INLINE uint32_t d_bits(vl m) { return (uint32_t)_mm256_movemask_pd((vd)m); }
 INLINE vl d_of_lanes(vm m, int h) {
     const __m256i all = _mm256_castps_si256(m);
     return (vl)_mm256_cvtepi32_epi64(h ? _mm256_extracti128_si256(all, 1) : _mm256_castsi256_si128(all));
@@ -80,7 +80,7 @@ INLINE void d_put_floats(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a));
 INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
-INLINE int d_any(vl m) { return (_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1)) != 0; }
+INLINE uint32_t d_bits(vl m) { return (uint32_t)_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1); }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 #ifdef NARC_SIMD_ONE_H
 INLINE vd d_of_floats(const float *p) { return _mm_cvtss_sd(_mm_setzero_pd(), _mm_load_ss(p)); }
@@ -94,7 +94,7 @@ INLINE void d_put_floats(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p
 #else
 INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
 INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
-INLINE int d_any(vl m) { return (m[0] | m[1]) != 0; }
+INLINE uint32_t d_bits(vl m) { return (uint32_t)((m[0] & 1) | (m[1] & 2)); }
 #if defined(__aarch64__)
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? vzip2q_u32(m, m) : vzip1q_u32(m, m)); }
 INLINE vd d_sqrt(vd a) { return (vd)vsqrtq_f64((float64x2_t)a); }
@@ -111,6 +111,7 @@ INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_
 #endif
 #endif
 #endif
+INLINE int d_any(vl m) { return d_bits(m) != 0; }
 
 /* A register of which one lane is in use has room for two: d_both() fills it, and d_other() takes the second out. Elsewhere
  * both leave the first as it is. D_HELD lanes are in use then, of which d_any_held() asks. */
