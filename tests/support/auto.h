@@ -16,7 +16,7 @@
 #include "narc_contacts.h"
 #include "narc_scene.h"
 
-#define AUTO(release) __attribute__((cleanup(release)))
+#define AUTO(release) __attribute__((cleanup(release), unused))
 
 /* Makes release_at() of a function that takes a pointer: of a variable that is one, or a struct whose first member is. */
 #define RELEASE_AT(release)                                                                                            \

@@ -22,7 +22,7 @@
 void test_add(const char *name, CMUnitTestFunction test);
 
 /* AUTO(dem_destroy) dem d = plain_world(); is destroyed where its block ends. */
-#define AUTO(release) __attribute__((cleanup(release)))
+#define AUTO(release) __attribute__((cleanup(release), unused))
 
 /* Shapes of every world, in this order: a disc of radius 1; the same circle, given as eight arcs; an octagon with
  * rounded corners; eight arcs of two radii; an ellipse; a sharp octagon; a square of side 1; a capsule; a sand
