@@ -176,6 +176,50 @@ TEST(things_are_met_as_wholes) {
     }
 }
 
+/* A fan whose rays leave out the body that is hit first, all alike or not, by its number or by masks: each as alone. */
+TEST(fans_leave_out_what_a_ray_does) {
+    struct test_random random = test_random_named("fans and masks");
+    enum { COUNT = 60, RAYS = 48 };
+    for (size_t trial = 0; trial < test_trials(12); trial++) {
+        AUTO(destroy_room) struct room room = create_room(&random, NARC_FLOAT64, COUNT, 10);
+        struct test_ray rays[RAYS];
+        uint64_t masks[RAYS];
+        uint32_t ignored[RAYS];
+        size_t changed = 0;
+        for (size_t k = 0; k < RAYS; k++) {
+            const double angle = 0.02 * (double)k;
+            rays[k] = (struct test_ray){1e6 + 5, 5, 20 * (float)cos(angle), 20 * (float)sin(angle), 1};
+        }
+        index_room(&room, true, true);
+        const narc_rays all = view_rays(rays, RAYS);
+        AUTO(guard_release_at) narc_ray_hit *const hits = cast_in_room(&room, &all, NULL);
+        for (size_t k = 0; k < RAYS; k++) {
+            const size_t like = trial % 2 ? k - k % 8 : 0;
+            ignored[k] = hits[like].count ? hits[like].body : UINT32_MAX;
+            masks[k] = hits[like].count ? ~room.category[hits[like].body] : UINT64_MAX;
+        }
+        for (int by_masks = 0; by_masks < 2; by_masks++) {
+            narc_ray_options options = {.inside = NARC_INSIDE_IGNORES};
+            if (by_masks)
+                options.search.mask = (narc_word_column){masks, sizeof *masks};
+            else
+                options.search.ignored = (narc_index_column){ignored, sizeof *ignored};
+            AUTO(guard_release_at) narc_ray_hit *const found = cast_in_room(&room, &all, &options);
+            for (size_t k = 0; k < RAYS; k++) {
+                const narc_rays one = view_rays(&rays[k], 1);
+                narc_ray_options alone = options;
+                alone.search.mask.base = by_masks ? &masks[k] : NULL;
+                alone.search.ignored.base = by_masks ? NULL : &ignored[k];
+                AUTO(guard_release_at) narc_ray_hit *const row = cast_in_room(&room, &one, &alone);
+                row->ray = (uint32_t)k;
+                assert_memory_equal(row, &found[k], sizeof *row);
+                changed += found[k].count && hits[k].count && found[k].body != hits[k].body;
+            }
+        }
+        assert_true(changed > 0 || trial > 0);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ numbers */
 
 TEST(skips_rays_without_an_answer) {
