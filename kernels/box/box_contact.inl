@@ -108,21 +108,20 @@ struct facing_radii {
 };
 
 /* What the edges of two sides tell. Sets where signs contradict each other, and where a corner touches a corner: then other
- * edges may be closer to the normal. `of_run`: one is no box's, and A's axes are not those of its normals. */
-INLINE struct box_contact find_facing_of(const struct box_side *a, const struct box_side *b, vf angle_a,
-                                         const struct facing_radii *radii, vf slack, bool of_run, vm *out_left,
-                                         vm *out_corners) {
+ * edges may be closer to the normal. `of_run`: one is no box's, and A's axes are not those of its normals. Like all that a pair by
+ * itself goes through, it copies no large structure: compilers do that through memory. */
+INLINE void find_facing_of(struct box_contact *c, vf angle_a, const struct facing_radii *radii, vf slack, bool of_run,
+                           vm *out_left, vm *out_corners) {
     const vf zero = v_set(0);
-    struct box_contact c = {.a = *a, .b = *b};
     /* The order in the walk, which begins at +x: an edge there comes after one just before it. */
-    const vf angle_b = find_diamond_angle(c.b.normal);
+    const vf angle_b = find_diamond_angle(c->b.normal);
     const vm b_wraps =
         of_run ? v_lt(v_set(2), v_sub(angle_b, angle_a)) : vm_and(v_le(angle_a, zero), v_lt(v_set(2), angle_b));
     const vm a_wraps = of_run ? v_lt(v_set(2), v_sub(angle_a, angle_b)) : vm_front(0);
     const vm wraps = vm_or(a_wraps, b_wraps), a_first = vm_or(a_wraps, vm_and_not(v_lt(angle_a, angle_b), b_wraps));
-    const vec2 f = v2_select(a_first, c.a.normal, c.b.normal), g = v2_select(a_first, c.b.normal, c.a.normal);
-    const vec2 u_before = v2_sub(c.b.high, c.a.low), u_beyond = v2_sub(c.b.low, c.a.high);
-    const vec2 u = v2_sub(v2_select(a_first, c.b.high, c.b.low), v2_select(a_first, c.a.high, c.a.low));
+    const vec2 f = v2_select(a_first, c->a.normal, c->b.normal), g = v2_select(a_first, c->b.normal, c->a.normal);
+    const vec2 u_before = v2_sub(c->b.high, c->a.low), u_beyond = v2_sub(c->b.low, c->a.high);
+    const vec2 u = v2_sub(v2_select(a_first, c->b.high, c->b.low), v2_select(a_first, c->a.high, c->a.low));
     const vf radii_f = of_run ? v_select(a_first, radii->behind_a, radii->behind_b) : radii->beyond;
 
     const vf after_f = v2_cross(f, u), before_g = v2_cross(u, g), along_f = v2_dot(u, f), along_g = v2_dot(u_beyond, g);
@@ -135,8 +134,8 @@ INLINE struct box_contact find_facing_of(const struct box_side *a, const struct 
     const vf value_f = v_sub(along_f, radii_f), value_g = v_sub(along_g, radii->beyond);
     const vm better = vm_or(v_lt(value_f, value_g), vm_and(wraps, v_le(value_f, value_g)));
     const vm takes_g = vm_and(at_g, vm_or(vm_not(at_f), better));
-    c.separation = v_select(takes_g, value_g, value_f);
-    c.normal = v2_select(takes_g, g, f);
+    c->separation = v_select(takes_g, value_g, value_f);
+    c->normal = v2_select(takes_g, g, f);
 
     vm left = vm_or(vm_and(beyond, before), vm_not(vm_or(vm_or(at_f, at_g), vm_or(beyond, before))));
     const vm corners = vm_or(inside, vm_or(beyond, before));
@@ -145,26 +144,24 @@ INLINE struct box_contact find_facing_of(const struct box_side *a, const struct 
         const vf length = v2_length(w);
         const vf room = v_select(beyond, v2_dot(w, f), v_select(before, v2_dot(w, g), length));
         left = vm_or(left, vm_and_not(corners, v_lt(v_add(slack, slack), room)));
-        c.separation = v_select(corners, v_sub(length, radii->beyond), c.separation);
-        c.normal = v2_select(corners, v2_divide(w, length), c.normal);
+        c->separation = v_select(corners, v_sub(length, radii->beyond), c->separation);
+        c->normal = v2_select(corners, v2_divide(w, length), c->normal);
     }
     const vm behind_both = vm_or(takes_g, beyond);
-    c.a.behind = vm_or(behind_both, vm_and_not(a_first, before));
-    c.b.behind = vm_or(behind_both, vm_and_not(vm_not(a_first), before));
+    c->a.behind = vm_or(behind_both, vm_and_not(a_first, before));
+    c->b.behind = vm_or(behind_both, vm_and_not(vm_not(a_first), before));
     *out_left = left;
     *out_corners = corners;
-    return c;
 }
 
 /* The same of a pair. Sets where the answer is not certain. */
 INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left, vm *out_corners) {
     const vi code = get_box_code(pair), edge_a = vi_and(code, vi_set(3));
-    const struct box_side a = find_side_a(pair, edge_a),
-                          b = find_side_b(pair, vi_and(vi_shift_right(code, 2), vi_set(3)));
+    struct box_contact c = {.a = find_side_a(pair, edge_a),
+                            .b = find_side_b(pair, vi_and(vi_shift_right(code, 2), vi_set(3)))};
     const vf radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B));
     const struct facing_radii sums = {radii, radii, radii};
-    const struct box_contact c =
-        find_facing_of(&a, &b, v_of_int(edge_a), &sums, get_box_field(pair, BOX_SLACK), false, out_left, out_corners);
+    find_facing_of(&c, v_of_int(edge_a), &sums, get_box_field(pair, BOX_SLACK), false, out_left, out_corners);
     *out_left = vm_or(*out_left, vi_lt(vi_set(0), vi_and(code, vi_set(BOX_TIE))));
     return c;
 }

@@ -34,7 +34,7 @@ struct side_arcs {
 
 /* What a side touches the other one with: a corner, or its edge. */
 struct box_touch {
-    struct side_arcs arcs;
+    const struct side_arcs *arcs;
     vm parallel;         /* n is the edge's normal */
     vf sine, cosine;     /* from the edge's normal to n */
     vf across, min, max; /* as of a feature */
@@ -43,17 +43,19 @@ struct box_touch {
 /* Outwards along n: B is touched on its side -n. */
 INLINE vf turn_radius(vf radius, bool is_b) { return is_b ? v_neg(radius) : radius; }
 
-INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, const struct side_arcs *arcs, bool is_b) {
-    struct box_touch touch = {.arcs = *arcs, .sine = v2_cross(side->normal, n), .cosine = v2_dot(side->normal, n)};
+INLINE void find_touch(const struct box_side *side, vec2 n, const struct side_arcs *arcs, bool is_b,
+                       struct box_touch *out) {
     const vec2 low = v2_add(side->low, v2_scale(n, turn_radius(arcs->radius_low, is_b))),
                high = v2_add(side->high, v2_scale(n, turn_radius(arcs->radius_high, is_b)));
     const vm at_low = is_b ? side->behind : vm_not(side->behind);
     const vf along_low = v2_cross(n, low), along_high = v2_cross(n, high);
-    touch.parallel = v_le(v_abs(touch.sine), v_set(PARALLEL));
-    touch.across = v_select(at_low, v2_dot(n, low), v2_dot(n, high));
-    touch.min = v_select(vm_or(at_low, touch.parallel), along_low, along_high);
-    touch.max = v_select(vm_and_not(at_low, touch.parallel), along_low, along_high);
-    return touch;
+    out->arcs = arcs;
+    out->sine = v2_cross(side->normal, n);
+    out->cosine = v2_dot(side->normal, n);
+    out->parallel = v_le(v_abs(out->sine), v_set(PARALLEL));
+    out->across = v_select(at_low, v2_dot(n, low), v2_dot(n, high));
+    out->min = v_select(vm_or(at_low, out->parallel), along_low, along_high);
+    out->max = v_select(vm_and_not(at_low, out->parallel), along_low, along_high);
 }
 
 /* The caller's number of corner i, or of the edge before it. Of a capsule the arc at -x, its corners 1 and 2, is stored
@@ -73,12 +75,12 @@ INLINE struct side_arcs find_box_arcs(const struct box_pair *pair, const struct 
 }
 
 INLINE vi find_touching_arc(const struct box_side *side, const struct box_touch *touch) {
-    return vi_select(side->behind, touch->arcs.behind, touch->arcs.before);
+    return vi_select(side->behind, touch->arcs->behind, touch->arcs->before);
 }
 
 /* What touches, as a contact has it. */
 INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *touch) {
-    return vi_select(touch->parallel, vi_add(touch->arcs.behind, vi_set(NARC_FEATURE_EDGE)),
+    return vi_select(touch->parallel, vi_add(touch->arcs->behind, vi_set(NARC_FEATURE_EDGE)),
                      find_touching_arc(side, touch));
 }
 
@@ -115,10 +117,10 @@ INLINE struct edge find_box_edge(const struct box_side *side, const struct box_t
     struct edge edge = {.is_edge = vm_front(V_WIDTH),
                         .offered = v_le(v_abs(touch->sine), flat_sine),
                         .parallel = touch->parallel,
-                        .before = touch->arcs.before,
-                        .after = touch->arcs.behind,
-                        .arc_radius = touch->arcs.radius};
-    place_box_edge(&edge, side, &touch->arcs, n, is_b);
+                        .before = touch->arcs->before,
+                        .after = touch->arcs->behind,
+                        .arc_radius = touch->arcs->radius};
+    place_box_edge(&edge, side, touch->arcs, n, is_b);
     if (capsules) {
         edge.is_edge = v_lt(edge.low.along, edge.high.along);
         edge.offered = vm_and(edge.offered, edge.is_edge);
@@ -127,7 +129,7 @@ INLINE struct edge find_box_edge(const struct box_side *side, const struct box_t
             const vec2 back = {v_neg(side->normal.x), v_neg(side->normal.y)};
             const struct box_side turned = {.normal = back, .low = side->high, .high = side->low};
             struct edge other;
-            place_box_edge(&other, &turned, &touch->arcs, n, is_b);
+            place_box_edge(&other, &turned, touch->arcs, n, is_b);
             edge.low = select_edge_end(again, &other.low, &edge.low);
             edge.high = select_edge_end(again, &other.high, &edge.high);
             edge.is_edge = v_lt(edge.low.along, edge.high.along);
@@ -152,20 +154,20 @@ struct told_sides {
     struct answer answer;
 };
 
-INLINE struct told_sides tell_sides(const struct box_contact *c, const struct touching_sides *t) {
+INLINE void tell_sides(const struct box_contact *c, const struct touching_sides *t, struct told_sides *out) {
     const vec2 n = c->normal;
-    struct told_sides told = {.a = find_touch(&c->a, n, &t->a, false), .b = find_touch(&c->b, n, &t->b, true)};
-    const struct box_touch *const on_a = &told.a, *const on_b = &told.b;
+    find_touch(&c->a, n, &t->a, false, &out->a);
+    find_touch(&c->b, n, &t->b, true, &out->b);
+    const struct box_touch *const on_a = &out->a, *const on_b = &out->b;
     const vf half = v_set(0.5f), flat = v_set(INFINITY), across = v_mul(half, v_add(on_a->across, on_b->across));
-    told.place = (vec2){across, v_mul(half, v_add(v_max(on_a->min, on_b->min), v_min(on_a->max, on_b->max)))};
-    told.answer = (struct answer){
-        .separation = c->separation,
-        .normal = v2_rotate(t->to_world, n),
-        .point = v2_rotate(t->to_world, v2_rotate(n, told.place)),
-        .feature = vi_add(find_box_feature(&c->a, on_a), vi_shift_left(find_box_feature(&c->b, on_b), 8)),
-        .radius_a = v_select(on_a->parallel, flat, t->a.radius),
-        .radius_b = v_select(on_b->parallel, flat, t->b.radius)};
-    return told;
+    out->place = (vec2){across, v_mul(half, v_add(v_max(on_a->min, on_b->min), v_min(on_a->max, on_b->max)))};
+    out->answer.separation = c->separation;
+    out->answer.normal = v2_rotate(t->to_world, n);
+    out->answer.point = v2_rotate(t->to_world, v2_rotate(n, out->place));
+    out->answer.feature = vi_add(find_box_feature(&c->a, on_a), vi_shift_left(find_box_feature(&c->b, on_b), 8));
+    out->answer.radius_a = v_select(on_a->parallel, flat, t->a.radius);
+    out->answer.radius_b = v_select(on_b->parallel, flat, t->b.radius);
+    out->answer.reach_a = out->answer.reach_b = vi_set(0);
 }
 
 /* Writes them. `edges`: are second points asked for? */
@@ -226,7 +228,8 @@ INLINE bool answer_boxes(const struct call *call, const struct box_queue *queue,
                                          .position_b = get_box_vec2(&pair, BOX_POSITION),
                                          .capsules = capsules};
     char *place[V_WIDTH];
-    struct told_sides told = tell_sides(&c, &sides);
+    struct told_sides told;
+    tell_sides(&c, &sides, &told);
     find_box_places(call, queue, k + live - 1, sides.pairs, keep, place);
     write_touching(call, &c, &sides, &told, margin, place, edges);
     return true;

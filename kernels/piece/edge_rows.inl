@@ -93,23 +93,22 @@ INLINE vm write_on_edges(const struct call *call, const struct edge_contact *e, 
         of[0][f] = v_select(is_a, run[f], body[f]);
         of[1][f] = v_select(is_a, body[f], run[f]);
     }
-    const struct box_side a = {.normal = get_side_vec2(of[0], SIDE_NORMAL),
-                               .low = get_side_vec2(of[0], BEFORE),
-                               .high = get_side_vec2(of[0], BEHIND)};
-    const struct box_side b = {.normal = get_side_vec2(of[1], SIDE_NORMAL),
-                               .low = get_side_vec2(of[1], BEHIND),
-                               .high = get_side_vec2(of[1], BEFORE)};
+    struct box_contact c = {.a = {.normal = get_side_vec2(of[0], SIDE_NORMAL),
+                                  .low = get_side_vec2(of[0], BEFORE),
+                                  .high = get_side_vec2(of[0], BEHIND)},
+                            .b = {.normal = get_side_vec2(of[1], SIDE_NORMAL),
+                                  .low = get_side_vec2(of[1], BEHIND),
+                                  .high = get_side_vec2(of[1], BEFORE)}};
     const struct facing_radii radii = {v_add(of[0][RADIUS_BEHIND], of[1][RADIUS_BEFORE]),
                                        v_add(of[0][RADIUS_BEFORE], of[1][RADIUS_BEHIND]),
                                        v_add(of[0][RADIUS_BEHIND], of[1][RADIUS_BEHIND])};
     vm left, corners;
-    struct box_contact c =
-        find_facing_of(&a, &b, find_diamond_angle(a.normal), &radii, item[SLACK], true, &left, &corners);
+    find_facing_of(&c, find_diamond_angle(c.a.normal), &radii, item[SLACK], true, &left, &corners);
     /* What rests does so along the edge's normal, with the arc behind that. */
     const vec2 n = get_side_vec2(run, SIDE_NORMAL);
     c.a.behind = vm_or(vm_and(lies, c.a.behind), vm_and_not(vm_or(is_a, behind), lies));
     c.b.behind = vm_or(vm_and(lies, c.b.behind), vm_and_not(vm_or(of_b, behind), lies));
-    const vec2 u = v2_sub(v2_select(c.b.behind, b.low, b.high), v2_select(c.a.behind, a.high, a.low));
+    const vec2 u = v2_sub(v2_select(c.b.behind, c.b.low, c.b.high), v2_select(c.a.behind, c.a.high, c.a.low));
     c.separation = v_select(lies, c.separation, v_sub(v2_dot(u, n), radii.beyond));
     c.normal = v2_select(lies, c.normal, n);
 
@@ -149,7 +148,8 @@ INLINE vm write_on_edges(const struct call *call, const struct edge_contact *e, 
                                          {item[POSITION], item[POSITION + 1]},
                                          capsules,
                                          NULL};
-    struct told_sides rows = tell_sides(&c, &sides);
+    struct told_sides rows;
+    tell_sides(&c, &sides, &rows);
     char *place[V_WIDTH];
     find_places(call, sides.pairs, keep, place);
     write_touching(call, &c, &sides, &rows, e->margin, place, edges);

@@ -52,15 +52,19 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
     const vec2 n = c->normal;
     const struct box_contact contact = {c->separation, n, find_polygon_side(&c->a, false),
                                         find_polygon_side(&c->b, true), keep};
-    const vi reaches[] = {find_polygon_reach(&c->a, n, get_bits(queue, INFO_A, k)),
-                          find_polygon_reach(&c->b, n, get_bits(queue, INFO_B, k))};
+    vi reaches[2];
+    if (edges) {
+        reaches[0] = find_polygon_reach(&c->a, n, get_bits(queue, INFO_A, k));
+        reaches[1] = find_polygon_reach(&c->b, n, get_bits(queue, INFO_B, k));
+    }
     const struct touching_sides sides = {.a = find_polygon_arcs(queue, k, &c->a, false),
                                          .b = find_polygon_arcs(queue, k, &c->b, true),
                                          .pairs = get_bits(queue, PAIR, k),
                                          .to_world = get_vec2(queue, ROTATION_A, k),
                                          .position_b = get_vec2(queue, POSITION, k),
                                          .reaches = reaches};
-    struct told_sides told = tell_sides(&contact, &sides);
+    struct told_sides told;
+    tell_sides(&contact, &sides, &told);
     const vi feature = told.answer.feature;
     char *place[V_WIDTH];
     find_places(
