@@ -168,6 +168,39 @@ INLINE vec2 load_differences(const struct sources *given, const int32_t *a, cons
     return (vec2){v_load(x), v_load(y)};
 }
 
+/* From A's position to B's along one axis. `plain`: both are double, and there is no shift. */
+INLINE double find_way(narc_position_column of_a, narc_position_column of_b, size_t a, size_t b,
+                       narc_float_column shift, size_t number, bool plain) {
+    if (plain)
+        return narc_double_at(of_b, b) - narc_double_at(of_a, a) + 0;
+    return narc_position_at(of_b, b) - narc_position_at(of_a, a) + (double)narc_float_or(shift, number, 0);
+}
+
+INLINE bool are_double(const narc_bodies *bodies) {
+    return bodies->x.precision == NARC_FLOAT64 && bodies->y.precision == NARC_FLOAT64;
+}
+
+/* From A's positions to B's in double precision, of pairs k ... of a block. */
+INLINE void load_ways_from(const narc_bodies *of_a, const narc_bodies *of_b, const narc_pairs *pairs,
+                           const struct pair_indices *in, int k, bool plain, double *x, double *y) {
+    const narc_bodies a = *of_a, b = *of_b;
+    const narc_float_column shift_x = pairs->shift_x, shift_y = pairs->shift_y;
+    UNROLL_FEW
+    for (int l = 0; l < V_WIDTH; l++) {
+        const size_t number = (uint32_t)in->number[k + l], from = (uint32_t)in->a[k + l], to = (uint32_t)in->b[k + l];
+        x[l] = find_way(a.x, b.x, from, to, shift_x, number, plain);
+        y[l] = find_way(a.y, b.y, from, to, shift_y, number, plain);
+    }
+}
+
+INLINE void load_ways(const narc_bodies *a, const narc_bodies *b, const narc_pairs *pairs,
+                      const struct pair_indices *in, int k, double x[V_WIDTH], double y[V_WIDTH]) {
+    if (LIKELY(are_double(a) && are_double(b) && !pairs->shift_x.base && !pairs->shift_y.base))
+        load_ways_from(a, b, pairs, in, k, true, x, y);
+    else
+        load_ways_from(a, b, pairs, in, k, false, x, y);
+}
+
 /* The difference of the bodies' positions, their rotations and scales. */
 struct body_pair {
     vec2 difference, rotation_a, rotation_b;

@@ -10,19 +10,12 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/bodies.inl"
 #include "broken.h"
 #include "column.h"
 #include "kernels.h"
 #include "simd/simd.h"
 #include "store.h"
-
-/* From A's position to B's along one axis. `plain`: both are double, and there is no shift. */
-INLINE double find_way(narc_position_column of_a, narc_position_column of_b, size_t a, size_t b,
-                       narc_float_column shift, size_t number, bool plain) {
-    if (plain)
-        return narc_double_at(of_b, b) - narc_double_at(of_a, a) + 0;
-    return narc_position_at(of_b, b) - narc_position_at(of_a, a) + (double)narc_float_or(shift, number, 0);
-}
 
 /* Points of rows are seen from A's position. Where A is a half-plane, that is as far from where it was laid to as this, in
  * the world. */

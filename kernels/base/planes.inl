@@ -31,33 +31,13 @@
 /* Deeper than that nothing has an answer: the box would be larger than what numbers are kept in range for. */
 #define PLANE_DEPTH 1e12
 
-/* From A's position to B's, of pairs k ... of a block. */
-INLINE void load_ways(const struct call *call, const struct pair_indices *in, int k, bool plain, double x[V_WIDTH],
-                      double y[V_WIDTH]) {
-    const narc_bodies a = *call->batch->a, b = *call->batch->b;
-    const narc_float_column shift_x = call->batch->pairs->shift_x, shift_y = call->batch->pairs->shift_y;
-    UNROLL_FEW
-    for (int l = 0; l < V_WIDTH; l++) {
-        const size_t number = (uint32_t)in->number[k + l], from = (uint32_t)in->a[k + l], to = (uint32_t)in->b[k + l];
-        x[l] = find_way(a.x, b.x, from, to, shift_x, number, plain);
-        y[l] = find_way(a.y, b.y, from, to, shift_y, number, plain);
-    }
-}
-
-INLINE bool are_double(const narc_bodies *bodies) {
-    return bodies->x.precision == NARC_FLOAT64 && bodies->y.precision == NARC_FLOAT64;
-}
-
 /* How high the other body's position is above the boundary: in lanes `of_a` A is the half-plane, in others B. */
 INLINE vf find_heights(const struct call *call, const struct pair_indices *in, int k, vm of_a) {
     const narc_bodies *const a = call->batch->a, *const b = call->batch->b;
     const narc_pairs *const pairs = call->batch->pairs;
     double x[V_WIDTH], y[V_WIDTH];
     float cosine[V_WIDTH], sine[V_WIDTH], height[V_WIDTH];
-    if (LIKELY(are_double(a) && are_double(b) && !pairs->shift_x.base && !pairs->shift_y.base))
-        load_ways(call, in, k, true, x, y);
-    else
-        load_ways(call, in, k, false, x, y);
+    load_ways(a, b, pairs, in, k, x, y);
     vec2 rotation = {load_column(b->cosine, in->b + k), load_column(b->sine, in->b + k)};
     if (vm_any(of_a)) {
         const vec2 of = {load_column(a->cosine, in->a + k), load_column(a->sine, in->a + k)};

@@ -61,14 +61,14 @@ INLINE void load_outline(const narc_shapes *shapes, const int32_t *shape, bool t
     v_store(out->round, v_select(round, v_set(1), v_set(0)));
 }
 
-/* What is still to be added up of casts that are loaded: shifts, and motions of A and B. */
+/* What is still to be added up of casts that are loaded: motions of A and B. */
 struct loaded {
-    float shift_x[V_WIDTH], shift_y[V_WIDTH], motion_x[2][V_WIDTH], motion_y[2][V_WIDTH];
+    float motion_x[2][V_WIDTH], motion_y[2][V_WIDTH];
     struct outline outline[2];
     struct box {
         float half_x[V_WIDTH], half_y[V_WIDTH], radius[V_WIDTH];
     } box[2];
-    vm boxes;  /* have both a form (store.h, narc_box_form), and is one no circle? */
+    vm boxes;  /* have both a form (store.h, narc_box_form), of a box, or both of segments? */
     bool turn; /* does one of them turn? */
     vm fine;
 };
@@ -77,8 +77,8 @@ struct loaded {
 INLINE void load_forms(const narc_shapes *shapes, const int32_t *shape_a, const int32_t *shape_b, struct loaded *out) {
     const struct box_form form[] = {load_box_forms(shapes->boxes, shape_a), load_box_forms(shapes->boxes, shape_b)};
     const vm formed = vm_and(vi_lt(vi_set(0), form[0].info), vi_lt(vi_set(0), form[1].info));
-    const uint32_t flat = NARC_IS_BOX | NARC_IS_CAPSULE;
-    out->boxes = vm_and(formed, vm_or(is_form(&form[0], flat), is_form(&form[1], flat)));
+    const vm box = vm_or(is_form(&form[0], NARC_IS_BOX), is_form(&form[1], NARC_IS_BOX));
+    out->boxes = vm_and(formed, vm_or(box, v_le(v_add(form[0].radius, form[1].radius), v_set(0))));
     UNROLL
     for (int side = 0; side < 2; side++) {
         v_store(out->box[side].half_x, v_abs(form[side].half.x)); /* a zero of a capsule may have a sign */
@@ -203,8 +203,7 @@ INLINE struct passage pass_boxes(const narc_casts *casts, size_t k, const struct
 INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, const struct loaded *loaded,
                        float *out_outcome) {
     const struct outline *const outline = loaded->outline;
-    const dvec2 from = {d_load(casts->x + k) + d_of_floats(loaded->shift_x + h),
-                        d_load(casts->y + k) + d_of_floats(loaded->shift_y + h)},
+    const dvec2 from = {d_load(casts->x + k), d_load(casts->y + k)},
                 motion = {d_of_floats(loaded->motion_x[1] + h) - d_of_floats(loaded->motion_x[0] + h),
                           d_of_floats(loaded->motion_y[1] + h) - d_of_floats(loaded->motion_y[0] + h)};
     const vd far = d_set(NARC_MAX_DISTANCE), zero = d_set(0), target = d_of_floats(casts->target + k);
@@ -231,8 +230,6 @@ INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, cons
         meet &= ~boxes | (d_le(near.least, near.last) & d_le(near.least, end));
         start = d_select(later, near.first, start);
     }
-    d_store(casts->x + k, from.x);
-    d_store(casts->y + k, from.y);
     d_store(casts->motion_x + k, motion.x);
     d_store(casts->motion_y + k, motion.y);
     d_store(casts->end + k, end);

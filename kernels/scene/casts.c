@@ -191,19 +191,6 @@ INLINE size_t keep_casts(struct cast_call *call, narc_casts *casts, size_t k, vm
 
 /* ------------------------------------------------------------------------------------------------ the start */
 
-/* From A's position to B's in double precision. */
-INLINE void load_ways(const struct sources *given, const int32_t *a, const int32_t *b, double *out_x, double *out_y) {
-    const narc_position_column a_x = given->a.x, a_y = given->a.y, b_x = given->b.x, b_y = given->b.y;
-    const bool doubles = a_x.precision == NARC_FLOAT64 && b_x.precision == NARC_FLOAT64;
-    for (int l = 0; l < V_WIDTH; l++) {
-        const size_t from = (uint32_t)a[l], to = (uint32_t)b[l];
-        out_x[l] = doubles ? narc_double_at(b_x, to) - narc_double_at(a_x, from)
-                           : narc_position_at(b_x, to) - narc_position_at(a_x, from);
-        out_y[l] = doubles ? narc_double_at(b_y, to) - narc_double_at(a_y, from)
-                           : narc_position_at(b_y, to) - narc_position_at(a_y, from);
-    }
-}
-
 INLINE void load_casts(const struct cast_call *call, const struct pair_indices *in, int k, narc_casts *casts, size_t to,
                        struct loaded *out) {
     const narc_cast_batch *const given = call->given;
@@ -236,9 +223,7 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
         out->fine = vm_and(out->fine, are_fine(&casts->side[side], to, &out->outline[side]));
     }
     load_forms(call->shapes, shape[0], shape[1], out);
-    load_ways(from, item[0], item[1], casts->x + to, casts->y + to);
-    v_store(out->shift_x, load_column_or(from->pairs.shift_x, number, 0));
-    v_store(out->shift_y, load_column_or(from->pairs.shift_y, number, 0));
+    load_ways(&from->a, &from->b, &from->pairs, in, k, casts->x + to, casts->y + to);
     v_store(casts->target + to,
             load_column_or(given->targets, given->nearest && !given->depths.base ? item[0] : number, given->target));
     v_store(casts->back + to, v_set(CAST_FREE));
@@ -261,6 +246,7 @@ NOINLINE void begin_casts(struct cast_call *call, size_t first, size_t count, na
             measure_planes(call->shapes, casts, to, &loaded);
         for (int h = 0; h < V_WIDTH; h += D_WIDTH)
             begin_half(call->given->tolerance, casts, to + (size_t)h, h, &loaded, outcome + h);
+        begin_lines(call->shapes, casts, to, &loaded, outcome);
         if (NARC_PIECES && call->shapes->plane_count > 0)
             begin_at_planes(call->shapes, casts, to, &loaded, outcome);
         const vi found = vi_select(loaded.fine, vi_truncate(v_load(outcome)), vi_set(CAST_BROKEN));
@@ -302,7 +288,7 @@ NOINLINE void advance_casts(struct cast_call *call, narc_casts *casts) {
         if (any_turns && !vm_any(straight)) {
             step = turned;
         } else {
-            advance_lines(call->shapes, casts, &touch, k, straight, &step);
+            advance_lines(casts, &touch, k, &step);
             if (any_turns)
                 select_steps(straight, &step, &turned);
         }

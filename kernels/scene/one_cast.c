@@ -50,17 +50,18 @@ INLINE int begin(const narc_one_cast *asked, narc_casts *casts, bool turns) {
         its->angle[0] = turns ? asked->motions[side]->angle : 0;
         loaded.motion_x[side][0] = asked->motions[side]->x;
         loaded.motion_y[side][0] = asked->motions[side]->y;
-        loaded.shift_x[0] = loaded.shift_y[0] = 0; /* it is in B's place */
         load_outline(asked->shapes, (const int32_t *)its->shape, turns, 0, its, &loaded.outline[side]);
         loaded.fine = vm_and(loaded.fine, are_fine(its, 0, &loaded.outline[side]));
     }
     load_forms(asked->shapes, (const int32_t *)casts->side[0].shape, (const int32_t *)casts->side[1].shape, &loaded);
-    casts->x[0] = asked->bodies[1]->x - asked->bodies[0]->x;
-    casts->y[0] = asked->bodies[1]->y - asked->bodies[0]->y;
+    casts->x[0] = asked->bodies[1]->x - asked->bodies[0]->x + 0; /* as ways of batches are */
+    casts->y[0] = asked->bodies[1]->y - asked->bodies[0]->y + 0;
     casts->target[0] = asked->target;
     casts->back[0] = CAST_FREE;
     casts->rounds[0] = 0;
     begin_half(asked->tolerance, casts, 0, 0, &loaded, outcome);
+    if (!turns)
+        begin_lines(asked->shapes, casts, 0, &loaded, outcome);
     return vm_any(loaded.fine) ? (int)outcome[0] : CAST_BROKEN;
 }
 
@@ -98,7 +99,7 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
         if (turns)
             advance_turns(asked->shapes, casts, &touch, 0, live, &step);
         else
-            advance_lines(asked->shapes, casts, &touch, 0, live, &step);
+            advance_lines(casts, &touch, 0, &step);
         casts->time[0] = step.time[0];
         casts->back[0] = step.back[0];
         casts->rounds[0] = step.rounds[0];
