@@ -52,7 +52,7 @@ INLINE void write_polygons(const struct call *call, const struct queue *queue, i
     const vec2 n = c->normal;
     const struct box_contact contact = {c->separation, n, find_polygon_side(&c->a, false),
                                         find_polygon_side(&c->b, true), keep};
-    vi reaches[2];
+    vi reaches[] = {vi_set(0), vi_set(0)};
     if (edges) {
         reaches[0] = find_polygon_reach(&c->a, n, get_bits(queue, INFO_A, k));
         reaches[1] = find_polygon_reach(&c->b, n, get_bits(queue, INFO_B, k));
