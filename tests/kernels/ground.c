@@ -353,8 +353,19 @@ static struct ground_bodies *begin_lines(struct test_random *random, size_t bodi
     return g;
 }
 
-/* Boxes and capsules on edges and near their ends, a side along them or nearly, or a corner: contacts, and manifolds. Between the normals of an edge
- * and of a side there may be that of the next edge. */
+static void check_manifolds(const struct ground_bodies *g, float flat_angle) {
+    const narc_bodies bodies = scene_bodies(&g->scene);
+    const narc_pairs pairs = scene_pairs(&g->scene);
+    const narc_query query = {.margin = margin, .flat_angle = flat_angle};
+    AUTO(free_at) struct manifolds rows = find_manifolds(g->scene.store, &bodies, &pairs, &query);
+    AUTO(free_at) struct manifolds plain = find_plain_manifolds(g->scene.store, &bodies, &pairs, &query);
+    assert_int_equal(rows.count, plain.count);
+    assert_memory_equal(rows.rows, plain.rows, plain.count * sizeof *plain.rows);
+}
+
+/* Boxes and capsules on edges and near their ends, a side along them or nearly, or a corner: contacts, and manifolds.
+ * Between the normals of an edge and of a side there may be that of the next edge; edges and sides may be as short as
+ * rounding, and two sides of a body equally near. */
 TEST(test_sides_on_edges) {
     enum { BODIES = 200 };
     struct test_random random = test_random_named("sides on edges");
@@ -396,15 +407,36 @@ TEST(test_sides_on_edges) {
         }
         struct contacts right = ask(g, &(narc_query){.margin = margin});
         check_formula(g, &right);
-        const narc_bodies bodies = scene_bodies(&g->scene);
-        const narc_pairs pairs = scene_pairs(&g->scene);
         const float flats[] = {0, 0.7853982f, NARC_MAX_FLAT_ANGLE, -1};
-        const narc_query query = {.margin = margin, .flat_angle = flats[round % 4]};
-        AUTO(free_at) struct manifolds rows = find_manifolds(g->scene.store, &bodies, &pairs, &query);
-        AUTO(free_at) struct manifolds plain = find_plain_manifolds(g->scene.store, &bodies, &pairs, &query);
-        assert_int_equal(rows.count, plain.count);
-        assert_memory_equal(rows.rows, plain.rows, plain.count * sizeof *plain.rows);
+        check_manifolds(g, flats[round % 4]);
         free(right.rows);
+        end_chain(g);
+    }
+}
+
+/* Capsules that stand upright on an edge before a corner: both their sides are equally near, but for rounding. */
+TEST(test_upright_capsules) {
+    enum { CAPSULES = 200 };
+    const struct shape capsule = {.count = 2, .arcs = {{1, 0, 0.1, -PI / 2, PI / 2}, {-1, 0, 0.1, PI / 2, 3 * PI / 2}}};
+    for (int round = 0; round < 20; round++) {
+        const double angle = 0.01 * round - 3, c = cos(angle), s = sin(angle);
+        struct ground_bodies *g = begin_chain(0, 0, angle);
+        walk_line(&g->walk, 2);
+        walk_arc(&g->walk, 0, 0.15);
+        walk_line(&g->walk, 1);
+        walk_arc(&g->walk, 0, 0);
+        place_chain(g, NULL, CAPSULES, CAPSULES);
+        const uint32_t shape = scene_add_shape(&g->scene, &capsule);
+        for (uint32_t k = 0; k < CAPSULES; k++) {
+            const double along = 1.9 + 4e-4 * k;
+            struct body body = turned_body(angle, 1);
+            body.shape = shape;
+            body.x = 1.1 * c - along * s;
+            body.y = 1.1 * s + along * c;
+            const uint32_t mover = scene_add_body(&g->scene, body);
+            scene_add_pair(&g->scene, k % 2 ? 0 : mover, k % 2 ? mover : 0);
+        }
+        check_manifolds(g, 0);
         end_chain(g);
     }
 }
