@@ -487,10 +487,10 @@ static bool has_room(const narc_outline *o, narc_point p, double n_x, double n_y
 }
 
 /* Are the inner radii of an arc none that it does not have? The windows are narrower than those of the encoder by more
- * than sums of stored normals are off. */
-static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, double extent) {
+ * than sums of stored normals are off. Where arcs do not quite meet, an end of one lies outside of the other's edge. */
+static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, double extent, double misfit) {
     const double inner = read_upper_half(radii >> 16), near = read_upper_half(radii & 0xffff);
-    const double room = STORED_ROOM * extent / 3, slack = 1 + 1e-6;
+    const double room = STORED_ROOM * extent / 3 + misfit, slack = 1 + 1e-6;
     return inner >= 0 && near >= 0 && inner <= find_least_radius(o, arc, NARC_INNER_WINDOW - NARC_TOLERANCE) * slack &&
            near <= find_least_radius(o, arc, NARC_NEAR_WINDOW - NARC_TOLERANCE) * slack &&
            has_room(o, narc_find_start(o, arc), o->normal_x[arc], o->normal_y[arc], inner, room) &&
@@ -581,8 +581,9 @@ narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
     if (shape->header.first_arc != header.first_arc)
         return fail_stored(error, "arcs out of order");
     shape->header.first_arc |= mark;
+    const double misfit = find_misfit(&o);
     for (size_t k = 0; k < count; k++)
-        if (!has_inner_radii(&o, (k + header.first_arc) % count, stored[k].arc.inner_radii, extent))
+        if (!has_inner_radii(&o, (k + header.first_arc) % count, stored[k].arc.inner_radii, extent, misfit))
             return fail_stored(error, "an arc without the room behind it that it should have");
     memcpy(&shape->records[angles], stored, count * sizeof *stored);
     return NARC_OK;

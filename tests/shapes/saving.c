@@ -68,6 +68,8 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
         header.first_record = b->headers[k].first_record;
         assert_memory_equal(&header, &b->headers[k], sizeof header);
         assert_memory_equal(&a->boxes[k], &b->boxes[k], sizeof *a->boxes);
+        if (narc_is_of_chain(&header))
+            assert_memory_equal(&a->fronts[k], &b->fronts[k], sizeof *a->fronts);
         assert_memory_equal(&a->records[a->headers[k].first_record], &b->records[header.first_record],
                             narc_count_records(&header) * sizeof(narc_record));
     }
@@ -99,6 +101,35 @@ TEST(loads_what_was_saved) {
             assert_int_equal(store_shape(loaded, shape), index);
         }
     }
+}
+
+/* Files with few digits have arcs that do not quite meet: whatever is added is loaded. */
+TEST(loads_arcs_that_were_given_apart) {
+    struct test_random random = test_random_named("apart");
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
+    for (double apart = 1e-7; apart < NARC_TOLERANCE; apart *= 2)
+        for (size_t k = 0; k < 8 * FAMILY_COUNT; k++) {
+            struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+            for (size_t i = 0; i < shape.count; i++)
+                shape.arcs[i].center_x += random_between(&random, -apart, apart);
+            (void)narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL); /* some are refused */
+        }
+    narc_destroy_shapes(save_and_load(shapes));
+}
+
+/* So do edges of ground that turn by less than counts as a corner. */
+TEST(loads_ground_that_turns_by_next_to_nothing) {
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
+    for (double turn = 1e-6; turn < NARC_TOLERANCE; turn += 1e-6) {
+        const double up = acos(0), normal = up + turn;
+        const narc_arc arcs[] = {{10, 0, 0, up, up}, {9, 0, 0, up, normal}, {6, -3 * turn, 0, normal, normal}};
+        const narc_chain_options options = {.weld = 100};
+        narc_chain_entry entry[4];
+        size_t count;
+        narc_error error;
+        expect_ok(narc_add_chain(shapes, arcs, 3, &options, entry, 4, &count, &error), &error);
+    }
+    narc_destroy_shapes(save_and_load(shapes));
 }
 
 /* Far from its origin a shape loses most of its digits; what is left is loaded. */
