@@ -12,7 +12,7 @@ include(CheckCSourceCompiles)
 
 set(NARC_KERNEL_SOURCES)
 foreach(file sat/overlap sat/search sat/rows sat/pair sat/contact sat/manifold sat/separation sat/follow sat/recycle box/box_walk broad/boxes broad/sweep
-    pose parts scene/rays scene/ray_pairs scene/regions scene/points scene/nearest
+    pose parts scene/rays scene/ray_fans scene/ray_pairs scene/regions scene/points scene/nearest
     scene/casts scene/one_cast scene/piece_casts scene/fit table)
   list(APPEND NARC_KERNEL_SOURCES "${PROJECT_SOURCE_DIR}/kernels/${file}.c")
 endforeach()

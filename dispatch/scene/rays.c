@@ -23,18 +23,9 @@ struct ray_job {
     atomic_size_t skipped;
 };
 
-/* Casts rays first .. first + count - 1; how many have no answer? Lanes of rays without company are a node's eight slots, or the
- * arcs of a shape: sixteen take a fifth to a third longer. The bits are the same. */
+/* Casts rays first .. first + count - 1; how many have no answer? */
 static size_t cast_some(const narc_kernel_table *kernels, const narc_ray_batch *batch, size_t first, size_t count) {
-    const narc_kernel_table *const eight = NARC_ISA_TABLE(NARC_BUILT_avx2, narc_kernels_avx2);
-    const narc_rays *const rays = batch->rays;
-    const bool together = count > 1 && narc_position_at(rays->x, first) == narc_position_at(rays->x, first + 1) &&
-                          narc_position_at(rays->y, first) == narc_position_at(rays->y, first + 1);
-    if (!batch->index)
-        return kernels->ray_pairs(batch, first, count);
-    if (!together && eight && kernels == NARC_ISA_TABLE(NARC_BUILT_avx512, narc_kernels_avx512))
-        kernels = eight;
-    return kernels->rays(batch, first, count);
+    return (batch->index ? kernels->rays : kernels->ray_pairs)(batch, first, count);
 }
 
 static void cast_part(void *argument, size_t part, size_t first, size_t end) {

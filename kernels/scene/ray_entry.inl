@@ -31,26 +31,8 @@
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "scene/body_frame.inl"
+#include "scene/ray_features.inl"
 #include "simd/simd.h"
-
-/* How near counts as met, relative to what the extent is at most, which is less than twice the extent. With what s is off
- * by, some 6 e of the extent, it stays below NARC_ERROR_BOUND. */
-#define TOUCH (12.0 / 16777216.0)
-
-/* Of pieces nothing: they overlap, and what closes a run behind may be nearer to the middle than its front. An extent
- * that is not known counts as the radius. */
-INLINE double find_touch(const narc_shape_header *header) {
-    const double ratio = header->extent_ratio < UINT8_MAX ? (double)header->extent_ratio : 1;
-    return narc_is_piece(header) ? 0 : TOUCH * ratio * (double)header->bound_radius;
-}
-
-/* The place on a ray's line, behind the foot, where it enters. */
-struct entry {
-    double along;
-    place normal; /* of the outline, unit */
-    int arc;      /* the feature: this arc or, `on_edge`, what lies between the one before and it */
-    bool on_edge;
-};
 
 /* The features by which a line enters. */
 struct entries {
@@ -262,13 +244,6 @@ INLINE bool find_first_entry(const struct body_frame *frame, const struct line *
 
 /* ------------------------------------------------------------------------------------------------ one ray, one body */
 
-/* A ray in the world. */
-struct ray {
-    place origin, direction; /* the latter a unit vector */
-    double length;           /* of its motion */
-    double inverse_length;
-};
-
 /* Where a ray meets a body. */
 struct meeting {
     place foot, direction; /* of the line, in the shape's coordinates */
@@ -344,13 +319,6 @@ INLINE bool find_meeting(const struct body_frame *frame, const struct ray *ray, 
     out->ahead = ahead;
     out->distance = distance;
     return true;
-}
-
-/* What a row says of the feature. */
-INLINE void put_feature(const struct body_frame *frame, const struct entry *entry, narc_ray_hit *out) {
-    const bool is_edge = entry->on_edge && is_edge_before(frame, entry->arc);
-    out->feature = (uint16_t)find_feature_number(frame->header, entry->arc, is_edge);
-    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry->arc].arc.radius * frame->scale);
 }
 
 /* Fills a row, but for the ray, the body and a feature. False if the meeting is beyond `limit` of the ray's motion. */

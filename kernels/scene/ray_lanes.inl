@@ -16,7 +16,7 @@
 
 #include "base/vec2.inl"
 #include "scene/body_frame.inl"
-#include "scene/ray_entry.inl"
+#include "scene/ray_features.inl"
 #include "scene/ray_reading.inl"
 #include "simd/doubles.h"
 

@@ -29,8 +29,8 @@
  * its room along that axis. */
 #define LARGEST_INVERSE 0x1p60f
 
-/* Rays that are read together, in double lanes. Vectors may read on behind them. */
-enum { READ = 128, READ_ROOM = READ + V_WIDTH };
+/* Rays that are read together, in double lanes. Vectors may read on behind them, those of fans too, which are up to so wide. */
+enum { READ = 128, BEHIND = 16, READ_ROOM = READ + BEHIND };
 
 struct read_axis {
     float first_start[READ], last_start[READ], inverse[READ_ROOM];
@@ -95,8 +95,8 @@ INLINE void read_positions(const narc_position_column *column, const uint32_t *n
 }
 
 /* Rays first .. first + count - 1 in their order, at most READ, set out from where they meet the scene, with room. */
-static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
-                      struct read_rays *out) {
+static inline void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
+                             struct read_rays *out) {
     const narc_rays *const rays = batch->rays;
     const vd min_x = d_set((double)scene->min_x), min_y = d_set((double)scene->min_y);
     const vd max_x = d_set((double)scene->max_x), max_y = d_set((double)scene->max_y);
@@ -151,10 +151,10 @@ static void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t
     if (NARC_SHORTCUTS && V_WIDTH > 1 && !single) {
         double *const columns[] = {out->direction_x, out->direction_y, out->length, out->inverse_length};
         for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
-            memset(columns[k] + end, 0, V_WIDTH * sizeof *columns[k]);
+            memset(columns[k] + end, 0, BEHIND * sizeof *columns[k]);
         float *const others[] = {out->limit, out->x.inverse, out->y.inverse};
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
-            memset(others[k] + end, 0, V_WIDTH * sizeof *others[k]);
+            memset(others[k] + end, 0, BEHIND * sizeof *others[k]);
     }
 }
 

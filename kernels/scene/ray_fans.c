@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * ray_fans.inl - rays of one origin whose directions differ little go through the index together, and meet a body in
+ * ray_fans.c - rays of one origin whose directions differ little go through the index together, and meet a body in
  * lanes.
  *
  * A node is visited if it meets the wedge between the outermost two, and only at a leaf each ray is asked, in a lane of
  * its own. A ray's answer is the same whether it goes alone or not.
  */
-#ifndef NARC_SCENE_RAY_FANS_INL
-#define NARC_SCENE_RAY_FANS_INL
-
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,7 +15,8 @@
 #include "column.h"
 #include "index.h"
 #include "kernels.h"
-#include "scene/ray_entry.inl"
+#include "scene/body_frame.inl"
+#include "scene/ray_features.inl"
 #include "scene/ray_lanes.inl"
 #include "scene/ray_reading.inl"
 #include "scene/ray_walk.inl"
@@ -26,7 +24,7 @@
 #include "simd/doubles.h"
 #include "simd/simd.h"
 
-enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH };
+enum { MOST_TOGETHER = 32, LANES = MOST_TOGETHER + V_WIDTH };
 
 /* Do rays that go together meet a body in lanes? In the module for WebAssembly they take too much room. */
 #if defined(__wasm__)
@@ -339,7 +337,7 @@ NOINLINE void cast_one(const narc_ray_batch *batch, struct fan *f, const struct 
         w->limit = f->limits[k];
         w->limit_fraction = f->nearest.fraction[k];
     }
-    cast_at_frame(batch, w, frame, body);
+    NARC_NAMED(cast_at_frame)(batch, w, frame, body);
     f->limits[k] = w->limit;
     if (goes_in_lanes(f) && w->found > 0) {
         f->nearest.fraction[k] = w->rows->fraction;
@@ -395,4 +393,10 @@ static void walk_together(const narc_ray_batch *batch, struct fan *f) {
         put_hits(batch, f, UINT32_MAX);
 }
 
-#endif
+size_t NARC_NAMED(cast_fan)(const narc_ray_batch *batch, const narc_box *scene, struct read_rays *rays, size_t first) {
+    struct fan fan;
+    const size_t count = gather_fan(batch, scene, rays, first, &fan);
+    if (count >= LEAST_TOGETHER)
+        walk_together(batch, &fan);
+    return count;
+}
