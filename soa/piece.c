@@ -280,10 +280,11 @@ bool narc_is_reached(const narc_contact_side *a, const narc_contact_side *b, dou
  * While no point of a body, and no centre of an arc, moves by more than d, no gap along a direction changes by more: there is
  * none below the margin where one exceeds that by d.
  *   Nor is there a contact with the front of a run whose end E lies aside of the body's deepest place p (kernels/piece/
- * edges_below.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from n, at
- * the end, to m beyond it, the gap grows by the turn times how far the centre lies beyond E. That is more than what two gaps
- * are rounded by if it lies NEED beyond. The other normals of the front have smaller gaps where p lies nearer to E along none
- * of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher now.
+ * edges_below.inl). Along a normal the deepest place lies on an arc c, right below its centre: so far as the normal turns from
+ * n, at the end, to m beyond it, the gap grows by the turn times how far the centre lies beyond E. That is more than what two
+ * gaps are rounded by if it lies NEED beyond. The other normals of the front have smaller gaps where p lies nearer to E along
+ * none of them, which the other one of its ends tells. After a move by d only an arc is deepest that is less than 2 d higher
+ * now.
  *   Along m another arc may be the deepest one, as where a side is nearly level: the gap is its own then, which is h greater
  * than that along n if it is h higher, and grows by the turn times how far it lies beyond E, or falls so much if it does not.
  * So of an arc that is not NEED beyond h makes up for that: after a move by d h is 2 d less, and it lies by d less beyond. */

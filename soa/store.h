@@ -150,9 +150,9 @@ typedef union narc_record {
  *                         normal at -y is the opposite one.
  *   info   0: the shape is none of these; else NARC_IS_..., and in its lowest bits, but for a circle, the first_arc of
  *          its header. NARC_IS_POLYGON alone, which makes it less than 0: none of these either, but a polygon of 3 to
- *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by. NARC_IS_PLANE beside it
- *          is a half-plane's, of which half_x is 1, and all else 0. NARC_HAS_FRONT beside it is that of a piece of a chain:
- *          its radius is the bounding radius, half_x and half_y are the centre of the caller's arc 3 (narc_piece_form).
+ *          NARC_FORM_CORNERS corners of one radius, which one pair by itself is told by. With it, and so less than 0 too:
+ *          NARC_IS_PLANE, a half-plane, of which half_x is 1, and all else 0; NARC_HAS_FRONT, a piece of a chain, whose
+ *          radius is the bounding radius, and half_x and half_y the centre of the caller's arc 3 (narc_piece_form).
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
@@ -174,8 +174,8 @@ static inline bool narc_has_form(const narc_box_form *box) {
 
 /* What a circle touches of a piece of a chain, in one line of the cache: of a run the caller's arcs 0, 1 and 2, where the
  * normals 1 to 3 lie between them and behind; all of the shortest fronts, and the begin of others. Of a concave arc, as of
- * arc 1, centre, radius, and the normals 1 and 2 at its ends. `thickness` is that of the solid, and `info` is the second word of the header, less the number of
- * the arc that is stored first. Of all other shapes all is 0. */
+ * arc 1, centre, radius, and the normals 1 and 2 at its ends. `thickness` is that of the solid, and `info` is the second
+ * word of the header, less the number of the arc that is stored first. Of all other shapes all is 0. */
 typedef struct narc_piece_form {
     float center_0[2], normal_1[2];
     float center_1[2], radius_1;

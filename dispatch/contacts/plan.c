@@ -110,8 +110,8 @@ static inline bool was_ground(const pair_view *v, size_t k) {
 
 /* What is known of a pair with ground while it is planned. FIRST: it is the first one of its body; RESTS: neither body moves.
  * OLD: it must be asked, whatever has moved; OTHER: so must all ground of the body, as a pair was ground, or is no sensor's
- * any more. HELD: its bodies have not moved too far for what is kept of it. What all pairs of the body are lies in the bits from
- * OF_BODY on of its first one. */
+ * any more. HELD: its bodies have not moved too far for what is kept of it. What all pairs of the body are lies in the bits
+ * from OF_BODY on of its first one. */
 enum {
     OF_FIRST = 1,
     OF_RESTS = 2,

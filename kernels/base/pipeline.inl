@@ -35,8 +35,7 @@ typedef vm detour(const struct call *call, const struct pair_indices *indices, i
 
 /* Takes pairs of a run and another body in the lanes `open`, and returns those that it does not settle. */
 struct pieces_met;
-typedef vm settling(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
-                    struct pieces_met *met);
+typedef vm settling(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
@@ -225,7 +224,7 @@ NOINLINE void take_waiting_runs(const struct call *call, const struct course *co
     if (runs->count < V_WIDTH)
         pad(runs);
     get_item(runs, k, item, QUEUE_FIELDS);
-    const vm left = course->runs(call, queues, live, get_margins(call, runs, k), item, met);
+    const vm left = course->runs(call, live, get_margins(call, runs, k), item, met);
     runs->count = k;
     if (vm_any(left)) {
         enter(course, queues, left, item, false);
@@ -244,7 +243,7 @@ INLINE vm take_runs(const struct call *call, settling *settle, const struct cour
         return open;
     item[BODY_SHAPE] = v_of_bits(vi_select(is_a, vi_load(indices->shape_b + k), vi_load(indices->shape_a + k)));
     if (COUNT_BITS(vm_bits(with_run)) == V_WIDTH)
-        return settle(call, queues, with_run, margin, item, met);
+        return settle(call, with_run, margin, item, met);
     push(call->runs, with_run, item, QUEUE_FIELDS);
     if (call->runs->count >= V_WIDTH)
         take_waiting_runs(call, waiting, queues, met);

@@ -108,8 +108,8 @@ struct facing_radii {
 };
 
 /* What the edges of two sides tell. Sets where signs contradict each other, and where a corner touches a corner: then other
- * edges may be closer to the normal. `of_run`: one is no box's, and A's axes are not those of its normals. Like all that a pair by
- * itself goes through, it copies no large structure: compilers do that through memory. */
+ * edges may be closer to the normal. `of_run`: one is no box's, and A's axes are not those of its normals. Like all that a
+ * pair by itself goes through, it copies no large structure: compilers do that through memory. */
 INLINE void find_facing_of(struct box_contact *c, vf angle_a, const struct facing_radii *radii, vf slack, bool of_run,
                            vm *out_left, vm *out_corners) {
     const vf zero = v_set(0);

@@ -56,9 +56,9 @@ INLINE vm is_behind_start(const struct run_beside *run, const vf field[8]) {
     return v_le(v_set(0), v2_cross((vec2){field[4], field[5]}, look_from_arc(run, field)));
 }
 
-/* Goes on behind arc 2, whose end p is not clearly before, in the lanes `walks`: to the last arc of the front, up to the corner `last` behind it, whose start p
- * lies behind. Returns its number, and the fields of it and, but for the last one, of the next. By halving, and then step by
- * step. */
+/* Goes on behind arc 2, whose end p is not clearly before, in the lanes `walks`: to the last arc of the front, up to the
+ * corner `last` behind it, whose start p lies behind. Returns its number, and the fields of it and, but for the last one, of
+ * the next. By halving, and then step by step. */
 NOINLINE vi walk_on(const narc_shapes *shapes, const int32_t *shape, struct run_beside *run, vm walks, vi last,
                     vf here[8], vf next[8]) {
     const narc_record *const records = shapes->records;

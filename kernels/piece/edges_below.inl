@@ -58,7 +58,8 @@ INLINE vec2 find_lowest_corner(const struct edged_body *body, vec2 n, vec2 *out_
                   v_select(v_lt(zero, out_n->y), v_neg(body->half_y), body->half_y)};
 }
 
-/* Does it lie beside the end of the front? By the arc that turns there to the closure, or from it, and that at the other end. */
+/* Does it lie beside the end of the front? By the arc that turns there to the closure, or from it, and that at the other
+ * end. */
 INLINE vm is_beyond(const struct edged_body *body, const vf here[8], const vf other[8], vf scale, bool is_last,
                     vf slack) {
     const vec2 start = {here[4], here[5]}, stop = {here[6], here[7]}, n = is_last ? start : stop,

@@ -58,7 +58,7 @@ static vm answer_rows_on_edges(const struct call *call, const struct edge_contac
 }
 
 /* To settle pairs by their forms is worth a try if one in four is. */
-INLINE vm settle_some(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met) {
+static vm settle_runs(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met) {
     if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
         return open;
     edge_answer *const second = call->question->on_edges;
@@ -66,12 +66,6 @@ INLINE vm settle_some(const struct call *call, vm open, vf margin, const vf item
     met->asked += COUNT_BITS(vm_bits(open));
     met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
     return left;
-}
-
-static vm settle_runs(const struct call *call, struct queue *queues, vm open, vf margin, const vf item[FIELDS],
-                      struct pieces_met *met) {
-    (void)queues;
-    return settle_some(call, open, margin, item, met);
 }
 
 /* Pairs of a circle and a piece come before those of two forms. Others come behind, out of order. */
