@@ -35,7 +35,7 @@ typedef vm detour(const struct call *call, const struct pair_indices *indices, i
 
 /* Takes pairs of a run and another body in the lanes `open`, and returns those that it does not settle. */
 struct pieces_met;
-typedef vm settling(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met);
+typedef vm settling(const struct call *call, vm open, vf margin, vf item[FIELDS], struct pieces_met *met);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {

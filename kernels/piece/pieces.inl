@@ -71,17 +71,16 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     const vi last = vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count));
     const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
     const uint32_t piece_is_a = vm_bits(of_a);
-    const narc_shape_header *header[2][V_WIDTH];
     int32_t pair[V_WIDTH], solid[V_WIDTH];
     float inner[V_WIDTH] = {0};
     get_pairs(queue, k, pair);
     vi_store(solid, last);
-    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+    for (uint32_t lanes = vm_bits(which); lanes && !front_only; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes);
         const size_t number = find_number(call, pair[l]);
-        header[0][l] = find_header(batch, batch->a, batch->pairs->a, number);
-        header[1][l] = find_header(batch, batch->b, batch->pairs->b, number);
-        inner[l] = header[piece_is_a >> l & 1][l]->inner_radius;
+        inner[l] = (piece_is_a >> l & 1 ? find_header(batch, batch->b, batch->pairs->b, number)
+                                        : find_header(batch, batch->a, batch->pairs->a, number))
+                       ->inner_radius;
     }
     if (!front_only) {
         const vf scaled = v_mul(v_load(inner), v_select(of_a, scale_b, scale_a));
@@ -107,18 +106,23 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     }
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes), piece = piece_is_a >> l & 1 ? 0 : 1;
-        const narc_shape_header *const body = header[1 - piece][l];
+        const size_t number = find_number(call, pair[l]);
+        const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
+                                                    find_header(batch, batch->b, batch->pairs->b, number)};
+        const narc_shape_header *const body = header[1 - piece];
         const double thickness = (double)batch->shapes->records[(uint32_t)solid[l]].solid.thickness;
         if (!front_only && !narc_is_piece(body) &&
             narc_is_shallow(body, (double)scale[1 - piece][l], (double)scale[piece][l] * thickness, (double)depth[l]))
             continue;
         narc_contact_side touching[2];
         for (int side = 0; side < 2; side++)
-            touching[side] =
-                (narc_contact_side){header[side][l],           narc_arcs_of(batch->shapes, header[side][l]),
-                                    (double)scale[side][l],    (double)field[side][0][l],
-                                    (double)field[side][1][l], (double)field[side][2][l],
-                                    (double)field[side][3][l]};
+            touching[side] = (narc_contact_side){header[side],
+                                                 narc_arcs_of(batch->shapes, header[side]),
+                                                 (double)scale[side][l],
+                                                 (double)field[side][0][l],
+                                                 (double)field[side][1][l],
+                                                 (double)field[side][2][l],
+                                                 (double)field[side][3][l]};
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));

@@ -58,7 +58,7 @@ static vm answer_rows_on_edges(const struct call *call, const struct edge_contac
 }
 
 /* To settle pairs by their forms is worth a try if one in four is. */
-static vm settle_runs(const struct call *call, vm open, vf margin, const vf item[FIELDS], struct pieces_met *met) {
+static vm settle_runs(const struct call *call, vm open, vf margin, vf item[FIELDS], struct pieces_met *met) {
     if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
         return open;
     edge_answer *const second = call->question->on_edges;
