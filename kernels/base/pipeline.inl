@@ -34,8 +34,7 @@ typedef vm detour(const struct call *call, const struct pair_indices *indices, i
                   vm open, int32_t number);
 
 /* Takes pairs of a run and another body in the lanes `open`, and returns those that it does not settle. */
-struct pieces_met;
-typedef vm settling(const struct call *call, vm open, vf margin, vf item[FIELDS], struct pieces_met *met);
+typedef vm settling(const struct call *call, vm open, vf margin, vf item[FIELDS]);
 
 /* The way of a kernel's pairs: constants but for `stages` and `edged`. */
 struct course {
@@ -165,7 +164,6 @@ struct pieces_met {
     bool fetches;    /* so they are asked for ahead: of B, or of A */
     bool fetches_b, fetches_forms;
     bool forms, formed; /* are pairs of forms looked for in this block; have there been any? */
-    int asked, settled; /* boxes and capsules on edges that may have been settled, and were */
 };
 
 INLINE bool begins_with_piece(const struct call *call, narc_index_column body, narc_index_column shape) {
@@ -215,8 +213,7 @@ INLINE void run_full_stages(const struct call *call, const struct course *course
 }
 
 /* Pairs with a run wait until there is a vector of them, as most bodies are near concave pieces, too. Takes the last ones. */
-NOINLINE void take_waiting_runs(const struct call *call, const struct course *course, struct queue *queues,
-                                struct pieces_met *met) {
+NOINLINE void take_waiting_runs(const struct call *call, const struct course *course, struct queue *queues) {
     struct queue *const runs = call->runs;
     vf item[FIELDS];
     const int k = runs->count > V_WIDTH ? runs->count - V_WIDTH : 0;
@@ -224,7 +221,7 @@ NOINLINE void take_waiting_runs(const struct call *call, const struct course *co
     if (runs->count < V_WIDTH)
         pad(runs);
     get_item(runs, k, item, QUEUE_FIELDS);
-    const vm left = course->runs(call, live, get_margins(call, runs, k), item, met);
+    const vm left = course->runs(call, live, get_margins(call, runs, k), item);
     runs->count = k;
     if (vm_any(left)) {
         enter(course, queues, left, item, false);
@@ -234,8 +231,7 @@ NOINLINE void take_waiting_runs(const struct call *call, const struct course *co
 
 /* Takes the pairs with a run of those in the lanes `open`, pairs k ... of a block; returns those that go on. */
 INLINE vm take_runs(const struct call *call, settling *settle, const struct course *waiting, struct queue *queues,
-                    const struct pair_indices *indices, int k, vm open, vf margin, vf item[FIELDS],
-                    struct pieces_met *met) {
+                    const struct pair_indices *indices, int k, vm open, vf margin, vf item[FIELDS]) {
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B);
     const vm is_a = has_mark(info_a, NARC_PIECE_RUN), one = vm_xor(is_a, has_mark(info_b, NARC_PIECE_RUN));
     const vm with_run = vm_and(open, one), others = vm_and_not(open, one);
@@ -243,10 +239,10 @@ INLINE vm take_runs(const struct call *call, settling *settle, const struct cour
         return open;
     item[BODY_SHAPE] = v_of_bits(vi_select(is_a, vi_load(indices->shape_b + k), vi_load(indices->shape_a + k)));
     if (COUNT_BITS(vm_bits(with_run)) == V_WIDTH)
-        return settle(call, with_run, margin, item, met);
+        return settle(call, with_run, margin, item);
     push(call->runs, with_run, item, QUEUE_FIELDS);
     if (call->runs->count >= V_WIDTH)
-        take_waiting_runs(call, waiting, queues, met);
+        take_waiting_runs(call, waiting, queues);
     return others;
 }
 
@@ -303,8 +299,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
             if (NARC_PIECES && !LIKELY(!call->pieces)) {
                 note_pieces(&met, item);
                 if (course->runs && call->runs && vm_any(open))
-                    open =
-                        take_runs(call, course->runs, &waiting, queues, &indices, k, open, circles.margin, item, &met);
+                    open = take_runs(call, course->runs, &waiting, queues, &indices, k, open, circles.margin, item);
             }
             if (queues && vm_any(open)) {
                 enter(course, queues, open, item, not_first);
@@ -313,7 +308,7 @@ INLINE void run_pairs(const struct call *call, const struct course *course, stru
         }
     }
     if (NARC_PIECES && course->runs && call->runs && call->runs->count > 0)
-        take_waiting_runs(call, &waiting, queues, &met);
+        take_waiting_runs(call, &waiting, queues);
     if (queues)
         run_stages(call, course, queues, true);
 }

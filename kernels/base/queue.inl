@@ -61,7 +61,7 @@ enum {
     INFO_A,
     INFO_B,
     PAIR,            /* counted from the first of the call */
-    DIRECTION,       /* what the next stage probes along, or walks near; at first the axis */
+    DIRECTION,       /* what the next stage probes along, or walks near; at first the axis, or out of a run */
     ROTATION_A = 17, /* A's rotation in the world */
     SIZE = 19,       /* the sum of both bounding radii */
     FIELDS,

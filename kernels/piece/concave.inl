@@ -44,19 +44,11 @@ struct concave_pairs {
     struct pose pose;
 };
 
-/* The piece's arc. */
-INLINE struct arcs load_piece(const narc_record *records, const struct concave_pairs *pairs) {
-    const vi record = vi_select(pairs->piece_is_a, pairs->ring_a.base, pairs->ring_b.base);
+/* An arc in a record, of the body, or that of the piece. */
+INLINE struct arcs load_arc_of(const narc_record *records, const struct concave_pairs *pairs, vi record, bool piece) {
     vf field[8];
     load_records(records, record, field);
-    return place_arc(field, &pairs->pose, pairs->piece_is_a);
-}
-
-/* The body's arc in a record. */
-INLINE struct arcs load_body_arc(const narc_record *records, const struct concave_pairs *pairs, vi record) {
-    vf field[8];
-    load_records(records, record, field);
-    return place_arc(field, &pairs->pose, vm_not(pairs->piece_is_a));
+    return place_arc(field, &pairs->pose, piece ? pairs->piece_is_a : vm_not(pairs->piece_is_a));
 }
 
 /* From the centre of B's arc to that of A's. */
@@ -73,7 +65,7 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     struct gap gap;
     gap.record_a = vi_add(pairs->ring_a.base, vi_select(piece_is_a, vi_set(0), i));
     gap.record_b = vi_add(pairs->ring_b.base, vi_select(piece_is_a, i, vi_set(0)));
-    const struct arcs body = load_body_arc(records, pairs, vi_select(piece_is_a, gap.record_b, gap.record_a));
+    const struct arcs body = load_arc_of(records, pairs, vi_select(piece_is_a, gap.record_b, gap.record_a), false);
     const vec2 back = look_back(pairs, piece.center, body.center);    /* -u */
     const vm centred = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)); /* then all directions are alike */
     const vec2 n = v2_select(centred, v2_add(piece.start, piece.end), back);
@@ -217,7 +209,8 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const bool lists = call->rows->out.lists;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
     vi found = zero, first = zero, lowest = zero; /* lowest: the number of the deepest one's arc */
-    const struct arcs piece = load_piece(records, &pairs);
+    const struct arcs piece =
+        load_arc_of(records, &pairs, vi_select(piece_is_a, pairs.ring_a.base, pairs.ring_b.base), true);
     struct arc_window window = {vm_front(0), {v_set(0), v_set(0)}};
     if (!lists && vm_any(vm_and_not(open, round)))
         window = find_window(records, queue, k, &pairs, &piece, first_record, &first);

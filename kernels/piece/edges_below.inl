@@ -120,17 +120,8 @@ INLINE vm look_below(const struct edged_body *body, const vf first[8], const vf 
     return apart;
 }
 
-/* From the centre of an arc to the point of the body without its radius that is next to it. */
-INLINE vec2 look_at_body(const struct edged_body *body, const vf arc[8], vf scale) {
-    const vec2 way = v2_sub(body->center, v2_scale((vec2){arc[0], arc[1]}, scale));
-    const vf x = v2_dot(body->x_axis, way), y = v2_cross(body->x_axis, way);
-    const vf near_x = v_max(v_min(x, body->half_x), v_neg(body->half_x)),
-             near_y = v_max(v_min(y, body->half_y), v_neg(body->half_y));
-    return v2_rotate(body->x_axis, (vec2){v_sub(x, near_x), v_sub(y, near_y)});
-}
-
-/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others. Looked at is the edge
- * behind the last arc whose start the body's middle lies behind. */
+/* Settles pairs of a body with a form of those in the lanes `open`, each with a run; returns the others, whose search
+ * begins where they are next to the run. Looked at is the edge behind the last arc whose start the body's middle lies behind. */
 NOINLINE vm settle_above_edges(const struct call *call, edge_answer *answer, vm open, vf margin, vf item[FIELDS]) {
     const narc_shapes *const shapes = call->batch->shapes;
     const vi info_a = get_item_bits(item, INFO_A), info_b = get_item_bits(item, INFO_B), one = vi_set(1);
@@ -191,17 +182,18 @@ NOINLINE vm settle_above_edges(const struct call *call, edge_answer *answer, vm 
     e.lies = vm_and_not(vm_and(tried, e.lies), settled);
     if (vm_any(vm_or(e.rests, e.lies)))
         settled = vm_or(settled, answer(call, &e));
-    const vm others = vm_and_not(tried, settled);
-    if (vm_any(
-            others)) { /* the search begins where they are next to each other: at the arc before the edge, that, or behind it */
-        const vec2 n = {e.behind[4], e.behind[5]}, at_before = look_at_body(&body, e.before, scale),
-                   at_behind = look_at_body(&body, e.behind, scale);
-        const vec2 beyond = v2_select(v_lt(v_set(0), v2_cross(n, at_behind)), at_behind, n),
-                   from = v2_select(v_lt(v2_cross(at_before, n), v_set(0)), beyond, at_before),
-                   direction = v2_select(is_a, from, v2_rotate_opposite(rotation, from));
-        set_vec2(item, DIRECTION, v2_select(others, direction, (vec2){item[DIRECTION], item[DIRECTION + 1]}));
-    }
-    return vm_and_not(open, settled);
+    open = vm_and_not(open, settled);
+    if (!vm_any(open))
+        return open;
+    /* From the arc before the edge to what of the body is nearest, but not beyond the edge's normal. */
+    const vec2 n = {e.behind[4], e.behind[5]}, way = look_from_arc(&run, e.before);
+    const vf x = v2_dot(body.x_axis, way), y = v2_cross(body.x_axis, way);
+    const vec2 near = v2_rotate(body.x_axis, (vec2){v_sub(x, v_max(v_min(x, body.half_x), v_neg(body.half_x))),
+                                                    v_sub(y, v_max(v_min(y, body.half_y), v_neg(body.half_y)))}),
+               from = v2_select(v_lt(v_set(0), v2_cross(near, n)), near, n),
+               axis = {item[DIRECTION], item[DIRECTION + 1]};
+    set_vec2(item, DIRECTION, v2_select(tried, v2_select(is_a, from, v2_rotate_opposite(rotation, from)), axis));
+    return open;
 }
 
 #endif

@@ -68,21 +68,20 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
     const vm of_a = has_mark(info_a, NARC_PIECE_MARKS), both = vm_and(of_a, has_mark(info_b, NARC_PIECE_MARKS));
     const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
-    const vi last = vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count));
     const vf scale_a = get(queue, SCALE_A, k), scale_b = get(queue, SCALE_B, k);
     const uint32_t piece_is_a = vm_bits(of_a);
     int32_t pair[V_WIDTH], solid[V_WIDTH];
-    float inner[V_WIDTH] = {0};
     get_pairs(queue, k, pair);
-    vi_store(solid, last);
-    for (uint32_t lanes = vm_bits(which); lanes && !front_only; lanes &= lanes - 1) {
-        const int l = FIND_LOWEST(lanes);
-        const size_t number = find_number(call, pair[l]);
-        inner[l] = (piece_is_a >> l & 1 ? find_header(batch, batch->b, batch->pairs->b, number)
-                                        : find_header(batch, batch->a, batch->pairs->a, number))
-                       ->inner_radius;
-    }
+    vi_store(solid, vi_select(of_a, vi_add(ring_a.base, ring_a.count), vi_add(ring_b.base, ring_b.count)));
     if (!front_only) {
+        float inner[V_WIDTH] = {0};
+        for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+            const int l = FIND_LOWEST(lanes);
+            const bool of_b = piece_is_a >> l & 1;
+            inner[l] = find_header(batch, of_b ? batch->b : batch->a, of_b ? batch->pairs->b : batch->pairs->a,
+                                   find_number(call, pair[l]))
+                           ->inner_radius;
+        }
         const vf scaled = v_mul(v_load(inner), v_select(of_a, scale_b, scale_a));
         vf field[4];
         v_rows(batch->shapes->records, sizeof *batch->shapes->records, solid, field);
@@ -109,20 +108,19 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         const size_t number = find_number(call, pair[l]);
         const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
                                                     find_header(batch, batch->b, batch->pairs->b, number)};
-        const narc_shape_header *const body = header[1 - piece];
         const double thickness = (double)batch->shapes->records[(uint32_t)solid[l]].solid.thickness;
-        if (!front_only && !narc_is_piece(body) &&
-            narc_is_shallow(body, (double)scale[1 - piece][l], (double)scale[piece][l] * thickness, (double)depth[l]))
+        if (!front_only && !narc_is_piece(header[1 - piece]) &&
+            narc_is_shallow(header[1 - piece], (double)scale[1 - piece][l], (double)scale[piece][l] * thickness,
+                            (double)depth[l]))
             continue;
         narc_contact_side touching[2];
-        for (int side = 0; side < 2; side++)
-            touching[side] = (narc_contact_side){header[side],
-                                                 narc_arcs_of(batch->shapes, header[side]),
-                                                 (double)scale[side][l],
-                                                 (double)field[side][0][l],
-                                                 (double)field[side][1][l],
-                                                 (double)field[side][2][l],
-                                                 (double)field[side][3][l]};
+        for (int s = 0; s < 2; s++) {
+            const float x = field[s][0][l], y = field[s][1][l], to_x = field[s][2][l], to_y = field[s][3][l];
+            touching[s] = (narc_contact_side){header[s],           narc_arcs_of(batch->shapes, header[s]),
+                                              (double)scale[s][l], (double)x,
+                                              (double)y,           (double)to_x,
+                                              (double)to_y};
+        }
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l], front_only) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));

@@ -57,15 +57,11 @@ static vm answer_rows_on_edges(const struct call *call, const struct edge_contac
     return answer_on_edges(call, contact, false);
 }
 
-/* To settle pairs by their forms is worth a try if one in four is. */
-static vm settle_runs(const struct call *call, vm open, vf margin, vf item[FIELDS], struct pieces_met *met) {
-    if (call->batch->shapes->box_count == 0 || (met->asked >= 2 * BLOCK && 4 * met->settled < met->asked))
-        return open;
+static vm settle_runs(const struct call *call, vm open, vf margin, vf item[FIELDS]) {
     edge_answer *const second = call->question->on_edges;
-    const vm left = settle_above_edges(call, second ? second : answer_rows_on_edges, open, margin, item);
-    met->asked += COUNT_BITS(vm_bits(open));
-    met->settled += COUNT_BITS(vm_bits(vm_and_not(open, left)));
-    return left;
+    return call->batch->shapes->box_count == 0
+               ? open
+               : settle_above_edges(call, second ? second : answer_rows_on_edges, open, margin, item);
 }
 
 /* Pairs of a circle and a piece come before those of two forms. Others come behind, out of order. */
