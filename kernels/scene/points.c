@@ -31,7 +31,7 @@ void NARC_NAMED(distance)(const narc_point_batch *batch, size_t first, size_t en
 /* As place_point(), points from k on, in lanes. One without an answer lies outside of all that there is. */
 INLINE vec2 place_points(const struct body_frame *frame, const narc_points *points, size_t k, int lanes) {
     double x[V_WIDTH], y[V_WIDTH];
-    float out_x[V_WIDTH], out_y[V_WIDTH];
+    vd out_x[V_WIDTH / D_WIDTH], out_y[V_WIDTH / D_WIDTH];
     const vd limit = d_set(NARC_MAX_DISTANCE), nowhere = d_set(8 * NARC_MAX_DISTANCE);
     const vd c = d_set(frame->rotation.x), s = d_set(frame->rotation.y);
     const vd middle_x = d_set(frame->scale * (double)frame->header->bound_x);
@@ -41,13 +41,15 @@ INLINE vec2 place_points(const struct body_frame *frame, const narc_points *poin
         x[l] = point.x;
         y[l] = point.y;
     }
-    for (int l = 0; l < V_WIDTH; l += D_WIDTH) {
+    UNROLL
+    for (int h = 0; h < V_WIDTH / D_WIDTH; h++) {
+        const int l = h * D_WIDTH;
         const vd from_x = d_load(x + l) - d_set(frame->position.x), from_y = d_load(y + l) - d_set(frame->position.y);
         const vl near = d_le(d_abs(from_x), limit) & d_le(d_abs(from_y), limit);
-        d_put_floats(out_x + l, d_select(near, c * from_x + s * from_y - middle_x, nowhere));
-        d_put_floats(out_y + l, d_select(near, c * from_y - s * from_x - middle_y, nowhere));
+        out_x[h] = d_select(near, c * from_x + s * from_y - middle_x, nowhere);
+        out_y[h] = d_select(near, c * from_y - s * from_x - middle_y, nowhere);
     }
-    return (vec2){v_load(out_x), v_load(out_y)};
+    return (vec2){d_join_floats(out_x), d_join_floats(out_y)};
 }
 
 /* Is the separation of points below 0? As find_separation(), with points in lanes. */

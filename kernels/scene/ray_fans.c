@@ -237,15 +237,14 @@ NOINLINE void put_hits(const narc_ray_batch *batch, struct fan *f, uint32_t rays
     const uint64_t put = rays & nearest->waiting;
     for (uint64_t left = put; left; left &= left - 1) {
         const unsigned k = (unsigned)FIND_LOWEST_64(left);
-        if (nearest->body[k] != body)
-            load_body_frame(batch->shapes, batch->bodies, (uint32_t)nearest->body[k] ^ 0x80000000u, &frame);
-        if (nearest->body[k] != body || nearest->feature[k] != feature)
-            put_feature(&frame,
-                        &(struct entry){.arc = nearest->feature[k] & (ON_EDGE - 1),
-                                        .on_edge = (nearest->feature[k] & ON_EDGE) != 0},
+        if (nearest->body[k] != body || nearest->feature[k] != feature) {
+            if (nearest->body[k] != body)
+                load_body_frame(batch->shapes, batch->bodies, (uint32_t)nearest->body[k] ^ 0x80000000u, &frame);
+            body = nearest->body[k];
+            feature = nearest->feature[k];
+            put_feature(&frame, &(struct entry){.arc = feature & (ON_EDGE - 1), .on_edge = (feature & ON_EDGE) != 0},
                         &told);
-        body = nearest->body[k];
-        feature = nearest->feature[k];
+        }
         memcpy(&nearest->word[k], &told.feature, sizeof nearest->word[k]);
         nearest->radius[k] = told.radius;
     }
@@ -257,7 +256,7 @@ NOINLINE void put_hits(const narc_ray_batch *batch, struct fan *f, uint32_t rays
                               v_load(nearest->radius + k)};
         char *row[V_WIDTH];
         for (size_t l = 0; l < V_WIDTH; l++)
-            row[l] = (char *)(put >> (k + l) & 1 ? get_rows(batch, f->rays, f->first + k + l) : &spare);
+            row[l] = (char *)(put >> (k + l) & 1 ? batch->out + f->rays->number[f->first + k + l] : &spare);
         v_put_rows(row, offsetof(narc_ray_hit, body), first);
         v_put_rows(row, offsetof(narc_ray_hit, normal_y), second);
     }
@@ -279,35 +278,38 @@ INLINE uint32_t cast_lanes(struct fan *f, const struct body_frame *frame, uint32
     const size_t at = f->first + k;
     struct entry_lanes entries;
     struct half_met met[LANE_HALVES];
-    float lanes[V_WIDTH];
-    if (!meet_in_lanes(frame, all, at, ignores, &entries, met, lanes))
+    vf fraction;
+    if (!meet_in_lanes(frame, all, at, ignores, &entries, met, &fraction))
         return 0;
-    const vf fraction = v_load(lanes), least = v_load(nearest->fraction + k);
+    const vf least = v_load(nearest->fraction + k);
     const vi number = vi_set((int32_t)(body ^ 0x80000000u));
     const vm is_before = vm_or(v_lt(fraction, least), vi_lt(number, vi_load(nearest->body + k)));
     const vm hits = vm_and(vm_and(v_le(v_set(0), fraction), v_le(fraction, least)), is_before);
     if (vm_any(hits)) {
-        float limits[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], point_x[V_WIDTH], point_y[V_WIDTH];
+        vd limits[LANE_HALVES], normal_x[LANE_HALVES], normal_y[LANE_HALVES], point_x[LANE_HALVES],
+            point_y[LANE_HALVES];
+        float lanes[V_WIDTH];
+        v_store(lanes, fraction);
         UNROLL
         for (int h = 0; h < LANE_HALVES; h++) {
             const int l = h * D_WIDTH;
             const struct half_place at_place = find_place_lanes(frame, &met[h]);
-            d_put_floats(normal_x + l, at_place.normal.x);
-            d_put_floats(normal_y + l, at_place.normal.y);
-            d_put_floats(point_x + l, at_place.point.x);
-            d_put_floats(point_y + l, at_place.point.y);
-            d_put_floats(limits + l, find_limit(d_of_floats(lanes + l), d_load(all->length + at + l), d_set(0),
-                                                d_set((double)f->walks[0].room)));
+            normal_x[h] = at_place.normal.x;
+            normal_y[h] = at_place.normal.y;
+            point_x[h] = at_place.point.x;
+            point_y[h] = at_place.point.y;
+            limits[h] = find_limit(d_of_floats(lanes + l), d_load(all->length + at + l), d_set(0),
+                                   d_set((double)f->walks[0].room));
         }
         nearest->waiting |= vm_bits(hits) << k;
         select_floats(hits, nearest->fraction + k, fraction);
         select_ints(hits, nearest->body + k, number);
         select_ints(hits, nearest->feature + k, entries.feature);
-        select_floats(hits, nearest->normal_x + k, v_load(normal_x));
-        select_floats(hits, nearest->normal_y + k, v_load(normal_y));
-        select_floats(hits, nearest->point_x + k, v_load(point_x));
-        select_floats(hits, nearest->point_y + k, v_load(point_y));
-        select_floats(hits, f->limits + k, v_load(limits));
+        select_floats(hits, nearest->normal_x + k, d_join_floats(normal_x));
+        select_floats(hits, nearest->normal_y + k, d_join_floats(normal_y));
+        select_floats(hits, nearest->point_x + k, d_join_floats(point_x));
+        select_floats(hits, nearest->point_y + k, d_join_floats(point_y));
+        select_floats(hits, f->limits + k, d_join_floats(limits));
     }
     return vm_bits(v_lt(fraction, v_set(0)));
 }

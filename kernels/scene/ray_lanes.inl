@@ -30,7 +30,8 @@ INLINE vd d_dot(vec2d a, vec2d b) { return a.x * b.x + a.y * b.y; }
 INLINE vd d_cross(vec2d a, vec2d b) { return a.x * b.y - a.y * b.x; }
 INLINE vec2d d_set2(place a) { return (vec2d){d_set(a.x), d_set(a.y)}; }
 INLINE vec2d d_select2(vl m, vec2d a, vec2d b) { return (vec2d){d_select(m, a.x, b.x), d_select(m, a.y, b.y)}; }
-INLINE vec2d d_of_floats2(const float *x, const float *y) { return (vec2d){d_of_floats(x), d_of_floats(y)}; }
+INLINE vd d_of_half(const vf *a, int l) { return d_of_floats((const float *)a + l); }
+INLINE vec2d d_of_half2(const vf *a, int l) { return (vec2d){d_of_half(a, l), d_of_half(a + 1, l)}; }
 
 /* What is known of half as many rays as there are lanes. */
 struct half_met {
@@ -49,7 +50,7 @@ struct entry_lanes {
 
 /* Lines in the shape's coordinates. */
 struct lines {
-    float foot_x[V_WIDTH], foot_y[V_WIDTH], direction_x[V_WIDTH], direction_y[V_WIDTH];
+    vec2 foot, direction;
 };
 
 /* s of an arc's centre. */
@@ -63,8 +64,7 @@ INLINE vf find_turn(vec2 v, const float *normal) { return v2_cross(v, (vec2){v_s
 /* From the last arc to the first: what is found later is before what was found. An edge is known when the arc before it is. */
 NOINLINE void find_entry_lanes(const narc_record *arcs, int count, const struct lines *lines, float near,
                                struct entry_lanes *out) {
-    const vec2 o = {v_load(lines->foot_x), v_load(lines->foot_y)};
-    const vec2 v = {v_load(lines->direction_x), v_load(lines->direction_y)};
+    const vec2 o = lines->foot, v = lines->direction;
     const vf zero = v_set(0);
     vf nearest = v_set(INFINITY);
     vi first = vi_set(-1);
@@ -104,38 +104,25 @@ NOINLINE void find_entry_lanes(const narc_record *arcs, int count, const struct 
              vi_select(out->found, vi_sub(first, vi_select(out->on_edge, vi_set(ON_EDGE), vi_set(0))), vi_set(0)));
 }
 
-/* The arcs by which they enter, and those before them. */
+/* The arcs by which they enter, and those before them, as records have them: centre and radius, and both normals. */
 struct arc_lanes {
-    float center_x[V_WIDTH], center_y[V_WIDTH], radius[V_WIDTH], start_x[V_WIDTH], start_y[V_WIDTH], end_x[V_WIDTH],
-        end_y[V_WIDTH], before_x[V_WIDTH], before_y[V_WIDTH], before_radius[V_WIDTH];
+    vf at[4], normals[4], before[4];
 };
 
 INLINE void load_arc_lanes(const struct body_frame *frame, const int32_t *arc, struct arc_lanes *out) {
     int32_t before[V_WIDTH];
-    vf field[4];
     const vi number = vi_load(arc), last = vi_set((int32_t)frame->header->count - 1);
     vi_store(before, vi_select(vi_lt(vi_set(0), number), vi_sub(number, vi_set(1)), last));
-    v_rows(frame->arcs, sizeof *frame->arcs, arc, field);
-    v_store(out->center_x, field[0]);
-    v_store(out->center_y, field[1]);
-    v_store(out->radius, field[2]);
-    v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, arc, field);
-    v_store(out->start_x, field[0]);
-    v_store(out->start_y, field[1]);
-    v_store(out->end_x, field[2]);
-    v_store(out->end_y, field[3]);
-    v_rows(frame->arcs, sizeof *frame->arcs, before, field);
-    v_store(out->before_x, field[0]);
-    v_store(out->before_y, field[1]);
-    v_store(out->before_radius, field[2]);
+    v_rows(frame->arcs, sizeof *frame->arcs, arc, out->at);
+    v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, arc, out->normals);
+    v_rows(frame->arcs, sizeof *frame->arcs, before, out->before);
 }
 
 /* enter_edge() and enter_arc(), from lane l on. */
 INLINE vd enter_edge_lanes(const struct arc_lanes *arcs, int l, struct half_met *met) {
-    const vec2d v = met->direction, foot = met->foot, n = d_of_floats2(arcs->start_x + l, arcs->start_y + l);
-    const vec2d before = d_of_floats2(arcs->before_x + l, arcs->before_y + l);
-    const vec2d after = d_of_floats2(arcs->center_x + l, arcs->center_y + l);
-    const vd r = d_of_floats(arcs->before_radius + l), q = d_of_floats(arcs->radius + l), zero = d_set(0);
+    const vec2d v = met->direction, foot = met->foot, n = d_of_half2(arcs->normals, l);
+    const vec2d before = d_of_half2(arcs->before, l), after = d_of_half2(arcs->at, l);
+    const vd r = d_of_half(arcs->before + 2, l), q = d_of_half(arcs->at + 2, l), zero = d_set(0);
     const vec2d from = {before.x + r * n.x - foot.x, before.y + r * n.y - foot.y};
     const vec2d to = {after.x + q * n.x - foot.x, after.y + q * n.y - foot.y};
     const vd left = d_cross(v, from), right = d_cross(v, to), start = d_dot(v, from);
@@ -146,10 +133,10 @@ INLINE vd enter_edge_lanes(const struct arc_lanes *arcs, int l, struct half_met 
 }
 
 INLINE vd enter_arc_lanes(const struct arc_lanes *arcs, int l, struct half_met *met) {
-    const vec2d v = met->direction, foot = met->foot, start = d_of_floats2(arcs->start_x + l, arcs->start_y + l);
-    const vec2d end = d_of_floats2(arcs->end_x + l, arcs->end_y + l);
-    const vec2d at = d_of_floats2(arcs->center_x + l, arcs->center_y + l), center = {at.x - foot.x, at.y - foot.y};
-    const vd radius = d_of_floats(arcs->radius + l), beside = d_cross(v, center) / radius;
+    const vec2d v = met->direction, foot = met->foot, start = d_of_half2(arcs->normals, l);
+    const vec2d end = d_of_half2(arcs->normals + 2, l);
+    const vec2d at = d_of_half2(arcs->at, l), center = {at.x - foot.x, at.y - foot.y};
+    const vd radius = d_of_half(arcs->at + 2, l), beside = d_cross(v, center) / radius;
     const vd zero = d_set(0), one = d_set(1), least = d_set(-1);
     const vd capped = d_select(d_lt(beside, least), least, d_select(d_lt(one, beside), one, beside));
     const vd half = d_sqrt((one - capped) * (one + capped));
@@ -164,7 +151,7 @@ INLINE vd enter_arc_lanes(const struct arc_lanes *arcs, int l, struct half_met *
  * those that are to be asked alone, and NaN of others. `ignores`: those that start in the body are not asked. False if it is
  * that of all. */
 INLINE bool meet_in_lanes(const struct body_frame *frame, const struct read_rays *rays, size_t first, bool ignores,
-                          struct entry_lanes *entries, struct half_met met[LANE_HALVES], float out_fraction[V_WIDTH]) {
+                          struct entry_lanes *entries, struct half_met met[LANE_HALVES], vf *out_fraction) {
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - rays->origin_x[first], frame->position.y - rays->origin_y[first]};
     const place turned = turn_to_shape(frame, way), middle = {(double)header->bound_x, (double)header->bound_y};
@@ -172,7 +159,7 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct read_rays
         d_set2((place){turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y});
     const vec2d rotation = d_set2(frame->rotation);
     const vd radius = d_set((double)header->bound_radius), nan = d_set((double)NAN);
-    struct lines lines;
+    vd foot_x[LANE_HALVES], foot_y[LANE_HALVES], direction_x[LANE_HALVES], direction_y[LANE_HALVES], told[LANE_HALVES];
     UNROLL
     for (int h = 0; h < LANE_HALVES; h++) {
         const int l = h * D_WIDTH;
@@ -184,13 +171,15 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct read_rays
         met[h].foot = (vec2d){d_set(middle.x) + beside * v.y, d_set(middle.y) - beside * v.x};
         met[h].normal = v; /* of those that find none */
         met[h].ahead = met[h].distance = ahead;
-        d_put_floats(lines.foot_x + l, d_select(meets, met[h].foot.x, nan));
-        d_put_floats(lines.foot_y + l, met[h].foot.y);
-        d_put_floats(lines.direction_x + l, v.x);
-        d_put_floats(lines.direction_y + l, v.y);
+        foot_x[h] = d_select(meets, met[h].foot.x, nan);
+        foot_y[h] = met[h].foot.y;
+        direction_x[h] = v.x;
+        direction_y[h] = v.y;
     }
+    const struct lines lines = {{d_join_floats(foot_x), d_join_floats(foot_y)},
+                                {d_join_floats(direction_x), d_join_floats(direction_y)}};
     find_entry_lanes(frame->arcs, header->count, &lines, (float)(2 * find_touch(header)), entries);
-    v_store(out_fraction, v_select(entries->near, v_set(-1), v_set(NAN)));
+    *out_fraction = v_select(entries->near, v_set(-1), v_set(NAN));
     if (!vm_any(entries->found))
         return vm_any(entries->near);
     struct arc_lanes arcs;
@@ -212,12 +201,11 @@ INLINE bool meet_in_lanes(const struct body_frame *frame, const struct read_rays
         }
         const vd distance = (met[h].ahead + along) * d_set(frame->scale);
         const vd fraction = distance * d_load(rays->inverse_length + first + l);
-        const vd told = d_select(d_le(fraction, d_set((double)FLT_MAX)), fraction, nan);
+        const vl in_front = d_lt(d_set(0), distance), is_number = d_le(fraction, d_set((double)FLT_MAX));
         met[h].distance = distance;
-        d_put_floats(out_fraction + l, d_select(d_lt(d_set(0), distance), told, ignores ? nan : d_set(-1)));
+        told[h] = d_select(in_front, d_select(is_number, fraction, nan), ignores ? nan : d_set(-1));
     }
-    const vf fraction = v_select(entries->found, v_load(out_fraction), v_set(NAN));
-    v_store(out_fraction, v_select(entries->near, v_set(-1), fraction));
+    *out_fraction = v_select(entries->near, v_set(-1), v_select(entries->found, d_join_floats(told), v_set(NAN)));
     return true;
 }
 

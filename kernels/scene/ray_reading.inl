@@ -79,21 +79,6 @@ INLINE void put_axis(vd start, vd room, vd inverse, size_t k, struct read_axis *
     d_put_floats(out->inverse + k, clip(inverse, (double)LARGEST_INVERSE));
 }
 
-/* Columns of the rays `number`, the first one again behind the last. */
-INLINE void read_floats(const narc_float_column *column, const uint32_t *number, size_t end, double *out) {
-    for (size_t k = 0; k < end; k++)
-        out[k] = (double)narc_float_at(*column, number[k]);
-}
-
-INLINE void read_positions(const narc_position_column *column, const uint32_t *number, size_t end, double *out) {
-    if (column->precision == NARC_FLOAT64)
-        for (size_t k = 0; k < end; k++)
-            out[k] = narc_double_at(*column, number[k]);
-    else
-        for (size_t k = 0; k < end; k++)
-            out[k] = (double)narc_single_at(*column, number[k]);
-}
-
 /* Rays first .. first + count - 1 in their order, at most READ, set out from where they meet the scene, with room. */
 static inline void read_rays(const narc_ray_batch *batch, const narc_box *scene, size_t first, size_t count,
                              struct read_rays *out) {
@@ -107,16 +92,16 @@ static inline void read_rays(const narc_ray_batch *batch, const narc_box *scene,
     const size_t end = (count + D_WIDTH - 1) / D_WIDTH * D_WIDTH, given = single ? 1 : end;
     const uint32_t *const order = batch->options->out_order;
     out->count = count;
-    for (size_t k = 0; k < given; k++) {
-        const size_t i = first + (k < count ? k : 0);
-        out->number[k] = order ? order[i] : (uint32_t)i;
+    for (size_t k = 0; k < given; k++) { /* the first one again behind the last */
+        const size_t at = first + (k < count ? k : 0);
+        const uint32_t i = order ? order[at] : (uint32_t)at;
+        out->number[k] = i;
+        out->origin_x[k] = narc_position_at(rays->x, i);
+        out->origin_y[k] = narc_position_at(rays->y, i);
+        out->direction_x[k] = (double)narc_float_at(rays->motion_x, i);
+        out->direction_y[k] = (double)narc_float_at(rays->motion_y, i);
+        out->fraction[k] = narc_float_or(rays->fraction, i, 1);
     }
-    read_positions(&rays->x, out->number, given, out->origin_x);
-    read_positions(&rays->y, out->number, given, out->origin_y);
-    read_floats(&rays->motion_x, out->number, given, out->direction_x);
-    read_floats(&rays->motion_y, out->number, given, out->direction_y);
-    for (size_t k = 0; k < given; k++)
-        out->fraction[k] = narc_float_or(rays->fraction, out->number[k], 1);
     for (size_t k = 0; k < end; k += D_WIDTH) {
         const vd zero = d_set(0), one = d_set(1), largest = d_set(DBL_MAX);
         const vd x = get_lanes(out->origin_x + k, single) - d_set(batch->index->origin.x);

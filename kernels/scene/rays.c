@@ -304,9 +304,10 @@ static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) 
 
 /* Empties a ray's rows. Has it an answer? */
 INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
-    narc_ray_hit *const rows = get_rows(batch, rays, k);
-    for (size_t i = 0; i < batch->most; i++)
-        rows[i] = (narc_ray_hit){.ray = rays->number[k]};
+    narc_ray_hit *row = get_rows(batch, rays, k), *const end = row + batch->most;
+    do {
+        *row++ = (narc_ray_hit){.ray = rays->number[k]};
+    } while (row < end);
     return rays->length[k] > 0;
 }
 

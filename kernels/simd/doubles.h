@@ -3,7 +3,8 @@
  * doubles.h - double lanes, for what single precision is not enough for: half as many as floats, and one if there is
  * one. Sums, differences, products and quotients are the language's own operators, and so are & | ~ of predicates. All
  * are correctly rounded, as in simd.h; other operations do what theirs of floats do. d_of_lanes(m, h) is what a predicate
- * of floats says of lanes h ..., 0 or D_WIDTH; d_pack(m, a) packs the lanes m.
+ * of floats says of lanes h ..., 0 or D_WIDTH; d_pack(m, a) packs the lanes m. d_join_floats(a) rounds as many as make a vector
+ * of floats, which memory would make wait: a vector is not read from two halves that were just written.
  */
 #ifndef NARC_SIMD_DOUBLES_H
 #define NARC_SIMD_DOUBLES_H
@@ -27,6 +28,7 @@ INLINE vl d_of_lanes(vm m, int h) { return -(vl)(m << h); }
 INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
 INLINE vd d_of_floats(const float *p) { return (double)*p; }
 INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
+INLINE vf d_join_floats(const vd *a) { return (float)*a; }
 #else
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -59,6 +61,10 @@ INLINE vl d_of_lanes(vm m, int h) { return (vl)m >> h; }
 INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); }
 INLINE vd d_of_floats(const float *p) { return _mm512_cvtps_pd(_mm256_loadu_ps(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a)); }
+INLINE vf d_join_floats(const vd *a) {
+    const __m256d low = _mm256_castps_pd(_mm512_cvtpd_ps(a[0])), high = _mm256_castps_pd(_mm512_cvtpd_ps(a[1]));
+    return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1));
+}
 #else
 typedef int64_t vl VECTOR_OF(D_BYTES);
 INLINE vl d_lt(vd a, vd b) { return (vl)(a < b); }
@@ -76,6 +82,9 @@ INLINE vl d_of_lanes(vm m, int h) {
 }
 INLINE vd d_of_floats(const float *p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a)); }
+INLINE vf d_join_floats(const vd *a) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(a[0])), _mm256_cvtpd_ps(a[1]), 1);
+}
 #elif defined(__SSE2__)
 INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
@@ -85,11 +94,13 @@ INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_
 #ifdef NARC_SIMD_ONE_H
 INLINE vd d_of_floats(const float *p) { return _mm_cvtss_sd(_mm_setzero_pd(), _mm_load_ss(p)); }
 INLINE void d_put_floats(float *p, vd a) { _mm_store_ss(p, _mm_cvtsd_ss(_mm_setzero_ps(), a)); }
+INLINE vf d_join_floats(const vd *a) { return _mm_cvtpd_ps(*a); }
 #else
 INLINE vd d_of_floats(const float *p) {
     return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
 INLINE void d_put_floats(float *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_castps_si128(_mm_cvtpd_ps(a))); }
+INLINE vf d_join_floats(const vd *a) { return _mm_movelh_ps(_mm_cvtpd_ps(a[0]), _mm_cvtpd_ps(a[1])); }
 #endif
 #else
 INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
@@ -100,6 +111,7 @@ INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? vzip2q_u32(m, m) : vzip1q_u3
 INLINE vd d_sqrt(vd a) { return (vd)vsqrtq_f64((float64x2_t)a); }
 INLINE vd d_of_floats(const float *p) { return (vd)vcvt_f64_f32(vld1_f32(p)); }
 INLINE void d_put_floats(float *p, vd a) { vst1_f32(p, vcvt_f32_f64((float64x2_t)a)); }
+INLINE vf d_join_floats(const vd *a) { return vcvt_high_f32_f64(vcvt_f32_f64((float64x2_t)a[0]), (float64x2_t)a[1]); }
 #else
 INLINE vl d_of_lanes(vm m, int h) {
     return (vl)(h ? wasm_i32x4_shuffle(m, m, 2, 2, 3, 3) : wasm_i32x4_shuffle(m, m, 0, 0, 1, 1));
@@ -107,6 +119,10 @@ INLINE vl d_of_lanes(vm m, int h) {
 INLINE vd d_sqrt(vd a) { return (vd)wasm_f64x2_sqrt((v128_t)a); }
 INLINE vd d_of_floats(const float *p) { return (vd)wasm_f64x2_promote_low_f32x4(wasm_v128_load64_zero(p)); }
 INLINE void d_put_floats(float *p, vd a) { wasm_v128_store64_lane(p, wasm_f32x4_demote_f64x2_zero((v128_t)a), 0); }
+INLINE vf d_join_floats(const vd *a) {
+    return wasm_i64x2_shuffle(wasm_f32x4_demote_f64x2_zero((v128_t)a[0]), wasm_f32x4_demote_f64x2_zero((v128_t)a[1]), 0,
+                              2);
+}
 #endif
 #endif
 #endif
