@@ -47,11 +47,15 @@ INLINE vf v_min(vf a, vf b) { return _mm_min_ss(a, b); }
 INLINE vf v_max(vf a, vf b) { return _mm_max_ss(a, b); }
 INLINE vm v_lt(vf a, vf b) { return _mm_cmplt_ss(a, b); }
 INLINE vm v_le(vf a, vf b) { return _mm_cmple_ss(a, b); }
+#ifdef __AVX512VL__ /* one instruction of one step, where a blend by a vector takes three */
+INLINE vf v_select(vm m, vf a, vf b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
+#else
 INLINE vf v_select(vm m, vf a, vf b) {
     vf out;
     SELECT_LANES(&out, m, a, b);
     return out;
 }
+#endif
 INLINE vf v_pack(vp p, vf a) {
     (void)p;
     return a;
