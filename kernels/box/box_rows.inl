@@ -87,7 +87,7 @@ INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *
 /* The reaches of a corner, as find_reach() has them, with the edge next to it. */
 INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *touch, bool capsules) {
     const vf zero = v_set(0), one = v_set(1), full = v_set(NARC_REACH_ONE);
-    if (!vm_any(vm_not(touch->parallel)))
+    if (BLOCK > 1 && !vm_any(vm_not(touch->parallel))) /* of one pair it can't be foreseen */
         return vi_set(0);
     const vf turn = v_select(side->behind, touch->sine, v_neg(touch->sine)); /* away from the edge */
     vf sine = v_min(v_max(turn, zero), one), other = v_select(v_lt(zero, turn), v_min(touch->cosine, one), one);

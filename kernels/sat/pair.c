@@ -55,7 +55,6 @@ INLINE void start_one(const narc_one_pair *asked, struct call *call, struct rows
     call->rows = out_rows;
     call->bits = NULL;
     out_rows->out.base = asked->out_row;
-    out_rows->dense = false;
     out_rows->known[0] = 0;
 }
 
@@ -101,9 +100,7 @@ INLINE bool decide_one(const struct call *call, struct queue *queues) {
     struct gap gap = walk_near(call->batch->shapes->records, queue, 0, live, &certain);
     if (HAS_FORMULA && !vm_any(certain))
         gap = find_gap(call->batch->shapes, queue, 0, live, true);
-    else if (!vm_any(certain))
-        return false;
-    if (vm_any(find_loose(call, queue, 0, live, &gap)))
+    if ((!HAS_FORMULA && !vm_any(certain)) || vm_any(find_loose(call, queue, 0, live, &gap)))
         return false;
     if (vm_any(is_below(gap.separation, get_margins(call, queue, 0))))
         settle(call, queues, queue, 0, live, gap.separation, v2_divide(gap.normal, gap.length), gap.record_a,
@@ -126,22 +123,21 @@ NOINLINE int finish_one(const struct call *call, struct queue *queues) {
 NOINLINE int search_one(const narc_one_pair *asked, bool polygons) {
     struct queue queues[STAGES];
     struct found_arcs arcs;
-    struct call own;
+    struct call call;
     struct rows found;
     vf item[FIELDS];
-    const struct call *const call = &own;
-    start_one(asked, &own, &found);
-    const struct filter circles = set_up_one(call, asked, item);
+    start_one(asked, &call, &found);
+    const struct filter circles = set_up_one(&call, asked, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
         return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
     if (polygons) {
         fill_one(&queues[POLYGONS], item);
-        compare_edges(call, queues, 0);
+        compare_edges(&call, queues, 0);
         if (queues[POLYGONS].count > 0)
-            answer_compared(call, queues, 0, asked->manifold);
-        return queues[DECIDE].count > 0 ? finish_one(call, queues) : end_one(&found);
+            answer_compared(&call, queues, 0, asked->manifold);
+        return queues[DECIDE].count > 0 ? finish_one(&call, queues) : end_one(&found);
     }
     for (int s = PROBE; s <= CLIMB; s++) {
         queues[s].record_a = arcs.record_a;
@@ -150,12 +146,12 @@ NOINLINE int search_one(const narc_one_pair *asked, bool polygons) {
     const bool smooth = vm_any(both_have(item, NARC_SHAPE_SMOOTH));
     fill_one(&queues[smooth ? PROBE : CLIMB], item);
     if (smooth)
-        probe_axis(&rows, call, queues, 0);
+        probe_axis(&rows, &call, queues, 0);
     if (queues[PROBE_AGAIN].count > 0)
-        probe_again(&rows, call, queues, 0);
+        probe_again(&rows, &call, queues, 0);
     if (queues[CLIMB].count > 0)
-        climb_from(&rows, call, queues, 0);
-    return finish_one(call, queues);
+        climb_from(&rows, &call, queues, 0);
+    return finish_one(&call, queues);
 }
 
 /* Two boxes or two capsules. */
@@ -223,9 +219,8 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
         return UNANSWERED;
     if ((form_a | form_b) & NARC_IS_CIRCLE && narc_has_form(&shapes->boxes[a]) && narc_has_form(&shapes->boxes[b]))
         return form_a & NARC_IS_CIRCLE ? find_beside_a(asked) : find_beside_b(asked);
-    if (form_a & (NARC_IS_POLYGON | NARC_IS_BOX) && form_b & (NARC_IS_POLYGON | NARC_IS_BOX))
-        return search_one(asked, true);
-    return search_one(asked, false);
+    const uint32_t polygons = NARC_IS_POLYGON | NARC_IS_BOX;
+    return search_one(asked, form_a & polygons && form_b & polygons);
 }
 
 #else
