@@ -172,7 +172,7 @@ INLINE void tell_sides(const struct box_contact *c, const struct touching_sides 
 
 /* Writes them. `edges`: are second points asked for? */
 INLINE void write_touching(const struct call *call, const struct box_contact *c, const struct touching_sides *t,
-                           struct told_sides *told, vf margin, char *const *place, bool edges) {
+                           const struct told_sides *told, vf margin, char *const *place, bool edges) {
     const vec2 n = c->normal;
     if (!edges) {
         write_rows(call, place, find_numbers(call, t->pairs), &told->answer);
@@ -189,9 +189,10 @@ INLINE void write_touching(const struct call *call, const struct box_contact *c,
                                 .place = told->place,
                                 .margin = margin,
                                 .named = vm_front(V_WIDTH)};
-    told->answer.reach_a = t->reaches ? t->reaches[0] : find_box_reach(&c->a, &told->a, t->capsules);
-    told->answer.reach_b = t->reaches ? t->reaches[1] : find_box_reach(&c->b, &told->b, t->capsules);
-    write_sides(call, place, t->pairs, &told->answer, &sides);
+    struct answer answer = told->answer; /* what is known so far stays in registers */
+    answer.reach_a = t->reaches ? t->reaches[0] : find_box_reach(&c->a, &told->a, t->capsules);
+    answer.reach_b = t->reaches ? t->reaches[1] : find_box_reach(&c->b, &told->b, t->capsules);
+    write_sides(call, place, t->pairs, &answer, &sides);
 }
 
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
