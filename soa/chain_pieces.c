@@ -42,7 +42,7 @@
  * direction is that of rounding, and of two parts each might leave it to the other. */
 #define FIN 0x1p-16
 
-/* The bottom of a valley turns further, as does what is right below it; lines reach beyond it by their roundings alone. */
+/* The bottom of a valley turns further, as does what is right below it; runs reach beyond it by their roundings alone. */
 #define VALLEY_TURN 0.99e-3
 #define VALLEY_SEAM 0x1p-16
 
@@ -331,11 +331,11 @@ static narc_point extend_line(const narc_chain_arc *concave, narc_point from, na
     return (narc_point){end.x + over * (end.x - from.x), end.y + over * (end.y - from.y)};
 }
 
-/* How far, in radians, a run's last arc goes on where it meets a concave one. */
+/* How far, in radians, a run's last arc goes on where it meets a concave one; at the bottom of a valley that is into the
+ * solid, where places nearest to points would be none of the ground. */
 static double extend_arc(const narc_chain_arc *concave, const narc_chain_arc *arc) {
-    return concave->radius != 0 && -concave->radius < arc->radius
-               ? fmax(END_SEAM * (-concave->radius / arc->radius), LEAST_END_SEAM)
-               : END_SEAM;
+    const double least = concave->radius != 0 ? LEAST_END_SEAM : VALLEY_SEAM;
+    return -concave->radius < arc->radius ? fmax(END_SEAM * (-concave->radius / arc->radius), least) : END_SEAM;
 }
 
 /* The size of the arcs first .. last and the lines between them, and of as many more as it takes if all are one point. */

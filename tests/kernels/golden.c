@@ -19,8 +19,8 @@ static const uint64_t golden_options[] = {0xa587ca0bb31632beu, 0xc803306e0478649
                                           0x6c143cafc48dcc48u, 0xfe17e944adb10d98u};
 #ifndef NARC_SMALL
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
-static const uint64_t golden_ground[] = {0x703ed9e2a619d165u, 0x42dd8c39813594bau, 0x82b27899c4b517ffu,
-                                         0xf5781947ff2c20c7u, 0x61fd0c6162d066bdu, 0xb4a3abf158b36377u};
+static const uint64_t golden_ground[] = {0x471bc187c2798e2au, 0xd0faa4284c90e4cdu, 0x2d08c8c3879e27cau,
+                                         0x5fb6914a857ad860u, 0xc87b4cab193be64eu, 0x1d994ca4b002334cu};
 /* Beside half-planes: contacts and manifolds, straight and turning casts, boxes, points, rays. */
 static const uint64_t golden_planes[] = {0x4a1dc3d782503138u, 0xe60b4645660ab253u, 0x14279000e9094c18u,
                                          0x04186dcea4816287u, 0x78033af980cb9b5bu, 0xdce13962d86ce8f6u};

@@ -556,7 +556,8 @@ TEST(test_rays) {
 
 #define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
 
-/* Is a row that of the nearest place of the ground? `size`: what the chain's numbers are in proportion to. */
+/* Is a row that of the nearest place of the ground? `size`: what the chain's numbers are in proportion to. Pieces go on beyond
+ * their ends, into the solid by up to 2^-16 of a line or a radius (chain_pieces.c): half of the room. */
 static void check_nearest(struct ground_scene *scene, narc_point p, const narc_distance *row, double size) {
     const struct body *const body = &scene->bodies[row->body];
     struct ground *const ground = ground_of(scene);
@@ -647,6 +648,20 @@ TEST(test_nearest) {
     assert_true(behind > all / 8 && behind < all && alone > all / 2);
 }
 
+/* The same of the answer to one point. */
+static void check_nearest_to(struct ground_scene *scene, narc_point point) {
+    AUTO(free_at) narc_box *boxes = malloc(scene->count * sizeof *boxes);
+    const narc_bodies bodies = view_columns(scene->bodies, scene->count);
+    AUTO(narc_destroy_index_at) narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
+    const struct body there =
+        ground_to_world(scene, (struct body){.x = point.x, .y = point.y, .cosine = 1, .scale = 1});
+    const narc_points points = {1, {&there.x, 0, NARC_FLOAT64}, {&there.y, 0, NARC_FLOAT64}, {NULL}};
+    narc_distance row;
+    narc_error error;
+    expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, NULL, &row, 1, &error), &error);
+    check_nearest(scene, point, &row, 1);
+}
+
 /* A corner that is cut: its parts go on beyond it, by so little that a point in the air may be behind the other part. */
 TEST(test_nearest_to_cut_corners) {
     enum { POINTS = 64 };
@@ -661,23 +676,25 @@ TEST(test_nearest_to_cut_corners) {
         scene->place = turned_body(0.3, 1);
         expect_ok(add_ground(scene, end_walk(&t, true), (narc_chain_options){0}, &error), &error);
         const narc_point corner = chain_point(&scene->chain.arcs[0], 0);
-        AUTO(free_at) narc_box *boxes = malloc(scene->count * sizeof *boxes);
-        const narc_bodies bodies = view_columns(scene->bodies, scene->count);
-        AUTO(narc_destroy_index_at) narc_index *index = index_bodies(scene->store, &bodies, NULL, boxes);
         for (double away = 1e-3; away < 4; away *= 2)
             for (int i = 0; i < POINTS; i++) {
                 const double angle = 2 * PI * (i + 0.3) / POINTS;
-                struct body there = turned_body(0, 1);
-                const narc_point point = {corner.x + away * cos(angle), corner.y + away * sin(angle)};
-                narc_distance row;
-                there.x = point.x;
-                there.y = point.y;
-                there = ground_to_world(scene, there);
-                const double x[] = {there.x}, y[] = {there.y};
-                const narc_points points = {1, NARC_POSITION_ARRAY(x), NARC_POSITION_ARRAY(y), {NULL}};
-                expect_ok(narc_find_nearest(index, scene->store, &bodies, &points, NULL, &row, 1, &error), &error);
-                check_nearest(scene, point, &row, 1);
+                check_nearest_to(scene, (narc_point){corner.x + away * cos(angle), corner.y + away * sin(angle)});
             }
+    }
+}
+
+/* The bottom of a valley between arcs, which go on beyond it, into the solid: from below none of that is nearest. */
+TEST(test_nearest_to_valleys) {
+    struct turtle t = create_turtle(0, 0, PI / 2 - 0.5);
+    walk_arc(&t, 2, 0.7);
+    walk_arc(&t, 0, -0.4);
+    walk_arc(&t, 3, 0.7);
+    AUTO(destroy_ground_scene_at) struct ground_scene *scene = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    const narc_point bottom = chain_point(&scene->chain.arcs[1], 0);
+    for (int k = -12; k <= 12; k++) { /* across all its normals, and beyond */
+        const double angle = PI / 2 + 0.025 * k;
+        check_nearest_to(scene, (narc_point){bottom.x - cos(angle), bottom.y - sin(angle)});
     }
 }
 
