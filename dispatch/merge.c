@@ -122,8 +122,8 @@ static const narc_manifold_point *find_deepest(const narc_manifold *a) {
 static float find_separation(const narc_manifold *a) { return find_deepest(a)->separation; }
 
 /* Joins b to a, which have one normal: the outermost points along it turned a quarter turn, and of the deeper row what
- * a row has once. Where the deepest point lies between them, a corner below an edge, it takes the place of the higher
- * one. */
+ * a row has once. The deepest point takes the place of that which it is, told again, or, where it lies between them, a corner
+ * below an edge, of the higher one. */
 static void join_rows(narc_manifold *a, const narc_manifold *b) {
     const narc_manifold first = *a, *const deeper = find_separation(b) < find_separation(a) ? b : &first;
     const narc_manifold_point deepest = *find_deepest(deeper);
@@ -136,7 +136,10 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
     }
     const float room = SAME_SEPARATION * find_size(&low, &high);
     if (deepest.separation < fminf(low.separation, high.separation) - room)
-        *(low.separation > high.separation ? &low : &high) = deepest;
+        *(is_same_point(&deepest, &low)      ? &low
+          : is_same_point(&deepest, &high)   ? &high
+          : low.separation > high.separation ? &low
+                                             : &high) = deepest;
     const bool is_one = is_same_point(&low, &high);
     *a = *deeper;
     a->pair = first.pair;

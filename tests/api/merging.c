@@ -159,6 +159,22 @@ TEST(keeps_the_deepest_point_between_two) {
     }
 }
 
+/* Both entries of a cut line tell of both corners, of the deeper one with other roundings: it lies between no others. */
+TEST(keeps_both_corners_of_a_tilted_box) {
+    const uint32_t runs[] = {0, 0};
+    for (int deeper = 0; deeper < 2; deeper++) {
+        const float low = deeper ? -0.1f : -0.2f, high = deeper ? -0.2f : -0.1f;
+        const float outer[][3] = {{-1, 0, low}, {1, 0, high}},
+                    inner[][3] = {{-0.9999f, 0, low * 1.0005f}, {0.9999f, 0, high * 1.0005f}};
+        struct rows rows = {.count = 0};
+        add_row(&rows, 5, 0, down, 2, outer);
+        add_row(&rows, 5, 1, down, 2, inner);
+        assert_int_equal(merge(&rows, runs), 1);
+        assert_int_equal(rows.manifolds[0].count, 2);
+        assert_true(fabsf(rows.manifolds[0].point[deeper].separation - 1.0005f * -0.2f) < 1e-6f);
+    }
+}
+
 /* Two parts of a run beside a concave arc, whose row is that of one end of both: it goes only once they are joined. */
 TEST(drops_what_joined_rows_tell) {
     const uint32_t runs[MOST] = {NARC_NO_RUN, 4, 4};
