@@ -241,11 +241,8 @@ void narc_follow_more(const narc_contact_step *s, const narc_pairs *pairs, uint3
 /* Lists what is to be done with pairs of ground; changes nothing that a result shows. */
 void narc_plan_ground(const narc_contact_step *s);
 
-/* Lists the slots that are to be asked, and those whose rows may follow; what is known to have no row has none then. */
+/* Lists the slots that are to be asked, and those whose rows may follow. */
 void narc_sort_pairs(const narc_contact_step *s);
-
-/* A slot has no row any more, and does not touch. */
-void narc_clear_row(narc_contacts *contacts, uint32_t slot);
 
 /* The margin of a pair. */
 float narc_find_margin(const narc_contact_step *s, uint32_t a, uint32_t b);

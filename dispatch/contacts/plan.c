@@ -249,7 +249,7 @@ static void plan_all_ground(const narc_contact_step *s, const pair_view *v) {
         } while (++end < count && !(what[end] & OF_FIRST));
         if (!changed)
             continue;
-        bool apart = !touches && !all_held; /* one that touches is better asked */
+        bool apart = !touches && !all_held; /* one that touches is asked, which takes its row away */
         for (size_t i = first; apart && i < end; i++)
             apart = are_apart(v, v->a[pairs[i].pair], v->b[pairs[i].pair]);
         const unsigned planned = follows ? NARC_FOLLOW : apart ? NARC_APART : NARC_ASK_GROUND;
@@ -339,16 +339,6 @@ void narc_plan_ground(const narc_contact_step *s) {
 
 /* ------------------------------------------------------------------------------------------------ slots */
 
-void narc_clear_row(narc_contacts *c, uint32_t slot) {
-    c->flags[slot] &= (uint8_t)~NARC_SLOT_KEPT;
-    if (narc_count_points(c->contact_rows, narc_slot_row(c, slot)) > 0 || c->more_of[slot].count > 0) {
-        narc_mark_slot(c, slot, NARC_ASKED);
-        narc_zero_row(c, slot);
-        c->more_of[slot].count = 0;
-    }
-    narc_set_touching(c, slot, false);
-}
-
 static void mark_slot(const narc_contact_step *s, size_t k) {
     const narc_contacts *const c = s->contacts;
     const uint32_t slot = c->order[k];
@@ -410,8 +400,6 @@ NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) 
         c->margins[slot] = narc_find_margin(s, c->a[slot], c->b[slot]);
     if (what == NARC_ASK)
         c->more_of[slot].count = 0; /* it may have been ground */
-    if (what == NARC_APART && c->state[slot] & NARC_TOUCHING)
-        narc_clear_row(c, slot);
     if (what == NARC_ASK_SENSOR)
         c->sensors_asked[c->sensor_count++] = slot;
 }
@@ -451,7 +439,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
     if (marks & SPECIAL)
         what = find_special(s, v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
-    if (what == NARC_ASK) { /* one that touches is better asked */
+    if (what == NARC_ASK) { /* one that touches is asked, which takes its row away */
         const unsigned follows = !stale & !reshaped & ((was & NARC_SLOT_KEPT) != 0);
         what = follows ? NARC_FOLLOW : !touches && are_apart(v, v->a[k], v->b[k]) ? NARC_APART : NARC_ASK;
     }
@@ -464,7 +452,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
     to->asked += asks - entry;
     to->known += entry;
     to->candidates += what == NARC_FOLLOW;
-    if (more || what == NARC_ASK_SENSOR || (what == NARC_APART) & touches)
+    if (more || what == NARC_ASK_SENSOR)
         do_more(s, slot, what);
 }
 
@@ -544,7 +532,7 @@ void narc_sort_pairs(const narc_contact_step *s) {
         flags[slot] = (uint8_t)find_flags(flags[slot], reshaped, 0, what);
         *to.candidates = slot;
         to.candidates += what == NARC_FOLLOW && c->state[slot] & NARC_TOUCHING;
-        if (s->step->ahead.base || what == NARC_APART)
+        if (s->step->ahead.base)
             do_more(s, slot, what);
     }
     c->asked_count = (size_t)(to.asked - c->asked);

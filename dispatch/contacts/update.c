@@ -28,7 +28,8 @@ static narc_status ask_sensors(const narc_contact_step *s, const narc_pairs *pai
     for (size_t i = 0; i < c->sensor_count && status == NARC_OK; i++) {
         const uint32_t slot = c->sensors_asked[i];
         const bool touches = c->bits[i / 64] >> i % 64 & 1;
-        narc_clear_row(c, slot);
+        narc_zero_row(c, slot); /* it may have been no sensor's */
+        c->more_of[slot].count = 0;
         narc_mark_slot(c, slot, NARC_ASKED);
         narc_set_touching(c, slot, touches);
     }

@@ -452,6 +452,23 @@ TEST(ground_that_carries_is_not_all) {
     }
 }
 
+/* A ball is asked where it may touch: not above all ground that it is near, nor the pieces beside those it rests on. */
+TEST(ground_is_asked_where_it_may_touch) {
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 2, NULL);
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    const double y[] = {1, 0.9, 0.5, 0.5001, 0.5002, 0.9}; /* the first two: boxes are apart */
+    const size_t asked[] = {0, 0, 11, 11, 2, 11};
+    static uint32_t run[600];
+    lay_entries(few, line, 2, 0.5, run);
+    few->step.run = NARC_ARRAY(run);
+    for (size_t k = 0; k < sizeof y / sizeof *y; k++) {
+        few->body[0] = (narc_body){(few->body[4].x + few->body[5].x) / 2, y[k], 1, 0, 1, 0};
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->asked_count, asked[k]);
+        assert_int_equal(r->touching_count, y[k] < 0.6);
+    }
+}
+
 /* A box sinks into ground that becomes a plain body, while there is no ground any more: the list stays, the pair is asked. */
 TEST(ground_that_goes_away) {
     const narc_arc line[] = {{10, 0, 0, PI / 4, PI / 2}, {-10, 0, 0, PI / 2, 3 * PI / 4}};
