@@ -152,7 +152,7 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
     }
 }
 
-/* A box touches a bowl in two places, and then the bowl is a circle. */
+/* A box touches a bowl in two places, is a sensor for a while, and then the bowl is a circle. */
 TEST(second_rows_go_with_their_ground) {
     AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
     const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
@@ -163,6 +163,10 @@ TEST(second_rows_go_with_their_ground) {
     few->body[0] = (narc_body){0, -0.77, 1, 0, 1, 0};
     check_with_fresh(few);
     assert_true(step_few(few)->more_count > 0);
+    few->kind[0] = NARC_SENSOR;
+    assert_int_equal(step_few(few)->more_count, 0);
+    few->kind[0] = 0;
+    check_with_fresh(few);
     for (size_t k = 1; k <= count; k++) {
         few->body[k].shape = circle;
         run[k] = NARC_NO_RUN;

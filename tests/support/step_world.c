@@ -291,13 +291,15 @@ void check_rows(const struct step_world *w, const narc_step *step, const narc_st
     for (size_t k = 0; k < r->count; k++) {
         const uint32_t slot = r->order[k];
         const bool sensor = (kind_of(w, pair_a[k]) | kind_of(w, pair_b[k])) & NARC_SENSOR;
-        const bool now = r->state[slot] & NARC_TOUCHING;
-        if (sensor && moves(w, pair_a[k], pair_b[k]))
+        const bool now = r->state[slot] & NARC_TOUCHING, rests = !moves(w, pair_a[k], pair_b[k]);
+        if (sensor && !rests) {
             assert_int_equal(now, bits[k / 64] >> k % 64 & 1);
+            check_row(&r->manifolds[slot], (narc_manifold){0}, slot); /* it may have been none */
+        }
         if (sensor && now)
             assert_int_equal(r->sensors[sensors++], slot);
-        if (sensor || !moves(w, pair_a[k], pair_b[k])) {
-            while (next < r->more_count && more[next].pair == slot)
+        if (sensor || rests) {
+            while (rests && next < r->more_count && more[next].pair == slot)
                 next++;
             continue;
         }
