@@ -189,6 +189,38 @@ TEST(kept_rows_are_those_of_now) {
     }
 }
 
+/* Rows that might follow do not where another question is asked, nor where ground comes that was not asked. */
+TEST(rows_that_follow_are_answers) {
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
+    static uint32_t run[600];
+    static uint64_t mask[600];
+    few->step.recycling = 0.01f;
+    for (size_t k = 0; k < 6; k++) {
+        few->body[1].x += k == 4 ? 0 : 1e-5;
+        few->step.second_margin = k < 4 ? 0 : 0.03f;
+        const narc_step_result *const r = step_few(few);
+        if (k == 3 || k == 4)
+            assert_int_equal(r->state[0] & (NARC_ASKED | NARC_FOLLOWED), k == 3 ? NARC_FOLLOWED : NARC_ASKED);
+    }
+    const size_t wall = lay_entries(few, line, 2, 0, run) + 1;
+    few->bodies.count = wall + 1;
+    few->id[wall] = wall + 1;
+    few->kind[wall] = NARC_STATIC;
+    run[wall] = run[1] + 1;
+    memset(mask, 0xff, sizeof mask);
+    mask[wall] = 0;
+    few->filter.mask = NARC_ARRAY(mask);
+    few->step.run = NARC_ARRAY(run);
+    few->body[0] = (narc_body){few->body[1].x, few->body[1].y + 0.5, 1, 0, 1, 0};
+    few->body[wall] = (narc_body){few->body[0].x + 0.5, few->body[0].y, 0, 1, 1, few->body[1].shape};
+    for (size_t k = 0; k < 6; k++) {
+        few->body[0].x -= 1e-6;
+        mask[wall] = k < 4 ? 0 : UINT64_MAX;
+        assert_int_equal(step_few(few)->touching_count, k < 4 ? 1 : 2);
+    }
+}
+
 /* A box turns about the first point of its contact: that stays, and the second one does not. */
 TEST(a_turn_is_a_way) {
     AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
