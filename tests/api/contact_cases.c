@@ -119,12 +119,12 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
         static uint32_t run[600];
         static uint64_t mask[600];
         const uint32_t small = store_shape(few->store, circle_of(0.01));
-        const size_t count = lay_entries(few, line, 2, 0.5, run), gone = 4 + (size_t)way / 5;
+        const size_t count = lay_entries(few, line, 2, 0.5, run), gone = 1 + (size_t)way / 5;
         memset(mask, 0xff, sizeof mask);
         few->step.run = NARC_ARRAY(run);
         few->filter.mask = NARC_ARRAY(mask);
         few->step.skin = 0.05f;
-        few->body[0] = (narc_body){(few->body[4].x + few->body[5].x) / 2, 0.5, 1, 0, 1, 0};
+        few->body[0] = (narc_body){(few->body[1].x + few->body[2].x) / 2, 0.5, 1, 0, 1, 0};
         check_with_fresh(few);
         assert_int_equal(step_few(few)->touching_count, 1);
         switch (way % 5) {
@@ -486,6 +486,9 @@ TEST(ground_that_carries_is_not_all) {
         few->body[0].x += 0.01;
         few->body[1].x += 0.01;
     }
+    few->kind[0] = NARC_ASLEEP;
+    few->body[1].y -= 1; /* which takes no notice of its sleep */
+    assert_int_equal(step_few(few)->touching_count, 0);
 }
 
 /* A ball is asked where it may touch: not above all ground that it is near, nor the pieces beside those it rests on. */
