@@ -756,4 +756,14 @@ TEST(bodies_that_creep_are_found) {
     }
 }
 
+/* Two that move away from each other have boxes that are further apart than what they look ahead, and a row. */
+TEST(rows_ahead_are_beyond_boxes) {
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 2, NULL);
+    const float ahead[] = {0.3f, 0.3f}, motion[] = {-0.3f, 0.3f};
+    few->step.ahead = NARC_ARRAY(ahead);
+    few->step.motion_x = few->step.motion_y = NARC_ARRAY(motion);
+    few->body[1].x = 1.5;
+    assert_int_equal(step_few(few)->touching_count, 1);
+}
+
 TEST_MAIN("contact cases")
