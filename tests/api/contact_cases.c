@@ -196,11 +196,14 @@ TEST(rows_that_follow_are_answers) {
     static uint32_t run[600];
     static uint64_t mask[600];
     few->step.recycling = 0.01f;
-    for (size_t k = 0; k < 6; k++) {
-        few->body[1].x += k == 4 ? 0 : 1e-5;
+    for (size_t k = 0; k < 8; k++) {
+        few->body[1].x += k < 4 ? 1e-5 : 0;
         few->step.second_margin = k < 4 ? 0 : 0.03f;
+        few->step.flat_angle = k < 5 ? 0 : 0.1f;
+        few->step.front_only = k > 5;
+        few->step.recycling = k < 7 ? 0.01f : 0.02f;
         const narc_step_result *const r = step_few(few);
-        if (k == 3 || k == 4)
+        if (k > 2)
             assert_int_equal(r->state[0] & (NARC_ASKED | NARC_FOLLOWED), k == 3 ? NARC_FOLLOWED : NARC_ASKED);
     }
     const size_t wall = lay_entries(few, line, 2, 0, run) + 1;
