@@ -210,8 +210,13 @@ void move_step_world(struct step_world *w) {
 }
 
 narc_step make_step(const struct step_world *w, const narc_bodies *bodies, const narc_pair_filter *filter) {
-    narc_step step = {
-        .bodies = bodies, .margin = w->margin, .skin = w->skin, .id = NARC_ARRAY(w->id), .origin = &w->origin};
+    narc_step step = {.bodies = bodies,
+                      .margin = w->margin,
+                      .second_margin = w->has_motion ? 0.2f : 0,
+                      .skin = w->skin,
+                      .front_only = w->has_motion,
+                      .id = NARC_ARRAY(w->id),
+                      .origin = &w->origin};
     if (w->has_filter)
         step.filter = filter;
     if (w->has_motion) {
@@ -282,12 +287,16 @@ void check_rows(const struct step_world *w, const narc_step *step, const narc_st
         if (moves(w, pair_a[k], pair_b[k]) && !((kind_of(w, pair_a[k]) | kind_of(w, pair_b[k])) & NARC_SENSOR))
             tested[asked++] = (uint32_t)k;
     }
-    const narc_query query = {
-        .margins = NARC_ARRAY(margins), .selection = {tested, sizeof *tested}, .selection_count = asked};
+    const narc_query query = {.margins = NARC_ARRAY(margins),
+                              .second_margin = step->second_margin,
+                              .front_only = step->front_only,
+                              .selection = {tested, sizeof *tested},
+                              .selection_count = asked};
+    const narc_query overlaps = {.front_only = step->front_only};
     expect_ok(narc_find_manifolds(w->store, step->bodies, &pairs, &query, rows, PAIRS, &found, &error), &error);
     if (step->run.base)
         found = narc_merge_manifolds(&pairs, step->run, rows, found);
-    expect_ok(narc_find_overlaps(w->store, step->bodies, &pairs, NULL, bits, &error), &error);
+    expect_ok(narc_find_overlaps(w->store, step->bodies, &pairs, &overlaps, bits, &error), &error);
     for (size_t k = 0; k < r->count; k++) {
         const uint32_t slot = r->order[k];
         const bool sensor = (kind_of(w, pair_a[k]) | kind_of(w, pair_b[k])) & NARC_SENSOR;
