@@ -25,10 +25,6 @@ enum { CAST_SLOTS = 48, CAST_GROUP = 16 };
 /* What a step of a cast may come to, beside NARC_CAST_...: it has no answer; it goes on. */
 enum { CAST_BROKEN = 3, CAST_GOES_ON = 4 };
 
-/* What is `back` but a time. */
-#define CAST_FREE   (-1.0f)
-#define CAST_DIRECT (-2.0f)
-
 /* Of one body of each cast: its shape, that one's first arc and info (base/shape.inl); how it is at the start, a unit
  * vector but for rounding; and the angle by which it turns in the step, 0 if that moves nothing. */
 struct narc_cast_side {
@@ -41,18 +37,6 @@ struct narc_cast_side {
 typedef struct narc_casts {
     union {
         struct {
-            struct narc_cast_side side[2]; /* A, B */
-            float target[CAST_SLOTS]; /* the caller's; below that where it is let go, and above at the end of that */
-            float time[CAST_SLOTS];   /* where it is now */
-            float back[CAST_SLOTS];   /* where it was to go, had it not tried to go further; CAST_FREE: it has not;
-                                         CAST_DIRECT: it went too far once, and tries no more */
-            float rounds[CAST_SLOTS]; /* contacts so far */
-            uint32_t pair[CAST_SLOTS], body[CAST_SLOTS]; /* its number, and that of B */
-        };
-        float single[20][CAST_SLOTS];
-    };
-    union {
-        struct {
             double x[CAST_SLOTS], y[CAST_SLOTS];               /* B's position at the start, from A's */
             double motion_x[CAST_SLOTS], motion_y[CAST_SLOTS]; /* B's against A's */
             double end[CAST_SLOTS];                            /* nothing touches then or later */
@@ -61,6 +45,16 @@ typedef struct narc_casts {
         };
         double wide[7][CAST_SLOTS];
     };
+    union {
+        struct {
+            struct narc_cast_side side[2]; /* A, B */
+            float target[CAST_SLOTS]; /* the caller's; below that where it is let go, and above at the end of that */
+            float time[CAST_SLOTS];   /* where it is now */
+            float rounds[CAST_SLOTS]; /* contacts so far */
+            uint32_t pair[CAST_SLOTS], body[CAST_SLOTS]; /* its number, and that of B */
+        };
+        float single[19][CAST_SLOTS];
+    };
     /* What does not move: where they are at their times, A at the origin, and what touches there. */
     float x_now[CAST_SLOTS], y_now[CAST_SLOTS], cosine_now[2][CAST_SLOTS], sine_now[2][CAST_SLOTS];
     double turned_x[2][CAST_SLOTS], turned_y[2][CAST_SLOTS];
@@ -68,8 +62,8 @@ typedef struct narc_casts {
     size_t count;
     bool front_only; /* the caller's */
 } narc_casts;
-_Static_assert(sizeof((narc_casts *)NULL)->single == offsetof(narc_casts, wide) &&
-                   sizeof((narc_casts *)NULL)->wide == offsetof(narc_casts, x_now) - offsetof(narc_casts, wide),
+_Static_assert(sizeof((narc_casts *)NULL)->wide == offsetof(narc_casts, single) &&
+                   sizeof((narc_casts *)NULL)->single == offsetof(narc_casts, x_now) - offsetof(narc_casts, single),
                "all fields move");
 
 #if NARC_PIECES

@@ -131,13 +131,12 @@ INLINE void load_held(const narc_shapes *shapes, const struct outline_part *part
 
 /* What a step has come to. */
 struct step {
-    float outcome[V_WIDTH], time[V_WIDTH], back[V_WIDTH], rounds[V_WIDTH];
+    float outcome[V_WIDTH], time[V_WIDTH], rounds[V_WIDTH];
 };
 
-INLINE void put_step(struct step *out, int h, vd outcome, vd time, vd back, vd rounds) {
+INLINE void put_step(struct step *out, int h, vd outcome, vd time, vd rounds) {
     d_put_floats(out->outcome + h, outcome);
     d_put_floats(out->time + h, time);
-    d_put_floats(out->back + h, back);
     d_put_floats(out->rounds + h, rounds);
 }
 
@@ -145,7 +144,6 @@ INLINE void put_step(struct step *out, int h, vd outcome, vd time, vd back, vd r
 INLINE void select_steps(vm m, struct step *steps, const struct step *others) {
     v_store(steps->outcome, v_select(m, v_load(steps->outcome), v_load(others->outcome)));
     v_store(steps->time, v_select(m, v_load(steps->time), v_load(others->time)));
-    v_store(steps->back, v_select(m, v_load(steps->back), v_load(others->back)));
     v_store(steps->rounds, v_select(m, v_load(steps->rounds), v_load(others->rounds)));
 }
 

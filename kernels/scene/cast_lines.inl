@@ -238,8 +238,7 @@ INLINE void advance_line(const narc_casts *casts, const struct touch *touch, siz
     outcome = d_select(parts | d_lt(d_load(casts->end + slot), next), d_set(NARC_CAST_MISS),
                        d_select(d_le(safe, time), hit, outcome));
     outcome = d_select(there, hit, outcome);
-    put_step(out, h, outcome, d_select(d_lt(d_set(NARC_CAST_UNFINISHED), outcome), safe, time),
-             d_set((double)CAST_FREE), rounds);
+    put_step(out, h, outcome, d_select(d_lt(d_set(NARC_CAST_UNFINISHED), outcome), safe, time), rounds);
 }
 
 INLINE void advance_lines(const narc_casts *casts, const struct touch *touch, size_t k, struct step *out) {

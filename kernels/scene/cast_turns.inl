@@ -9,8 +9,9 @@
  * relative to their bodies and the axis turning at the rate w_n,
  *     g' = n.w + w_n n x d + (w_b - w_n) p_b x n - (w_a - w_n) p_a x n,    g'' >= -M,
  *     M  = w_n^2 |d| + 2 |w_n| |w| + (w_b - w_n)^2 max(p_b.n, 0) + (w_a - w_n)^2 max(-p_a.n, 0).
- * Past them a support function changes at most as fast as its body turns times its lever. Where n.w falls faster than
- * both change together, f was never smaller before: such a contact is worth a try further on, where g is at the target.
+ * So steps lead to the first root of a quadratic, and from there again: g and g' after a time s are at least what their
+ * series to s^3 have, with the bound of the fourth derivative, w_n^4 |d| + 4 |w_n|^3 |w| + (w_b - w_n)^4 |p_b| +
+ * (w_a - w_n)^4 |p_a|. Past these arcs a support function changes at most as fast as its body turns times its lever.
  */
 #ifndef NARC_SCENE_CAST_TURNS_INL
 #define NARC_SCENE_CAST_TURNS_INL
@@ -117,72 +118,77 @@ INLINE struct lever find_arm(const struct met *met, int h, vl moves, vd scale, v
                           d_select(some, d_min(least, zero), zero), d_select(some, duration, zero)};
 }
 
-/* The gap along an axis after a time s is gap + s (first + s (second + s (third + s fourth))), nearly. */
+/* The gap along an axis, above the target, after a time s: at least gap + s (first + s (second + s (third + s fourth))), and
+ * so is its slope that of this; its second derivative is never below -bend. */
 struct series {
-    vd first, second, third, fourth;
+    vd first, second, third, fourth, bend;
 };
 
-/* Adds a (cos(rate s) - 1) + b sin(rate s), but for the first term. */
+/* Adds a cos(rate s) + b sin(rate s), but for its value at the start and what it bends by. */
 INLINE void add_turn(struct series *series, vd rate, vd a, vd b) {
-    const vd square = rate * rate, half = a * square * d_set(0.5), third = b * rate * square * d_set(1.0 / 6);
-    series->second -= half;
-    series->third -= third;
-    series->fourth += half * square * d_set(1.0 / 12);
+    const vd square = rate * rate;
+    series->first += rate * b;
+    series->second -= a * square * d_set(0.5);
+    series->third -= b * rate * square * d_set(1.0 / 6);
 }
 
+/* For how long a gap stays above 0 that has a slope, and bends no more than by `bend`. */
+INLINE vd find_wait(vd gap, vd slope, vd bend) {
+    const vd zero = d_set(0), two = d_set(2), root = d_sqrt(slope * slope + two * bend * gap);
+    const vl down = d_lt(slope, zero);
+    const vd way = d_select(down, two * gap, root + slope) / d_select(down, root - slope, bend);
+    return d_select(down | d_lt(zero, bend), way, d_set(INFINITY));
+}
+
+/* Steps along the series of one contact. */
+enum { SERIES_STEPS = 2 };
+
 /* For how long from now on the gap, which is `gap` above the target, stays there along the normal as an axis that turns
- * at a rate; `falls` is how fast it falls at most along one at rest. `out_series`: what it does, as long as the arcs
- * stay the same; where these are round, with what the axis would gain if it turned to where the gap is largest. Unless
- * it `tries`, the first term alone. */
+ * at a rate; `falls` is how fast it falls at most along one at rest. `out_slope`: how it changes now. */
 INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
-                      vd gap, vd falls, bool tries, struct series *out_series) {
+                      vd gap, vd falls, vd *out_slope) {
     const size_t slot = k + (size_t)h;
-    const vd zero = d_set(0), two = d_set(2), infinite = d_set(INFINITY), rate = d_of_floats(axes->rate + h);
+    const vd zero = d_set(0), half = d_set(0.5), two = d_set(2), rate = d_of_floats(axes->rate + h), size = d_abs(rate);
     const dvec2 n = get_dvec2(touch->normal_x + h, touch->normal_y + h),
                 motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
-    const vd along = find_dot(n, motion), across = find_cross(n, motion);
-    const vl turns = d_lt(zero, d_abs(rate));
-    struct series series = {along, zero, zero, zero};
-    vd bend = zero, duration = infinite, fastest = falls, slide = across;
+    const vd along = find_dot(n, motion);
+    const vl turns = d_lt(zero, size);
+    struct series series = {along, zero, zero, zero, zero};
+    vd duration = d_set(INFINITY), fastest = falls;
     if (d_any(turns)) {
         const vd time = d_of_floats(casts->time + slot), left = d_load(casts->end + slot) - time;
         const dvec2 way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
-        const vd speed = find_length(motion);
-        series.first += rate * find_cross(n, way);
-        if (tries) {
-            add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
-            series.second += across * rate;
-            series.third -= along * rate * rate * d_set(0.5);
-        }
-        bend = rate * rate * (find_length(way) + speed * left) + two * d_abs(rate) * speed;
+        const vd speed = find_length(motion), far = size * (find_length(way) + speed * left);
+        add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
+        series.second += rate * find_cross(n, motion);
+        series.third -= half * rate * rate * along;
+        series.fourth = size * size * size * (far + d_set(4) * speed);
+        series.bend = size * (far + two * speed);
         fastest += d_select(turns, along + speed, zero);
     }
     for (int side = 0; side < 2; side++) {
         const struct narc_cast_side *const of = &casts->side[side];
-        const vd its = rate - d_of_floats(of->angle + slot);
+        const vd its = rate - d_of_floats(of->angle + slot), square = its * its;
         const vl moves = d_lt(zero, d_abs(its));
         if (!d_any(moves))
             continue;
         const struct lever lever = find_arm(&axes->met[side], h, moves, d_of_floats(of->scale + slot), its);
-        series.first += d_select(moves, its * lever.arm, zero);
-        if (tries) {
-            const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
-            add_turn(&series, its, -reach, arm);
-            slide += its * reach;
-        }
-        bend -= d_select(moves, its * its * lever.bend, zero);
+        const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
+        add_turn(&series, its, -reach, arm);
+        series.fourth += square * square * (d_abs(arm) + d_abs(reach));
+        series.bend -= d_select(moves, square * lever.bend, zero);
         duration = d_select(moves, d_min(lever.duration, duration), duration);
     }
-    const vd slope = series.first, root = d_sqrt(slope * slope + two * bend * gap);
-    if (tries) {
-        const vd apart = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h) +
-                         d_of_floats(touch->separation + h); /* centres of round arcs; of edges: infinite */
-        series.second += slide * slide / (two * d_abs(apart));
+    const vd slope = series.first, bend = series.bend, fourth = series.fourth * d_set(-1.0 / 24);
+    vd whole = find_wait(gap, slope, bend);
+    UNROLL
+    for (int step = 0; step < SERIES_STEPS; step++) {
+        const vd high = series.third + whole * fourth, low = series.second + whole * high;
+        const vd value = gap + whole * (slope + whole * low);
+        const vd next = find_wait(value, slope + whole * (low + low + whole * (high + whole * fourth)), bend);
+        whole = d_select(d_lt(zero, value) & d_lt(zero, next), whole + next, whole);
     }
-    *out_series = series;
-    const vl down = d_lt(slope, zero);
-    const vd way = d_select(down, two * gap, root + slope) / d_select(down, root - slope, bend);
-    const vd whole = d_select(down | d_lt(zero, bend), way, infinite);
+    *out_slope = slope;
     const vl on_arc = d_le(whole, duration);
     if (!d_any(~on_arc))
         return whole;
@@ -190,53 +196,25 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
     return d_select(on_arc, whole, d_select(d_lt(zero, rest), duration + rest / fastest, duration));
 }
 
-/* When a gap that follows a series is down to 0, `left` at most: Newton's steps, of which nothing is promised. */
-INLINE vd find_root(vd gap, const struct series *series, vd left) {
-    const vd zero = d_set(0);
-    vd s = d_min(-gap / series->first, left);
-    for (int step = 0; step < 2; step++) {
-        const vd high = series->third + s * series->fourth, low = series->second + s * high;
-        const vd value = gap + s * (series->first + s * low);
-        const vd slope = series->first + s * (low + low + s * (high + s * series->fourth));
-        const vd next = d_min(s - value / slope, left);
-        s = d_select(d_lt(zero, next), next, zero);
-    }
-    return s;
-}
-
 INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
                          struct step *out) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), end = d_load(casts->end + slot),
-             back = d_of_floats(casts->back + slot), rounds = d_of_floats(casts->rounds + slot) + d_set(1),
-             enough = d_load(casts->enough + slot);
+             rounds = d_of_floats(casts->rounds + slot) + d_set(1);
     const vd gap = d_of_floats(touch->separation + h) - d_of_floats(casts->target + slot);
     const vd along = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
-    const vd turning = d_load(casts->moved + slot), falls = turning - along;
-    const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)CAST_DIRECT));
-    const vl passed = d_le(zero, back) & (~sure | d_lt(gap, zero)); /* it may have passed the first root */
-    struct series series;
-    const vl tries = sure & ~(passed | direct);
-    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, d_any(tries), &series), least = gap / falls;
+    const vd falls = d_load(casts->moved + slot) - along;
+    vd slope;
+    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, &slope), least = gap / falls;
     const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
-    const vl near = d_le(gap, enough), last = d_le(d_set(MOST_ROUNDS), rounds);
+    const vl near = d_le(gap, d_load(casts->enough + slot)), last = d_le(d_set(MOST_ROUNDS), rounds);
     const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(CAST_GOES_ON);
     vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), on);
     outcome = d_select(d_lt(end, next), miss, d_select(d_le(safe, time), hit, outcome));
-    outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(series.first, zero), hit, outcome));
-    outcome = d_select(passed, on, d_select(d_le(gap, zero), hit, outcome));
-    const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
-    const vl may_try = goes_on & tries & d_lt(series.first, zero);
-    vd to = d_select(passed, back, safe),
-       then_back = d_select(passed | direct, d_set((double)CAST_DIRECT), d_set((double)CAST_FREE));
-    if (d_any(may_try)) {
-        const vd ahead = round_down(time + find_root(gap - d_set(0.5) * enough, &series, end - time));
-        const vl try = may_try & d_lt(safe, ahead);
-        to = d_select(try, ahead, to);
-        then_back = d_select(try, safe, then_back);
-    }
-    put_step(out, h, outcome, d_select(goes_on, to, time), then_back, rounds);
+    outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(slope, zero), hit, outcome));
+    outcome = d_select(d_le(gap, zero), hit, outcome);
+    put_step(out, h, outcome, d_select(d_lt(d_set(NARC_CAST_UNFINISHED), outcome), safe, time), rounds);
 }
 
 INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,

@@ -4,9 +4,8 @@
  * at their present times, the contact kernel finds what there is between them, and each goes on or makes room for the
  * next pair, so that vectors are full until a part ends.
  *
- * What is not proved by docs/algorithm.md is not relied upon: a pair never goes past a time at which its separation
- * could have come down to the target, or goes back there if it may have. What contacts mean is in cast_lines.inl and
- * cast_turns.inl.
+ * A pair never goes past a time at which its separation could have come down to the target (docs/algorithm.md). What
+ * contacts mean is in cast_lines.inl and cast_turns.inl.
  */
 #include <float.h>
 #include <math.h>
@@ -54,8 +53,7 @@ static narc_impact *find_row(const narc_cast_batch *given, size_t pair) {
 /* Has its mover, of `nearest`, hit something before it can? */
 static bool is_late(const narc_cast_batch *given, const narc_casts *casts, size_t slot) {
     const narc_impact *const row = find_row(given, casts->pair[slot]);
-    const float back = casts->back[slot];
-    return row->count != NARC_CAST_MISS && row->fraction < (back >= 0 ? back : casts->time[slot]);
+    return row->count != NARC_CAST_MISS && row->fraction < casts->time[slot];
 }
 
 /* Writes the row of a pair. */
@@ -121,7 +119,6 @@ static int let_go(const struct cast_call *call, narc_casts *casts, size_t slot, 
         casts->time[slot] = looked;
     } else
         return outcome;
-    casts->back[slot] = CAST_FREE;
     casts->rounds[slot] = 0;
     return CAST_GOES_ON;
 }
@@ -226,7 +223,6 @@ INLINE void load_casts(const struct cast_call *call, const struct pair_indices *
     load_ways(&from->a, &from->b, &from->pairs, in, k, casts->x + to, casts->y + to);
     v_store(casts->target + to,
             load_column_or(given->targets, given->nearest && !given->depths.base ? item[0] : number, given->target));
-    v_store(casts->back + to, v_set(CAST_FREE));
     v_store(casts->rounds + to, v_set(0));
     memcpy(casts->pair + to, number, V_WIDTH * sizeof(int32_t));
     memcpy(casts->body + to, body[1], V_WIDTH * sizeof(int32_t));
@@ -295,7 +291,6 @@ NOINLINE void advance_casts(struct cast_call *call, narc_casts *casts) {
         if (call->lets_go)
             v_store(call->looked, v_load(casts->time + k));
         v_store(casts->time + k, v_load(step.time));
-        v_store(casts->back + k, v_load(step.back));
         v_store(casts->rounds + k, v_load(step.rounds));
         const vi outcome = vi_truncate(v_load(step.outcome));
         kept += keep_casts(call, casts, k, live, vi_select(touch.known, outcome, vi_set(CAST_BROKEN)), kept);

@@ -57,7 +57,6 @@ INLINE int begin(const narc_one_cast *asked, narc_casts *casts, bool turns) {
     casts->x[0] = asked->bodies[1]->x - asked->bodies[0]->x + 0; /* as ways of batches are */
     casts->y[0] = asked->bodies[1]->y - asked->bodies[0]->y + 0;
     casts->target[0] = asked->target;
-    casts->back[0] = CAST_FREE;
     casts->rounds[0] = 0;
     begin_half(asked->tolerance, casts, 0, 0, &loaded, outcome);
     if (!turns)
@@ -101,7 +100,6 @@ INLINE int follow(const narc_one_cast *asked, narc_casts *casts, narc_contact *c
         else
             advance_lines(casts, &touch, 0, &step);
         casts->time[0] = step.time[0];
-        casts->back[0] = step.back[0];
         casts->rounds[0] = step.rounds[0];
         outcome = (int)step.outcome[0];
     }
