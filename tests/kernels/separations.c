@@ -82,42 +82,34 @@ TEST(test_contacts) {
 
 /* Pairs with a concave arc have several contacts: the deepest one's separation is told. */
 TEST(test_ground) {
-    enum { RIDERS = 40, MOST = 2000 };
+    enum { RIDERS = 40 };
     struct test_random random = test_random_named("separations on ground");
     for (size_t trial = 0; trial < test_trials(CHAIN_FAMILIES); trial++) {
         const enum chain_family family = (enum chain_family)(trial % CHAIN_FAMILIES);
-        static narc_chain_entry entries[MOST];
-        static narc_body pieces[MOST];
-        AUTO(free_at) const struct chain chain = make_chain(&random, family);
-        AUTO(narc_destroy_shapes_at) narc_shapes *store = NULL;
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_random_ground(&random, family);
+        const size_t count = s->count;
+        size_t told = 0;
         narc_error error;
-        size_t count = 0, told = 0;
-        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
-        const narc_chain_options options = {.closed = chain.closed};
-        expect_ok(narc_add_chain(store, chain.arcs, chain.count, &options, entries, MOST, &count, &error), &error);
-        for (size_t k = 0; k < count; k++)
-            pieces[k] =
-                (narc_body){.x = entries[k].x, .y = entries[k].y, .cosine = 1, .scale = 1, .shape = entries[k].shape};
         AUTO(free_at) uint32_t *const a = malloc(RIDERS * count * sizeof *a);
         AUTO(free_at) uint32_t *const b = malloc(RIDERS * count * sizeof *b);
         narc_body riders[RIDERS];
         for (uint32_t k = 0; k < RIDERS; k++) {
-            const struct shape shape = make_rider(&random, &chain, family);
-            const struct body body = ride_chain(&random, &chain, &shape, 0.1);
+            const struct shape shape = make_rider(&random, &s->chain, family);
+            const struct body body = ride_chain(&random, &s->chain, &shape, 0.1);
             riders[k] = (narc_body){body.x, body.y, body.cosine, body.sine, body.scale, 0};
-            expect_ok(narc_add_shape(store, shape.arcs, shape.count, &riders[k].shape, &error), &error);
+            expect_ok(narc_add_shape(s->store, shape.arcs, shape.count, &riders[k].shape, &error), &error);
             for (uint32_t i = 0; i < count; i++) {
                 a[k * count + i] = k;
                 b[k * count + i] = i;
             }
         }
-        narc_bodies bodies, ground;
+        narc_bodies bodies;
         narc_view_bodies(riders, RIDERS, &bodies);
-        narc_view_bodies(pieces, count, &ground);
+        const narc_bodies ground = view_columns(s->bodies, count);
         const narc_pairs pairs = {
             .count = RIDERS * count, .a = {a, sizeof *a}, .b = {b, sizeof *b}, .other_bodies = &ground};
-        told += check_separations(store, &bodies, &pairs, (narc_query){.margin = 0.125f});
-        told += check_separations(store, &bodies, &pairs, (narc_query){.margin = INFINITY, .front_only = 1});
+        told += check_separations(s->store, &bodies, &pairs, (narc_query){.margin = 0.125f});
+        told += check_separations(s->store, &bodies, &pairs, (narc_query){.margin = INFINITY, .front_only = 1});
         assert_true(told > 0);
     }
 }
