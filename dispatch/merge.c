@@ -135,11 +135,11 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
         high = along > high.y * first.normal_x - high.x * first.normal_y ? *p : high;
     }
     const float room = SAME_SEPARATION * find_size(&low, &high);
-    if (deepest.separation < fminf(low.separation, high.separation) - room)
-        *(is_same_point(&deepest, &low)      ? &low
-          : is_same_point(&deepest, &high)   ? &high
-          : low.separation > high.separation ? &low
-                                             : &high) = deepest;
+    if (deepest.separation < fminf(low.separation, high.separation) - room) {
+        const bool is_high =
+            !is_same_point(&deepest, &low) && (is_same_point(&deepest, &high) || low.separation <= high.separation);
+        *(is_high ? &high : &low) = deepest;
+    }
     const bool is_one = is_same_point(&low, &high);
     *a = *deeper;
     a->pair = first.pair;

@@ -119,7 +119,7 @@ INLINE struct lever find_arm(const struct met *met, int h, vl moves, vd scale, v
 }
 
 /* The gap along an axis, above the target, after a time s: at least gap + s (first + s (second + s (third + s fourth))), and
- * so is its slope that of this; its second derivative is never below -bend. */
+ * its slope at least the slope of that; its second derivative is never below -bend. */
 struct series {
     vd first, second, third, fourth, bend;
 };

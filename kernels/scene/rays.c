@@ -302,7 +302,7 @@ static void walk_one_by_one(const narc_ray_batch *batch, struct loners *loners) 
 
 /* ------------------------------------------------------------------------------------------------ all */
 
-/* Empties a ray's rows. Has it an answer? */
+/* Empties a ray's rows, one at least. Has it an answer? */
 INLINE bool empty_rows(const narc_ray_batch *batch, const struct read_rays *rays, size_t k) {
     narc_ray_hit *row = get_rows(batch, rays, k), *const end = row + batch->most;
     do {
