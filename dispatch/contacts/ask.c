@@ -112,7 +112,7 @@ static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, u
     const narc_contacts *const c = s->contacts;
     const size_t row_stride = c->row_stride;
     const bool contact_rows = c->contact_rows;
-    const unsigned recycles = s->step->recycling > 0, bares = usual & NARC_SLOT_PLAIN ? 1 : 0;
+    const unsigned plain = usual & NARC_SLOT_PLAIN ? 1 : 0, recycles = s->step->recycling > 0;
     const char *const rows = c->rows;
     uint8_t *const state = c->state, *const flags = c->flags;
     uint32_t *const kept = keep, *bare = keep + count;
@@ -123,7 +123,7 @@ static size_t note_answers(slot_job *job, const uint32_t *slots, size_t count, u
         const unsigned crosses = (was ^ touches) & NARC_TOUCHING;
         const unsigned before = flags[slot], kind = NARC_SLOT_SEEN | NARC_SLOT_PLAIN | NARC_SLOT_ENTRY;
         state[slot] = (uint8_t)((was ^ crosses) | NARC_ASKED);
-        if ((before & (kind | NARC_SLOT_KEPT)) == usual && !(crosses | recycles | (bares & !touches)))
+        if ((before & (kind | NARC_SLOT_KEPT)) == usual && !(crosses | (plain & (recycles | !touches))))
             continue;
         unsigned own = before & (0xffu - NARC_SLOT_KEPT);
         if ((own & kind) != usual) {

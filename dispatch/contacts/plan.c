@@ -459,35 +459,41 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
 /* In a scene at rest so many slots are looked at at a time, byte by byte, many of which a vector holds. */
 enum { CHUNK = 64 };
 
-/* Of the slots first .. first + n - 1, lists those as candidates that are as most are at rest: something is kept of them, they
- * are as they were, and a body has moved. Puts the numbers of all others but those of ground, less `first`, into `other`, and
- * what has changed of both bodies into `found`; returns how many these are. As sort_slot() has it, which differs in nothing but
- * time. */
-static size_t pass_followers(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
-                             uint8_t other[CHUNK], uint32_t **candidates) {
+/* Of the slots first .. first + n - 1, lists those that are as most are at rest, as they were, while a body has moved: as
+ * candidates if something is kept of them, as known if they touch and have an entry. Puts the numbers of all others but those
+ * of ground, less `first`, into `other`, and what has changed of both bodies into `found`; returns how many these are. As
+ * sort_slot() has it, which differs in nothing but time. */
+static size_t pass_usual(const pair_view *v, bool kept, size_t first, size_t n, uint8_t found[CHUNK],
+                         uint8_t other[CHUNK], slot_lists *lists) {
+    enum { DECIDES = NARC_SLOT_KEPT | NARC_SLOT_ENTRY | NARC_SLOT_STALE | NARC_SENSOR };
     const uint32_t *const a = v->a + first, *const b = v->b + first;
     const uint8_t *const changed = v->changed;
-    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, now[CHUNK] = {0}, follows[CHUNK], passed[CHUNK];
-    uint32_t *to = *candidates;
+    uint8_t flags[CHUNK] = {0}, marks[CHUNK] = {0}, state[CHUNK] = {0}, now[CHUNK] = {0};
+    uint8_t follows[CHUNK], known[CHUNK], passed[CHUNK];
+    slot_lists to = *lists;
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
         now[i] = changed[a[i]] | changed[b[i]];
     memcpy(flags, v->flags + first, n);
     memcpy(marks, v->marks + first, n);
+    memcpy(state, v->state + first, n);
     for (size_t i = 0; i < CHUNK; i++) {
-        const uint8_t odd = ((flags[i] ^ NARC_SLOT_KEPT) & (NARC_SLOT_KEPT | NARC_SLOT_STALE | NARC_SENSOR)) |
-                            (marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED);
-        follows[i] = (odd == 0) & ((now[i] & NARC_ALL_CHANGED) != 0);
-        passed[i] = (odd == 0) | (kept & (now[i] == 0)) | ((marks[i] & NARC_WITH_GROUND) != 0);
+        const uint8_t plain = ((marks[i] & SPECIAL) | (now[i] & NARC_RESHAPED)) == 0, decides = flags[i] & DECIDES;
+        const uint8_t keeps = plain & (decides == NARC_SLOT_KEPT), moved = (now[i] & NARC_ALL_CHANGED) != 0;
+        const uint8_t answers = plain & (decides == NARC_SLOT_ENTRY) & (state[i] & NARC_TOUCHING);
+        follows[i] = keeps & moved;
+        known[i] = answers & moved;
+        passed[i] = keeps | answers | (kept & (now[i] == 0)) | ((marks[i] & NARC_WITH_GROUND) != 0);
     }
     for (size_t i = 0; i < n; i++) {
-        *to = (uint32_t)(first + i);
-        to += follows[i];
+        *to.candidates = *to.known = (uint32_t)(first + i);
+        to.candidates += follows[i];
+        to.known += known[i];
         other[count] = (uint8_t)i;
         count += 1u - passed[i];
     }
     memcpy(found, now, sizeof now);
-    *candidates = to;
+    *lists = to;
     return count;
 }
 
@@ -510,12 +516,12 @@ void narc_sort_pairs(const narc_contact_step *s) {
     slot_lists to = {c->asked, c->known, c->candidates};
     const size_t count = c->changed && s->list->pairs.count > 0 ? c->slot_count : 0;
     /* As in the last step; where ground lies between other slots, these are picked out. */
-    const bool rests = !s->step->ahead.base && (s->has_ground || c->candidate_count > count / 4);
+    const bool rests = !s->step->ahead.base && (s->has_ground || c->candidate_count + c->known_count > count / 4);
     c->sensor_count = 0;
     for (size_t first = 0; first < count && rests; first += CHUNK) {
         uint8_t found[CHUNK], other[CHUNK];
         const size_t n = count - first < CHUNK ? count - first : CHUNK;
-        const size_t others = pass_followers(&v, kept, first, n, found, other, &to.candidates);
+        const size_t others = pass_usual(&v, kept, first, n, found, other, &to);
         for (size_t i = 0; i < others; i++)
             sort_slot(s, &v, first + other[i], found[other[i]], more, flags, &to);
     }
