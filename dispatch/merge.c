@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "chain.h"
 #include "column.h"
 #include "merge.h"
 
@@ -63,10 +64,24 @@ static size_t find_body_of(const narc_merging *list, size_t k) {
     return pairs->other_bodies ? pair : 2 * (size_t)pair;
 }
 
+static size_t find_entry_of(const narc_pairs *pairs, uint32_t pair) {
+    return pairs->b.base ? narc_index_at(pairs->b, pair) : pairs->other_bodies ? pair : 2 * (size_t)pair + 1;
+}
+
 static uint32_t find_run(const narc_merging *list, uint32_t pair) {
-    const narc_pairs *pairs = list->pairs;
-    const size_t own = pairs->other_bodies ? pair : 2 * (size_t)pair + 1;
-    return list->run.base ? narc_index_at(list->run, pairs->b.base ? narc_index_at(pairs->b, pair) : own) : NARC_NO_RUN;
+    return list->run.base ? narc_index_at(list->run, find_entry_of(list->pairs, pair)) : NARC_NO_RUN;
+}
+
+/* How far an entry of a run goes on where a corner is cut: a part of its closure's first edge. */
+static float find_fin(const narc_merging *list, uint32_t pair) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    const size_t entry = find_entry_of(list->pairs, pair);
+    const size_t count =
+        list->shapes ? narc_get_arcs(list->shapes, narc_index_at(list->bodies->shape, entry), arcs) : 0;
+    if (count == 0)
+        return 0;
+    const double x = arcs[count - 1].center_x - arcs[0].center_x, y = arcs[count - 1].center_y - arcs[0].center_y;
+    return (float)(1.01 * NARC_FIN / NARC_FAR * sqrt(x * x + y * y)) * narc_float_or(list->bodies->scale, entry, 1);
 }
 
 /* ------------------------------------------------------------------------------------------------ two rows */
@@ -149,8 +164,9 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
 }
 
 /* Is what two rows touch of the ground convex from the one to the other: does either place lie behind the tangent of the
- * other one, and does the normal turn with the way between both? A valley may be too shallow for the first to tell. */
-static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
+ * other one, and does the normal turn with the way between both? A valley may be too shallow for the first to tell; and what
+ * goes on where a corner is cut is none. */
+static bool is_convex(const narc_merging *list, const narc_manifold *a, const narc_manifold *b) {
     const narc_manifold_point *p = find_deepest(a), *q = find_deepest(b);
     const float x = p->x + a->normal_x * p->separation / 2 - q->x - b->normal_x * q->separation / 2;
     const float y = p->y + a->normal_y * p->separation / 2 - q->y - b->normal_y * q->separation / 2;
@@ -159,8 +175,9 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
     const float turn_x = b->normal_x - a->normal_x, turn_y = b->normal_y - a->normal_y;
     const bool turns_back =
         at_b - at_a < 0 && 4 * (at_b - at_a) * (at_b - at_a) > (x * x + y * y) * (turn_x * turn_x + turn_y * turn_y);
-    return at_a <= room && at_b >= -room &&
-           (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
+    return (at_a <= room && at_b >= -room &&
+            (!turns_back || is_near(x, y, room) || has_same_normal(a, b, SAME_RUN_NORMAL))) ||
+           is_near(x, y, fmaxf(find_fin(list, a->pair), find_fin(list, b->pair)));
 }
 
 /* Do two rows tell of both sides of a thin solid within the body: faces that look away from each other, where neither place
@@ -223,7 +240,7 @@ static bool compare_rows(const narc_merging *list, size_t j, size_t k) {
         drop_row(list, find_separation(&a) < find_separation(&b) ? j : k);
         return false;
     }
-    const bool is_one_run = run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b);
+    const bool is_one_run = run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(list, &a, &b);
     const bool is_seam =
         !is_one_run && has_same_normal(&a, &b, SAME_SEAM_NORMAL) && (has_all_points(&a, &b) || has_all_points(&b, &a));
     const bool is_flush =
@@ -276,7 +293,7 @@ size_t narc_merge_body(const narc_merging *rows, size_t first, size_t end) {
     return merge_body(rows, first, first, end);
 }
 
-static size_t merge_rows(const narc_merging *list, size_t count) {
+size_t narc_merge_rows(const narc_merging *list, size_t count) {
     size_t kept = 0, next = count > 0 ? find_body_of(list, 0) : 0;
     for (size_t k = 0, end; k < count; k = end) {
         const size_t body = next;
@@ -285,12 +302,4 @@ static size_t merge_rows(const narc_merging *list, size_t count) {
         kept = merge_body(list, kept, k, end);
     }
     return kept;
-}
-
-size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count) {
-    return merge_rows(&(narc_merging){pairs, run, rows, NULL}, count);
-}
-
-size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count) {
-    return merge_rows(&(narc_merging){pairs, run, NULL, rows}, count);
 }

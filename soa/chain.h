@@ -16,6 +16,13 @@
 /* So far where a corner is cut: the nearer a point is to another one, the less is known of its direction from there. */
 #define NARC_CORNER_SEAM 0.05
 
+/* Where a corner is cut each part goes on along its tangent there, by this part of its size: of a corner that touches it the
+ * direction is that of rounding, and of two parts each might leave it to the other. */
+#define NARC_FIN 0x1p-16
+
+/* The far corners lie this many times the front's size away. */
+#define NARC_FAR 4.0
+
 /* What the corners at the ends of a run turn by. */
 #define NARC_END_TURN 0x1p-10
 

@@ -38,10 +38,6 @@
  * radians of an end is taken for what follows (contact_point.inl), and directions are rounded. */
 #define LEAST_END_SEAM 0x1.8p-20
 
-/* Where a corner is cut each part goes on along its tangent there, by this part of its size: of a corner that touches it the
- * direction is that of rounding, and of two parts each might leave it to the other. */
-#define FIN 0x1p-16
-
 /* The bottom of a valley turns further, as does what is right below it; runs reach beyond it by their roundings alone. */
 #define VALLEY_TURN 0.99e-3
 #define VALLEY_SEAM 0x1p-16
@@ -51,9 +47,6 @@
 
 /* Most that the front of a piece turns by, but for what it shares with others. */
 #define MAX_TURN 1.7
-
-/* The far corners lie this many times the front's size away. */
-#define FAR 4.0
 
 /* What is known of the solid around a piece: up to so many times the size of its front, and a little less than is
  * found. */
@@ -266,13 +259,13 @@ static void end_piece(divider *d, narc_point end, narc_chain_place after) {
     const front_end ends[2] = {{begin, p->begin_angle, p->before}, {stop, p->end_angle, after}};
     const narc_solid solid = measure_solid(d, p->arcs + 1, p->count, ends, middle, 2 * size, p->is_sharp);
     if (p->begins_in_corner)
-        begin = move(begin, p->begin_angle - NARC_PI / 2, FIN * size);
+        begin = move(begin, p->begin_angle - NARC_PI / 2, NARC_FIN * size);
     if (p->ends_in_corner) {
         const double angle = p->end_angle;
-        stop = move(stop, angle + NARC_PI / 2, FIN * size);
+        stop = move(stop, angle + NARC_PI / 2, NARC_FIN * size);
         put_seam(d, stop, angle, 0);
     }
-    const size_t count = close_run(p, begin, stop, FAR * size);
+    const size_t count = close_run(p, begin, stop, NARC_FAR * size);
     const narc_status status = narc_encode_run(p->arcs, count, &solid, &encoded, &reason);
     if (status != NARC_OK)
         fail_piece(d, status, p->first_arc, &reason);

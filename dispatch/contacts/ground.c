@@ -127,8 +127,12 @@ void narc_take_ground(const narc_contact_step *s) {
     narc_contacts *const c = s->contacts;
     const narc_pairs pairs = narc_view_slots(c);
     const uint32_t *const bodies = s->list->pairs.a.base;
-    const narc_merging merging = {&s->list->pairs, s->step->run, c->contact_rows ? c->ground.rows : NULL,
-                                  c->contact_rows ? NULL : c->ground.rows};
+    const narc_merging merging = {.pairs = &s->list->pairs,
+                                  .run = s->step->run,
+                                  .shapes = s->shapes,
+                                  .bodies = s->step->bodies,
+                                  .contacts = c->contact_rows ? c->ground.rows : NULL,
+                                  .manifolds = c->contact_rows ? NULL : c->ground.rows};
     const bool has_more = c->more.count > 0;
     body_rows rows = {UINT32_MAX, 0, 0, 0};
     size_t next = 0, bare_count = 0, keep_count = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * merging.c - narc_merge_manifolds() and narc_merge_contacts(): what stays of rows that entries of one chain tell of a
+ * merging.c - narc_merge_rows(): what stays of rows that entries of one chain tell of a
  * body. Internal.
  */
 #include <math.h>
@@ -49,7 +49,7 @@ static size_t merge_as_told(struct rows *rows, const uint32_t *runs) {
     const narc_pairs pairs = {.count = rows->count, .a = NARC_ARRAY(rows->a), .b = NARC_ARRAY(rows->b)};
     AUTO(guard_release_at) narc_manifold *own = guard_copy(rows->manifolds, rows->count * sizeof *own);
     const narc_index_column run = {runs, runs ? sizeof *runs : 0};
-    const size_t left = narc_merge_manifolds(&pairs, run, own, rows->count);
+    const size_t left = narc_merge_rows(&(narc_merging){&pairs, run, .manifolds = own}, rows->count);
     memcpy(rows->manifolds, own, left * sizeof *own);
     return left;
 }
@@ -309,7 +309,7 @@ TEST(merges_contacts) {
     }
     const narc_bodies ground = {.count = 6};
     const narc_pairs pairs = {.count = 6, .a = NARC_ARRAY(a), .other_bodies = &ground};
-    assert_int_equal(narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, 6), 3);
+    assert_int_equal(narc_merge_rows(&(narc_merging){&pairs, NARC_ARRAY(runs), .contacts = rows}, 6), 3);
     assert_int_equal(rows[0].pair, 1);
     assert_int_equal(rows[1].pair, 4);
     assert_int_equal(rows[2].pair, 5);
@@ -318,7 +318,8 @@ TEST(merges_contacts) {
     own[0].pair = 0;
     own[1].pair = 1;
     const uint32_t four[] = {9, 4, 9, 4};
-    assert_int_equal(narc_merge_contacts(&(narc_pairs){.count = 2}, NARC_ARRAY(four), own, 2), 2);
+    assert_int_equal(narc_merge_rows(&(narc_merging){&(narc_pairs){.count = 2}, NARC_ARRAY(four), .contacts = own}, 2),
+                     2);
 }
 
 /* In any long list what stays is what a search through all rows of the body says. */
@@ -351,7 +352,7 @@ TEST(merges_long_lists) {
         }
         memcpy(before, rows, sizeof rows);
         const narc_pairs pairs = {.count = ROWS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-        const size_t left = narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, ROWS);
+        const size_t left = narc_merge_rows(&(narc_merging){&pairs, NARC_ARRAY(runs), .contacts = rows}, ROWS);
         size_t next = 0;
         for (size_t k = 0; k < left; k++) { /* some of the rows in their order, untouched but for what is deeper */
             while (next < ROWS && rows[k].pair != before[next].pair)

@@ -80,7 +80,8 @@ static void ask(const void *question, const narc_workers *workers, void *out_ans
     memset(answer->few_contacts + (answer->few_count < q->room ? answer->few_count : q->room), 0,
            (PAIRS - (answer->few_count < q->room ? answer->few_count : q->room)) * sizeof *answer->few_contacts);
     memcpy(answer->merged, answer->contacts, sizeof answer->merged);
-    answer->merged_count = narc_merge_contacts(&pairs, NARC_ARRAY(q->run), answer->merged, answer->count);
+    answer->merged_count = narc_merge_rows(
+        &(narc_merging){&pairs, NARC_ARRAY(q->run), store, &ground, .contacts = answer->merged}, answer->count);
     assert_true(answer->merged_count <= answer->count);
     memset(answer->merged + answer->merged_count, 0, (ROWS - answer->merged_count) * sizeof *answer->merged);
     assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast, answer->impacts, PAIRS, NULL),

@@ -462,7 +462,8 @@ TEST(test_ground) {
     struct manifolds merged = find_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f});
     printf("  %zu manifolds on ground\n", merged.count);
     assert_true(merged.count > GUESTS / 2);
-    merged.count = narc_merge_manifolds(&pairs, NARC_ARRAY(runs), merged.rows, merged.count);
+    merged.count = narc_merge_rows(
+        &(narc_merging){&pairs, NARC_ARRAY(runs), scene.store, &pieces, .manifolds = merged.rows}, merged.count);
     hashes[1] = hash_reach_rows(hash_manifold_rows(TEST_HASH_START, merged), merged);
     for (int turning = 0; turning < 2; turning++) {
         const narc_motions motions = {.x = NARC_ARRAY(motion),

@@ -754,7 +754,8 @@ static narc_manifold merge_one(const struct scene *scene, const uint32_t *runs, 
     const narc_pairs list = {.count = entries, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
     const narc_bodies bodies = scene_bodies(scene);
     AUTO(free_at) struct manifolds rows = find_manifolds(scene->store, &bodies, &list, &(narc_query){.margin = margin});
-    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    const size_t left = narc_merge_rows(
+        &(narc_merging){&list, {runs, sizeof *runs}, scene->store, &bodies, .manifolds = rows.rows}, rows.count);
     if (left != 1)
         fail_msg("%zu rows of %zu", left, rows.count);
     return rows.rows[0];
@@ -883,7 +884,8 @@ static double find_corner(struct ground_bodies *g, const uint32_t *runs, uint32_
     const narc_bodies bodies = scene_bodies(&g->scene);
     AUTO(free_at)
     struct manifolds rows = find_manifolds(g->scene.store, &bodies, &list, &(narc_query){.margin = margin});
-    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    const size_t left = narc_merge_rows(
+        &(narc_merging){&list, {runs, sizeof *runs}, g->scene.store, &bodies, .manifolds = rows.rows}, rows.count);
     double best = INFINITY;
     for (size_t k = 0; k < left; k++)
         for (uint32_t i = 0; i < rows.rows[k].count; i++)

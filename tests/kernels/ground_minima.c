@@ -541,7 +541,9 @@ static void check_setting(const struct setting *setting, struct counts *counts) 
         is_cast[near.pairs[k].a] |= answers.impacts[k].count == NARC_CAST_HIT && answers.impacts[k].fraction == 0;
     }
     narc_manifold *const rows = answers.manifolds;
-    const size_t count = narc_merge_manifolds(&near.list, NARC_ARRAY(scene->runs), rows, answers.counts[1]);
+    const size_t count = narc_merge_rows(
+        &(narc_merging){&near.list, NARC_ARRAY(scene->runs), scene->store, &near.ground, .manifolds = rows},
+        answers.counts[1]);
     size_t row = 0;
     for (size_t k = 0; k < BODIES; k++) {
         const struct reference_body body = pose_on_ground(scene, &setting->shapes[k % SHAPES], &setting->bodies[k]);

@@ -290,6 +290,36 @@ TEST(test_both_sides) {
     }
 }
 
+/* Balls at corners that are cut, much smaller than the ground beside these: one row each, with the way from the corner. */
+TEST(test_small_balls_at_cut_corners) {
+    struct test_random random = test_random_named("small balls at cut corners");
+    static struct told_rows told;
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        const size_t sides = 3 + random_below(&random, 3);
+        const double turn = 2 * PI / (double)sides;
+        struct turtle t = create_turtle(0, 0, random_between(&random, -PI, PI));
+        for (size_t k = 0; k < sides; k++) {
+            walk_arc(&t, 0, turn);
+            walk_line(&t, 4);
+        }
+        AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, true), (narc_chain_options){0});
+        const double radius = random_log_between(&random, 1e-3, 1);
+        const uint32_t ball = add_shape(s, circle_of(radius));
+        for (int k = 0; k < 400; k++) {
+            const narc_arc *arc = &s->chain.arcs[random_below(&random, sides)];
+            const double angle = arc->start + turn * random_between(&random, 0.001, 0.999);
+            const double away = radius * (k % 2 ? random_between(&random, 0.1, 0.9) : 0.999);
+            const struct body body =
+                turn_body(ball, arc->center_x + away * cos(angle), arc->center_y + away * sin(angle), 0);
+            ask_body(s, &body, (narc_query){0}, &told);
+            if (told.count != 1)
+                fail_msg("a ball of %g, %g away, at %g of %g: %zu rows", radius, away, angle - arc->start, turn,
+                         told.count);
+            expect_near((double)told.deepest, away - radius, 1e-4, "separation");
+        }
+    }
+}
+
 /* Open ground ends straight below its end: a triangle that stands beside it, on the extension of a slope's inner side, is
  * in the air. */
 TEST(test_beside_open_ends) {

@@ -694,7 +694,9 @@ void ask_body(const struct ground_scene *scene, const struct body *body, narc_qu
     memcpy(out->contacts, answers.contacts, out->contact_count * sizeof *out->contacts);
     memcpy(out->rows, answers.manifolds, out->contact_count * sizeof *out->rows);
     memcpy(out->impacts, answers.impacts, scene->count * sizeof *out->impacts);
-    out->count = narc_merge_manifolds(&pairs, NARC_ARRAY(scene->runs), out->rows, out->contact_count);
+    out->count =
+        narc_merge_rows(&(narc_merging){&pairs, NARC_ARRAY(scene->runs), scene->store, &ground, .manifolds = out->rows},
+                        out->contact_count);
     out->deepest = INFINITY;
     for (size_t k = 0; k < out->count; k++)
         out->deepest = fminf(out->deepest, find_deepest(&out->rows[k]));

@@ -295,7 +295,7 @@ void check_rows(const struct step_world *w, const narc_step *step, const narc_st
     const narc_query overlaps = {.front_only = step->front_only};
     expect_ok(narc_find_manifolds(w->store, step->bodies, &pairs, &query, rows, PAIRS, &found, &error), &error);
     if (step->run.base)
-        found = narc_merge_manifolds(&pairs, step->run, rows, found);
+        found = narc_merge_rows(&(narc_merging){&pairs, step->run, w->store, step->bodies, .manifolds = rows}, found);
     expect_ok(narc_find_overlaps(w->store, step->bodies, &pairs, &overlaps, bits, &error), &error);
     for (size_t k = 0; k < r->count; k++) {
         const uint32_t slot = r->order[k];
