@@ -54,10 +54,17 @@ static double find_misfit(const narc_outline *o) {
     return misfit;
 }
 
+/* How far the outline of stored arcs may be from the one that was given: a few roundings of each coordinate, radius and
+ * normal. Relative to the extent; a quarter of what the circles leave as room. */
+#define STORED_ROOM (NARC_ROUNDING_ROOM / 4)
+
 static narc_shape_header make_header(const narc_outline *o, size_t count, narc_circle bound, double extent) {
     narc_circle inner;
     narc_inscribe_outline(o, &inner);
     double misfit = find_misfit(o), room = NARC_ROUNDING_ROOM * extent + misfit;
+    /* The middle of a segment whose ends miss each other lies beside it. */
+    const double outside = narc_find_point_separation(o, inner.x, inner.y, NULL);
+    inner.radius = outside > STORED_ROOM * extent ? -outside : inner.radius;
     inner.x += o->origin_x;
     inner.y += o->origin_y;
     narc_shape_header header = {.count = (uint8_t)o->count};
@@ -376,10 +383,6 @@ narc_piece_form narc_find_piece_form(const narc_encoded_shape *shape) {
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */
-
-/* How far the outline of stored arcs may be from the one that was given: a few roundings of each coordinate, radius and
- * normal. Relative to the extent; a quarter of what the circles leave as room. */
-#define STORED_ROOM (NARC_ROUNDING_ROOM / 4)
 
 /* A cosine or sine of a stored normal is off by half a rounding. */
 #define UNIT_SLACK 1e-6

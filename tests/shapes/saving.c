@@ -117,6 +117,18 @@ TEST(loads_arcs_that_were_given_apart) {
     narc_destroy_shapes(save_and_load(shapes));
 }
 
+/* So have segments: their middle lies beside them. */
+TEST(loads_segments_that_were_given_apart) {
+    AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
+    for (double apart = 1e-7; apart < NARC_TOLERANCE / 2; apart *= 1.2) {
+        const double up = acos(0);
+        const narc_arc arcs[] = {{-0.5, 0, 0, up, 3 * up}, {0.5, apart, 0, 3 * up, 5 * up}};
+        narc_error error;
+        expect_ok(narc_add_shape(shapes, arcs, 2, NULL, &error), &error);
+    }
+    narc_destroy_shapes(save_and_load(shapes));
+}
+
 /* So do edges of ground that turn by less than counts as a corner. */
 TEST(loads_ground_that_turns_by_next_to_nothing) {
     AUTO(narc_destroy_shapes_at) narc_shapes *const shapes = empty_store();
