@@ -8,6 +8,7 @@
 #include "chain.h"
 #include "column.h"
 #include "merge.h"
+#include "store.h"
 
 #define SAME_RUN_NORMAL  1e-4f
 #define SAME_SEAM_NORMAL 1e-3f
@@ -72,16 +73,13 @@ static uint32_t find_run(const narc_merging *list, uint32_t pair) {
     return list->run.base ? narc_index_at(list->run, find_entry_of(list->pairs, pair)) : NARC_NO_RUN;
 }
 
-/* How far an entry of a run goes on where a corner is cut: a part of its closure's first edge. */
+/* So far an entry of a run goes on where a corner is cut, or less: its bounding circle holds the far corners. */
 static float find_fin(const narc_merging *list, uint32_t pair) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    const size_t entry = find_entry_of(list->pairs, pair);
-    const size_t count =
-        list->shapes ? narc_get_arcs(list->shapes, narc_index_at(list->bodies->shape, entry), arcs) : 0;
-    if (count == 0)
+    if (!list->shapes)
         return 0;
-    const double x = arcs[count - 1].center_x - arcs[0].center_x, y = arcs[count - 1].center_y - arcs[0].center_y;
-    return (float)(1.01 * NARC_FIN / NARC_FAR * sqrt(x * x + y * y)) * narc_float_or(list->bodies->scale, entry, 1);
+    const size_t entry = find_entry_of(list->pairs, pair);
+    const narc_shape_header *const header = &list->shapes->headers[narc_index_at(list->bodies->shape, entry)];
+    return (float)(NARC_FIN * 2 / NARC_FAR) * header->bound_radius * narc_float_or(list->bodies->scale, entry, 1);
 }
 
 /* ------------------------------------------------------------------------------------------------ two rows */
