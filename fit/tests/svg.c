@@ -510,7 +510,7 @@ TEST(survives_changed_bytes) {
         "path{stroke:red}</style>\n<g transform='translate(1,2)rotate(30 1 1)'><path id='b' class='a' d='M1.5.5-3e2 4"
         "v2H5V6h1Cc1 2 3 4 5 6s1 2 3 4A1 2 3 0110 10z'/><rect x='1mm' y='2%' width='3' height='4' rx='1'/></g></svg>";
     struct test_random random = test_random_named("svg bytes");
-    size_t read = 0, trials = test_trials(40);
+    size_t read = 0, trials = test_trials(400);
     for (size_t trial = 0; trial < trials; trial++) {
         char text[sizeof good];
         memcpy(text, good, sizeof good);
