@@ -18,9 +18,6 @@ OPTIONS = ["-GNinja", "--no-warn-unused-cli", "-DCMAKE_BUILD_TYPE=Release", "-DC
            "-DNARC_BUILD_TOOLS=OFF", "-DNARC_INSTALL=OFF"]
 ISAS = re.findall(r"^NARC_ISA\((\w+)", open(ROOT + "/kernels/isa.def").read(), re.M)
 OPTIONS += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ISAS if isa != "scalar"]
-# A shared library of what tests share, so that programs need not be linked for each mutant.
-SUPPORT, STATIC = "tests/support/CMakeLists.txt", "add_library(narc_test_support STATIC"
-SHARED = "set(CMAKE_C_VISIBILITY_PRESET default)\nadd_library(narc_test_support SHARED"
 TESTS = "^(shapes|api|.*isa-scalar)$"  # labels
 SKIPPED = "slow"
 TRIALS = os.environ.get("NARC_TEST_TRIALS", "0.1 1").split()
@@ -75,9 +72,7 @@ class Copy:
         for name in names.split():
             path = self.tree + "/" + name
             os.makedirs(os.path.dirname(path), exist_ok=True)
-            if name == SUPPORT:
-                write(path, open(ROOT + "/" + name).read().replace(STATIC, SHARED))
-            elif not os.path.exists(path) or not filecmp.cmp(ROOT + "/" + name, path, shallow=False):
+            if not os.path.exists(path) or not filecmp.cmp(ROOT + "/" + name, path, shallow=False):
                 shutil.copyfile(ROOT + "/" + name, path)  # what differs is built again
         command = ["cmake", "-S", self.tree, "-B", self.build] + OPTIONS + list(options)
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
