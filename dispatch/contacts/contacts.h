@@ -85,8 +85,7 @@ enum { NARC_ARRAYS = 38 };
 /* How a step asks. */
 typedef struct narc_asked {
     float margin, second_margin, flat_angle, recycling;
-    uint32_t front_only;
-    uint8_t has_ahead, has_run, unused[2]; /* 0 */
+    uint32_t front_only, has_run;
 } narc_asked;
 
 struct narc_contacts {

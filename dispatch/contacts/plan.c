@@ -91,11 +91,10 @@ static inline bool are_apart(const pair_view *v, uint32_t a, uint32_t b) {
     return gap * (1 - 0x1p-18f) > v->room[a] + v->room[b] + v->margin_room;
 }
 
-/* Must a pair be asked, whatever has moved: is it new, turned, a sensor's for the first time, or was it at rest while
- * something changed? One that is marked as at rest stays so. */
+/* Must a pair be asked, whatever has moved: is it new, a sensor's for the first time, or was it at rest while something
+ * changed? One that is marked as at rest stays so. One that is turned has bodies with other numbers, which have changed. */
 static inline unsigned find_stale(unsigned flags, unsigned marks) {
-    const unsigned old = flags & NARC_SLOT_STALE & ~(marks / NARC_RESTS);
-    return old | (marks & NARC_FLIPPED) | ((flags ^ marks) & NARC_SENSOR);
+    return (flags & NARC_SLOT_STALE & ~(marks / NARC_RESTS)) | ((flags ^ marks) & NARC_SENSOR);
 }
 
 static inline bool is_ground(const pair_view *v, size_t k) {
@@ -174,8 +173,7 @@ static inline unsigned find_look(const pair_view *v, const narc_pair_work *work)
     const unsigned changed = ((changed_a & NARC_ALL_CHANGED) | changed_b) * LOOK_CHANGED + changed_b * LOOK_CHANGED_B;
     if (work->slot == UINT32_MAX)
         return changed | NARC_SLOT_STALE;
-    const unsigned flags = v->flags[work->slot] | (v->marks[k] / NARC_FLIPPED) * NARC_SLOT_STALE;
-    return changed | (flags & (NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT)) |
+    return changed | (v->flags[work->slot] & (NARC_SLOT_STALE | NARC_SLOT_SENSOR | NARC_SLOT_KEPT)) |
            (v->state[work->slot] & NARC_TOUCHING) * LOOK_TOUCHING;
 }
 
@@ -342,8 +340,8 @@ void narc_plan_ground(const narc_contact_step *s) {
 static void mark_slot(const narc_contact_step *s, size_t k) {
     const narc_contacts *const c = s->contacts;
     const uint32_t slot = c->order[k];
-    c->marks[slot] =
-        (uint8_t)(s->list->marks[k] | (is_at_rest(s, c->a[slot]) && is_at_rest(s, c->b[slot]) ? NARC_RESTS : 0u));
+    c->marks[slot] = (uint8_t)((s->list->marks[k] & NARC_KINDS) |
+                               (is_at_rest(s, c->a[slot]) && is_at_rest(s, c->b[slot]) ? NARC_RESTS : 0u));
 }
 
 /* The marks of a new list in which pairs that were there are as they were: those of other slots. Bodies of new pairs are
@@ -383,12 +381,11 @@ static void mark_slots(const narc_contact_step *s) {
 
 /* What is to be done with a slot whose bodies have changed, or are `stale`, and not both of which move, or which are no
  * plain bodies? */
-NOINLINE unsigned find_special(const narc_contact_step *s, const pair_view *v, uint32_t slot, bool changed) {
+NOINLINE unsigned find_special(const pair_view *v, uint32_t slot, bool changed) {
     const unsigned marks = v->marks[slot];
     if (marks & NARC_GONE || !changed)
         return NARC_NOTHING;
-    s->contacts->marks[slot] = (uint8_t)(marks & ~(unsigned)NARC_FLIPPED); /* but once */
-    if (marks & NARC_RESTS && !(marks & NARC_FLIPPED))
+    if (marks & NARC_RESTS && !(v->state[slot] & NARC_TURNED))
         return NARC_REST; /* one that is turned has the other bodies' row */
     return marks & NARC_SENSOR ? NARC_ASK_SENSOR : NARC_ASK;
 }
@@ -405,7 +402,7 @@ NOINLINE void do_more(const narc_contact_step *s, uint32_t slot, unsigned what) 
 }
 
 /* Marks of slots that are no plain pair of two bodies that may move. */
-enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_FLIPPED | NARC_GONE | NARC_WITH_GROUND };
+enum { SPECIAL = NARC_RESTS | NARC_SENSOR | NARC_GONE | NARC_WITH_GROUND };
 
 /* What of its flags a slot keeps. */
 static const uint8_t stays[] = {[NARC_REST] = 0xff & ~(NARC_SLOT_STALE | NARC_SENSOR),
@@ -437,7 +434,7 @@ INLINE void sort_slot(const narc_contact_step *s, const pair_view *v, size_t k, 
         return;
     unsigned what = NARC_ASK;
     if (marks & SPECIAL)
-        what = find_special(s, v, slot, changed | stale);
+        what = find_special(v, slot, changed | stale);
     const bool touches = v->state[k] & NARC_TOUCHING, reshaped = changed & NARC_RESHAPED;
     if (what == NARC_ASK) { /* one that touches is asked, which takes its row away */
         const unsigned follows = !stale & !reshaped & ((was & NARC_SLOT_KEPT) != 0);

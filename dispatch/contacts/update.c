@@ -178,14 +178,14 @@ static void count_worlds(const narc_contact_step *s) {
 
 /* Rows of pairs that have not moved are another answer if this is another. */
 static narc_asked describe_asking(const narc_step *step) {
-    return (narc_asked){step->margin,     step->second_margin,      step->flat_angle,       step->recycling,
-                        step->front_only, step->ahead.base != NULL, step->run.base != NULL, {0}};
+    return (narc_asked){step->margin,    step->second_margin, step->flat_angle,
+                        step->recycling, step->front_only,    step->run.base != NULL};
 }
 
 static bool are_asked_alike(const narc_asked *one, const narc_asked *other) {
     return one->margin == other->margin && one->second_margin == other->second_margin &&
            one->flat_angle == other->flat_angle && one->recycling == other->recycling &&
-           one->front_only == other->front_only && one->has_ahead == other->has_ahead && one->has_run == other->has_run;
+           one->front_only == other->front_only && one->has_run == other->has_run;
 }
 
 /* Checks what nothing else does before something is changed. */

@@ -77,6 +77,9 @@ static void check_with_fresh(struct few *few) {
     assert_int_equal(r->more_count, fresh->more_count);
     for (size_t k = 0; k < r->touching_count; k++)
         check_row(&r->manifolds[r->touching[k]], fresh->manifolds[fresh->touching[k]], r->touching[k]);
+    const narc_manifold *const more = r->more, *const fresh_more = fresh->more;
+    for (size_t k = 0; k < r->more_count; k++)
+        check_row(&more[k], fresh_more[k], more[k].pair);
     narc_destroy_contacts(few->contacts);
     few->contacts = kept;
 }
@@ -114,19 +117,25 @@ static size_t lay_entries(struct few *few, const narc_arc *arcs, size_t count, d
  * more: what was merged away is told. */
 TEST(ground_that_goes_leaves_what_it_was_merged_with) {
     const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
-    for (int way = 0; way < 10; way++) {
+    for (int way = 0; way < 20; way++) {
         AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 2, NULL);
         static uint32_t run[600];
         static uint64_t mask[600];
         const uint32_t small = store_shape(few->store, circle_of(0.01));
-        const size_t count = lay_entries(few, line, 2, 0.5, run), gone = 1 + (size_t)way / 5;
+        const size_t wall = lay_entries(few, line, 2, 0.5, run) + 1, gone = 1 + (size_t)way / 5 % 2;
         memset(mask, 0xff, sizeof mask);
         few->step.run = NARC_ARRAY(run);
         few->filter.mask = NARC_ARRAY(mask);
         few->step.skin = 0.05f;
+        few->step.recycling = way < 10 ? 0 : 0.01f;
         few->body[0] = (narc_body){(few->body[1].x + few->body[2].x) / 2, 0.5, 1, 0, 1, 0};
+        few->body[wall] = (narc_body){few->body[0].x + 0.5, 0.5, 0, 1, 1, few->body[1].shape};
+        few->id[wall] = wall + 1;
+        few->kind[wall] = NARC_STATIC;
+        run[wall] = run[1] + 1;
+        few->bodies.count++;
         check_with_fresh(few);
-        assert_int_equal(step_few(few)->touching_count, 1);
+        assert_int_equal(step_few(few)->touching_count, 2);
         switch (way % 5) {
         case 0:
             mask[gone] = 0;
@@ -139,8 +148,9 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
             run[gone] = NARC_NO_RUN;
             break;
         case 3: /* and the last one takes its place */
-            few->body[gone] = few->body[count];
-            few->id[gone] = count + 1;
+            few->body[gone] = few->body[wall];
+            few->id[gone] = wall + 1;
+            run[gone] = run[wall];
             few->bodies.count--;
             break;
         default:
@@ -148,31 +158,86 @@ TEST(ground_that_goes_leaves_what_it_was_merged_with) {
             break;
         }
         check_with_fresh(few);
-        assert_int_equal(step_few(few)->touching_count, 1);
+        assert_int_equal(step_few(few)->touching_count, 2);
     }
 }
 
-/* A box touches a bowl in two places, is a sensor for a while, and then the bowl is a circle. */
+/* A body, which was not turned, after a turn about a place. */
+static narc_body turn_about(narc_body body, double x, double y, double angle) {
+    const double c = cos(angle), s = sin(angle), way_x = body.x - x, way_y = body.y - y;
+    return (narc_body){x + c * way_x - s * way_y, y + s * way_x + c * way_y, (float)c, (float)s, 1, body.shape};
+}
+
+/* A box touches a bowl in two places, turns about the first one, is a sensor for a while, and then the bowl is a circle; another
+ * one, in a bowl that stands before it, rests. */
 TEST(second_rows_go_with_their_ground) {
-    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 0.2, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 0.2, 0), 4, NULL);
     const narc_arc bowl = {0, 0, -1, PI / 2 + 0.65, PI / 2 - 0.65};
     static uint32_t run[600];
     const uint32_t circle = store_shape(few->store, circle_of(1));
-    const size_t count = lay_entries(few, &bowl, 1, 0, run);
+    const narc_body box = {-0.026, -0.76, 1, 0, 1, 0}; /* the second place is nearly a margin away */
+    assert_int_equal(lay_entries(few, &bowl, 1, 0, run), 1);
     few->step.run = NARC_ARRAY(run);
-    few->body[0] = (narc_body){0, -0.77, 1, 0, 1, 0};
+    few->bodies.count = 4;
+    few->body[0] = few->body[3] = box;
+    few->body[2] = few->body[1];
+    few->body[2].x = few->body[3].x = 10;
+    run[2] = run[1];
+    run[3] = NARC_NO_RUN;
+    few->step.recycling = 0.01f;
+    const narc_step_result *r = step_few(few);
+    const narc_manifold_point at = r->manifolds[r->order[0]].point[0];
+    for (int k = 0; k < 2; k++) { /* the first place may follow */
+        few->body[0] = turn_about(box, box.x + (double)at.x, box.y + (double)at.y, k ? 0.003 : 0.001);
+        r = step_few(few);
+        assert_int_equal(r->state[r->order[0]] & (NARC_ASKED | NARC_FOLLOWED), k ? NARC_ASKED : NARC_FOLLOWED);
+    }
+    few->body[0] = box;
+    few->step.recycling = 0;
     check_with_fresh(few);
-    assert_true(step_few(few)->more_count > 0);
+    few->body[3].x += 1e-3;
+    assert_int_equal(step_few(few)->more_count, 2);
     few->kind[0] = NARC_SENSOR;
-    assert_int_equal(step_few(few)->more_count, 0);
+    assert_int_equal(step_few(few)->more_count, 1);
     few->kind[0] = 0;
     check_with_fresh(few);
-    for (size_t k = 1; k <= count; k++) {
-        few->body[k].shape = circle;
-        run[k] = NARC_NO_RUN;
-    }
+    few->body[1].shape = circle;
     check_with_fresh(few);
-    assert_int_equal(step_few(few)->more_count, 0);
+    assert_int_equal(step_few(few)->more_count, 1);
+}
+
+/* A ball where two arcs meet: what both tell is one row where runs are given, whatever was before. */
+TEST(runs_are_given_or_not) {
+    AUTO(destroy_few_at) struct few *const few = make_few(circle_of(0.5), 2, NULL);
+    const narc_arc bowl[] = {{0, 0, -1, PI / 2 + 0.65, PI / 2}, {0, 0, -1, PI / 2, PI / 2 - 0.65}};
+    const uint32_t run = 0;
+    const float reach = 0;
+    static uint32_t runs[600];
+    lay_entries(few, bowl, 2, 0.5, runs);
+    few->body[0] = (narc_body){0, -0.5, 1, 0, 1, 0};
+    few->step.reach = (narc_float_column){&reach, 0};
+    for (size_t k = 0; k < 4; k++) {
+        few->step.run = k % 2 ? (narc_index_column){NULL, 0} : (narc_index_column){&run, 0};
+        assert_int_equal(step_few(few)->touching_count, 1 + k % 2);
+    }
+}
+
+/* Ground stands before a body that turns about it: the body's middle, far from its place, goes further than the ground reaches. */
+TEST(ground_may_come_first) {
+    const narc_arc bowl = {0, 10, -10, PI / 2 + 0.05, PI / 2 - 0.05};
+    struct shape circle = circle_of(5);
+    circle.arcs[0].center_y = 4.98;
+    AUTO(destroy_few_at) struct few *const few = make_few(circle, 2, NULL);
+    static uint32_t run[600];
+    assert_int_equal(lay_entries(few, &bowl, 1, 0, run), 1);
+    const narc_body ground = few->body[1], ball = {0.4, 0, 1, 0, 1, 0};
+    few->body[0] = ground;
+    for (int k = 0; k < 4; k++) { /* beside the arc, and over it */
+        few->body[1] = turn_about(ball, ground.x, ground.y, k < 3 ? 1e-6 * k : 0.06);
+        const narc_step_result *const r = step_few(few);
+        assert_int_equal(r->touching_count, k == 3);
+        assert_int_equal(r->asked_count, k != 2);
+    }
 }
 
 /* What was kept of a row goes with it, whatever recycling is meanwhile. */
@@ -191,13 +256,14 @@ TEST(kept_rows_are_those_of_now) {
 
 /* Rows that might follow do not where another question is asked, nor where ground comes that was not asked. */
 TEST(rows_that_follow_are_answers) {
-    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 2, NULL);
+    AUTO(destroy_few_at) struct few *const few = make_few(box_of(1, 1, 0), 100, NULL);
     const narc_arc line[] = {{2, 0, 0, PI / 2, PI / 2}, {-2, 0, 0, PI / 2, PI / 2}};
     static uint32_t run[600];
     static uint64_t mask[600];
     few->step.recycling = 0.01f;
     for (size_t k = 0; k < 8; k++) {
         few->body[1].x += k < 4 ? 1e-5 : 0;
+        few->body[2].x += k < 6 ? 0 : 3; /* so that there is another list */
         few->step.second_margin = k < 4 ? 0 : 0.03f;
         few->step.flat_angle = k < 5 ? 0 : 0.1f;
         few->step.front_only = k > 5;
@@ -222,6 +288,12 @@ TEST(rows_that_follow_are_answers) {
         mask[wall] = k < 4 ? 0 : UINT64_MAX;
         assert_int_equal(step_few(few)->touching_count, k < 4 ? 1 : 2);
     }
+    few->kind[0] = NARC_SENSOR;
+    for (uint32_t k = 0; k < 4; k++) { /* its middle lies behind the line */
+        few->body[0].y = few->body[1].y - 0.1 - 1e-3 * k;
+        few->step.front_only = k % 2;
+        assert_int_equal(step_few(few)->sensor_count, !(k % 2));
+    }
 }
 
 /* A box turns about the first point of its contact: that stays, and the second one does not. */
@@ -233,16 +305,11 @@ TEST(a_turn_is_a_way) {
     const narc_manifold row = step_few(few)->manifolds[0];
     assert_int_equal(row.count, 2);
     for (int sign = -1; sign <= 1; sign += 2) {
-        const double angle = 0.015 * sign, x = (double)row.point[0].x, y = (double)row.point[0].y;
-        few->body[1] = (narc_body){x + cos(angle) * -x - sin(angle) * (0.995 - y),
-                                   y + sin(angle) * -x + cos(angle) * (0.995 - y),
-                                   (float)cos(angle),
-                                   (float)sin(angle),
-                                   1,
-                                   0};
+        const narc_body was = few->body[1];
+        few->body[1] = turn_about(was, (double)row.point[0].x, (double)row.point[0].y, 0.015 * sign);
         const narc_step_result *const r = step_few(few);
         assert_int_equal(r->state[0] & (NARC_ASKED | NARC_FOLLOWED), NARC_ASKED);
-        few->body[1] = (narc_body){0, 0.995, 1, 0, 1, 0};
+        few->body[1] = was;
         step_few(few);
     }
 }
