@@ -192,11 +192,11 @@ INLINE uint32_t find_slots(const struct walk *w, struct axis_lanes x, struct axi
         const vf near_y = v_mul(v_sub(v_load_8(planes + w->y.first + k), y.first_start), y.inverse);
         const vf far_x = v_mul(v_sub(v_load_8(planes + w->x.last + k), x.last_start), x.far_inverse);
         const vf far_y = v_mul(v_sub(v_load_8(planes + w->y.last + k), y.last_start), y.far_inverse);
-        const vf near = v_max(v_max(near_x, near_y), v_set(0));
+        const vf near = v_max(near_x, near_y), far = v_min(far_x, far_y);
         v_store(out_near + k, near);
-        slots |= vm_bits(v_le(near, v_min(v_min(far_x, far_y), limit))) << k;
+        slots |= vm_bits(vm_and(vm_and(v_le(v_set(0), far), v_le(near, limit)), v_le(near, far))) << k;
     }
-    return slots & ((1u << NARC_NODE_SLOTS) - 1);
+    return slots;
 }
 
 /* Casts a ray at the body in a leaf's slot. Is it done? */

@@ -265,19 +265,16 @@ NOINLINE bool find_way_out(const struct thing *thing, uint32_t part, struct way_
     *out = (struct way_out){.distance = INFINITY, .body = UINT32_MAX};
     if (load_body_frame(thing->shapes, thing->bodies, part, &frame)) /* often its feet lie outside */
         look_at_feet(thing, &frame, part, out);
-    for (int crossings = 0; crossings < 2; crossings++) { /* all feet first, which bring the limit nearer */
-        if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point, find_reach_key(out)))
-            break;
-        while (find_next_near(&walk, &body)) {
-            if (find_owner(thing->chosen, body) != thing->owner || !is_chosen(thing->chosen, body) ||
-                !load_body_frame(thing->shapes, thing->bodies, body, &frame) || narc_is_piece(frame.header))
-                continue;
-            if (crossings)
-                look_at_crossings(thing, &frame, body, out);
-            else if (body != part)
-                look_at_feet(thing, &frame, body, out);
-            walk.limit_key = find_reach_key(out);
-        }
+    if (!begin_near_walk(&walk, thing->index, thing->chosen, thing->point, find_reach_key(out)))
+        return out->distance < INFINITY;
+    while (find_next_near(&walk, &body)) {
+        if (find_owner(thing->chosen, body) != thing->owner || !is_chosen(thing->chosen, body) ||
+            !load_body_frame(thing->shapes, thing->bodies, body, &frame) || narc_is_piece(frame.header))
+            continue;
+        if (body != part)
+            look_at_feet(thing, &frame, body, out);
+        look_at_crossings(thing, &frame, body, out);
+        walk.limit_key = find_reach_key(out);
     }
     return out->distance < INFINITY;
 }
