@@ -173,34 +173,30 @@ INLINE void look_at_feet(const struct thing *thing, const struct body_frame *fra
 
 /* The places, two at most, where the lines or circles of two curves cross; how many. */
 INLINE int cross_curves(const struct curve *a, const struct curve *b, place out[2]) {
-    const place way = {b->center.x - a->center.x, b->center.y - a->center.y};
-    if (!(a->radius < INFINITY) && !(b->radius < INFINITY)) {
+    const struct curve *const circle = a->radius < INFINITY ? a : b, *const other = circle == a ? b : a;
+    if (!(circle->radius < INFINITY)) {
+        const place way = {b->center.x - a->center.x, b->center.y - a->center.y};
         const double sine = find_cross(a->end, b->end), along = find_cross(way, b->end) / sine;
         out[0] = (place){a->center.x + along * a->end.x, a->center.y + along * a->end.y};
         return fabs(sine) > END_ROOM_OF_CURVES;
     }
-    const struct curve *const circle = a->radius < INFINITY ? a : b;
-    place foot = way, across; /* of the centre on the line that both meet, from the centre */
-    if (a->radius < INFINITY && b->radius < INFINITY) {
-        const double square = find_dot(way, way),
-                     part = (square + a->radius * a->radius - b->radius * b->radius) / (2 * square),
-                     length = sqrt(square);
-        foot = (place){part * way.x, part * way.y};
-        across = (place){-way.y / length, way.x / length};
-    } else {
-        const struct curve *const edge = circle == a ? b : a;
-        const place from = {edge->center.x - circle->center.x, edge->center.y - circle->center.y};
-        const double height = find_dot(from, edge->start);
-        foot = (place){height * edge->start.x, height * edge->start.y};
-        across = edge->end;
-    }
-    const double rest = circle->radius * circle->radius - find_dot(foot, foot);
-    const double half = sqrt(find_most(rest, 0));
+    const place way = {other->center.x - circle->center.x, other->center.y - circle->center.y};
+    const double square = find_dot(way, way), radii = circle->radius * circle->radius;
+    const bool both = other->radius < INFINITY;
+    const double part =
+        both ? (square + radii - other->radius * other->radius) / (2 * square) : find_dot(way, other->start);
+    const place to = both ? way : other->start,
+                foot = {part * to.x, part * to.y}; /* of the centre on the line of both */
+    const double rest = radii - find_dot(foot, foot);
+    if (!(rest > -END_ROOM_OF_CURVES * circle->radius * circle->radius)) /* or it is NaN */
+        return 0;
+    const double half = sqrt(find_most(rest, 0)), length = sqrt(square);
+    const place across = both ? (place){-way.y / length, way.x / length} : other->end;
     for (int side = 0; side < 2; side++) {
         const double by = side ? half : -half;
         out[side] = (place){circle->center.x + foot.x + by * across.x, circle->center.y + foot.y + by * across.y};
     }
-    return rest > -END_ROOM_OF_CURVES * circle->radius * circle->radius ? 2 : 0; /* not NaN */
+    return 2;
 }
 
 /* Out of both curves where they cross: between their normals. */
