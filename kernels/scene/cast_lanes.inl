@@ -59,7 +59,8 @@ INLINE dvec2 find_rotation(const float *cosine, const float *sine) {
 struct touch {
     vi feature; /* 0 in lanes that have none */
     vm known;   /* which have an answer */
-    float separation[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], radius_a[V_WIDTH], radius_b[V_WIDTH];
+    float separation[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], point_x[V_WIDTH], point_y[V_WIDTH];
+    float radius_a[V_WIDTH], radius_b[V_WIDTH];
 };
 
 INLINE struct touch load_contacts(const narc_contact *contacts, vm live) {
@@ -75,6 +76,8 @@ INLINE struct touch load_contacts(const narc_contact *contacts, vm live) {
         touch.separation[0] = contacts->separation;
         touch.normal_x[0] = contacts->normal_x;
         touch.normal_y[0] = contacts->normal_y;
+        touch.point_x[0] = contacts->point_x;
+        touch.point_y[0] = contacts->point_y;
         touch.radius_a[0] = contacts->radius_a;
         touch.radius_b[0] = contacts->radius_b;
         return touch;
@@ -88,6 +91,8 @@ INLINE struct touch load_contacts(const narc_contact *contacts, vm live) {
     v_store(touch.separation, row[1]);
     v_store(touch.normal_x, row[2]);
     v_store(touch.normal_y, row[3]);
+    v_store(touch.point_x, row[4]);
+    v_store(touch.point_y, row[5]);
     v_store(touch.radius_a, row[6]);
     v_store(touch.radius_b, row[7]);
     return touch;

@@ -4,9 +4,9 @@
  *
  * With d the way from A's position to B's, w its change in a whole step, n the contact normal and f the separation:
  *
- * f(t) is at least the gap g(t) along any axis, and the axis that n is now, at rest or turning with a body, is followed
- * to a time before which g cannot be at the target. While the arcs that hold the axis stay the same, with centres p
- * relative to their bodies and the axis turning at the rate w_n,
+ * f(t) is at least the gap g(t) along any axis, and the axis that n is now, at rest or turning with a body or with the
+ * line of two arcs' centres, is followed to a time before which g cannot be at the target. While the arcs that hold it stay
+ * the same, with centres p relative to their bodies and the axis turning at the rate w_n,
  *     g' = n.w + w_n n x d + (w_b - w_n) p_b x n - (w_a - w_n) p_a x n,    g'' >= -M,
  *     M  = w_n^2 |d| + 2 |w_n| |w| + (w_b - w_n)^2 max(p_b.n, 0) + (w_a - w_n)^2 max(-p_a.n, 0).
  * So steps lead to the first root of a quadratic, and from there again: g and g' after a time s are at least what their
@@ -217,6 +217,25 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     put_step(out, h, outcome, d_select(d_lt(d_set(NARC_CAST_UNFINISHED), outcome), safe, time), rounds);
 }
 
+/* The line of the centres of two arcs counts as at rest where it turns faster: then its series says little. */
+#define MOST_RATE 0x1p5
+
+/* How fast that line turns: what its ends move across it, by its length. Along n both outlines are half a separation from
+ * the point of the contact, and the centres their radii from there. */
+INLINE vd find_rate(const narc_casts *casts, const struct touch *touch, size_t k, int h) {
+    const size_t slot = k + (size_t)h;
+    const dvec2 n = get_dvec2(touch->normal_x + h, touch->normal_y + h),
+                motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)},
+                position = get_dvec2(casts->x_now + slot, casts->y_now + slot);
+    const vd half = d_set(0.5) * d_of_floats(touch->separation + h),
+             middle = find_dot(n, get_dvec2(touch->point_x + h, touch->point_y + h)),
+             a = middle - half - d_of_floats(touch->radius_a + h), b = middle + half + d_of_floats(touch->radius_b + h),
+             length = b - a;
+    const vd across = find_cross(n, motion) - d_of_floats(casts->side[0].angle + slot) * a +
+                      d_of_floats(casts->side[1].angle + slot) * (b - find_dot(n, position));
+    return d_select(d_lt(d_abs(across), d_set(MOST_RATE) * length), across / length, d_set(0));
+}
+
 INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
                           vm live, struct step *out) {
     const vf angle_a = v_load(casts->side[0].angle + k), angle_b = v_load(casts->side[1].angle + k), zero = v_set(0);
@@ -227,7 +246,14 @@ INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, co
     const vf of_edges = v_select(vm_and(axes.met[0].part.on_edge, v_lt(zero, v_abs(angle_a))), angle_a, of_b);
     const vm planes =
         vm_or(is_plane(vi_bits(v_load(casts->side[0].info + k))), is_plane(vi_bits(v_load(casts->side[1].info + k))));
-    const vf rate = v_select(planes, zero, of_edges); /* of a half-plane no other axis says anything */
+    vf rate = v_select(planes, zero, of_edges); /* of a half-plane no other axis says anything */
+    const vf radii = v_add(v_load(touch->radius_a), v_load(touch->radius_b)); /* infinite on an edge */
+    const vm round = vm_and(v_lt(v_abs(v_load(touch->separation)), radii), v_lt(radii, v_set(INFINITY)));
+    if (vm_any(vm_and(live, round))) {
+        for (int h = 0; h < V_WIDTH; h += D_WIDTH)
+            d_put_floats(axes.rate + h, find_rate(casts, touch, k, h));
+        rate = v_select(round, v_load(axes.rate), rate);
+    }
     v_store(axes.rate, rate);
     for (int side = 0; side < 2; side++)
         find_held(shapes, casts, touch, k, side, live, v_sub(rate, side == 0 ? angle_a : angle_b), &axes.met[side]);

@@ -693,6 +693,47 @@ TEST(test_circles_that_turn) {
     assert_true(test_trials(60) < 10 || (hits > 0 && beside > 0));
 }
 
+/* The series that is followed where bodies turn: circles and boxes on long arms pass by each other across the way between
+ * them, and are at one time as near as the target, or by less than their size nearer. A step past that misses it. */
+TEST(test_series_of_turning_gaps) {
+    enum { PAIRS = 64 };
+    struct test_random random = test_random_named("series of turning gaps");
+    struct summary summary = {.at_start = 0};
+    for (size_t k = 0; k < test_trials(40); k++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
+        for (size_t side = 0; side < 2; side++) {
+            struct shape shape = k & (side + 1) ? box_of(1, 0.5, 0) : circle_of(random_log_between(&random, 0.3, 3));
+            for (size_t arc = 0, arm = random_below(&random, 4); arc < shape.count; arc++)
+                shape.arcs[arc].center_x += (double)arm;
+            scene_add_shape(&scene, &shape);
+        }
+        AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
+        for (size_t pair = 0; pair < PAIRS; pair++) {
+            struct body a = turned_body(random_between(&random, -4, 4), 1),
+                        b = turned_body(random_between(&random, -4, 4), 1);
+            const double time = random_between(&random, 0.05, 1), way = random_between(&random, -4, 4),
+                         to = random_between(&random, -4, 4);
+            b.shape = 1;
+            scene_add_two(&m.scene, a, b);
+            m.motion[2 * pair].angle = (float)random_between(&random, -8, 8);
+            m.motion[2 * pair + 1] =
+                (narc_motion){(float)(-way * sin(to)), (float)(way * cos(to)), (float)random_between(&random, -8, 8)};
+            struct way w = find_way(&m, pair);
+            go_to(&w, time);
+            w.b.x = w.b.y = 0;
+            const double apart =
+                -reference_gap_along(&w.a, &w.b, cos(to), sin(to)) - random_log_between(&random, 1e-5, 0.1);
+            m.scene.bodies[2 * pair + 1].x = apart * cos(to) - time * w.motion_x;
+            m.scene.bodies[2 * pair + 1].y = apart * sin(to) - time * w.motion_y;
+        }
+        AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
+        for (size_t pair = 0; pair < PAIRS; pair++)
+            check_row(&m, pair, &rows[pair], &summary);
+    }
+    print_summary("series of turning gaps", &summary);
+    assert_true(summary.outcomes[NARC_CAST_HIT] > summary.at_start && summary.outcomes[NARC_CAST_UNFINISHED] == 0);
+}
+
 /* Rows do not depend on who numbers bodies: in rows of floats and of doubles, as pairs' own bodies, and as two sets, with
  * shifts and without. */
 TEST(test_sets_of_bodies) {
