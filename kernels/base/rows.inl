@@ -147,20 +147,22 @@ enum {
 };
 _Static_assert(sizeof(narc_manifold) == 64 && RADII == 16 && FIRST_POINT == 32, "four writes of four words");
 
-/* What a manifold says of its points. */
-struct manifold_points {
-    vi count;
-    vf radius_a, radius_b, first[4], second[4];
-};
-
-INLINE void write_manifolds(char *const *place, vi numbers, const struct answer *answer,
-                            const struct manifold_points *points) {
-    const vf head[4] = {v_of_bits(numbers), v_of_bits(points->count), answer->normal.x, answer->normal.y};
-    const vf radii[4] = {points->radius_a, points->radius_b, v_of_bits(answer->reach_a), v_of_bits(answer->reach_b)};
+/* What manifolds say beside their points. */
+INLINE void write_heads(char *const *place, vi numbers, const struct answer *answer, vi count, vf radius_a,
+                        vf radius_b) {
+    const vf head[4] = {v_of_bits(numbers), v_of_bits(count), answer->normal.x, answer->normal.y};
+    const vf radii[4] = {radius_a, radius_b, v_of_bits(answer->reach_a), v_of_bits(answer->reach_b)};
     v_put_rows(place, 0, head);
     v_put_rows(place, RADII, radii);
-    v_put_rows(place, FIRST_POINT, points->first);
-    v_put_rows(place, SECOND_POINT, points->second);
+}
+
+/* Manifolds of one point. */
+INLINE void write_only_points(char *const *place, vi numbers, const struct answer *answer) {
+    const vf zero = v_set(0), none[4] = {zero, zero, zero, zero};
+    const vf point[4] = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)};
+    write_heads(place, numbers, answer, vi_set(1), answer->radius_a, answer->radius_b);
+    v_put_rows(place, FIRST_POINT, point);
+    v_put_rows(place, SECOND_POINT, none);
 }
 
 INLINE void write_separations(char *const *place, vf separations) {
@@ -174,20 +176,12 @@ INLINE void write_separations(char *const *place, vf separations) {
  * pass vectors in memory. */
 INLINE void write_rows(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
     const enum row_kind kind = call->question->kind;
-    if (kind == CONTACT_ROWS) {
+    if (kind == CONTACT_ROWS)
         write_contacts(place, numbers, answer);
-    } else if (kind == MANIFOLD_ROWS) {
-        const vf zero = v_set(0);
-        const struct manifold_points only = {
-            .count = vi_set(1),
-            .radius_a = answer->radius_a,
-            .radius_b = answer->radius_b,
-            .first = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)},
-            .second = {zero, zero, zero, zero}};
-        write_manifolds(place, numbers, answer, &only);
-    } else {
+    else if (kind == MANIFOLD_ROWS)
+        write_only_points(place, numbers, answer);
+    else
         write_separations(place, answer->separation);
-    }
 }
 
 /* Lists the rows of pairs in the lanes `keep` behind those that are listed, where there is room for all lanes: packed, so

@@ -73,7 +73,13 @@ INLINE vi find_first_arc(vi first_record, vi info) {
     return vi_add(first_record, vi_shift_right(vi_add(get_arc_count(info), vi_set(NARC_RECORD_ANGLES - 1)), 4));
 }
 
-/* A record in each lane: eight fields. */
+/* A record in each lane: the four fields that say where and how large its circle is; or all eight. */
+INLINE void load_circle(const narc_record *records, vi record, vf field[4]) {
+    int32_t index[V_WIDTH];
+    vi_store(index, record);
+    v_rows(records, sizeof *records, index, field);
+}
+
 INLINE void load_records(const narc_record *records, vi record, vf field[8]) {
     int32_t index[V_WIDTH];
     vi_store(index, record);

@@ -40,22 +40,18 @@ struct box_touch {
     vf across, min, max; /* as of a feature */
 };
 
-/* Outwards along n: B is touched on its side -n. */
-INLINE vf turn_radius(vf radius, bool is_b) { return is_b ? v_neg(radius) : radius; }
-
 INLINE void find_touch(const struct box_side *side, vec2 n, const struct side_arcs *arcs, bool is_b,
                        struct box_touch *out) {
-    const vec2 low = v2_add(side->low, v2_scale(n, turn_radius(arcs->radius_low, is_b))),
-               high = v2_add(side->high, v2_scale(n, turn_radius(arcs->radius_high, is_b)));
+    end_pair across;
+    const end_pair along = find_along(side->low, side->high, arcs->radius_low, arcs->radius_high, n, n, is_b, &across);
     const vm at_low = is_b ? side->behind : vm_not(side->behind);
-    const vf along_low = v2_cross(n, low), along_high = v2_cross(n, high);
     out->arcs = arcs;
     out->sine = v2_cross(side->normal, n);
     out->cosine = v2_dot(side->normal, n);
     out->parallel = v_le(v_abs(out->sine), v_set(PARALLEL));
-    out->across = v_select(at_low, v2_dot(n, low), v2_dot(n, high));
-    out->min = v_select(vm_or(at_low, out->parallel), along_low, along_high);
-    out->max = v_select(vm_and_not(at_low, out->parallel), along_low, along_high);
+    out->across = v_select(at_low, get_low(across), get_high(across));
+    out->min = v_select(vm_or(at_low, out->parallel), get_low(along), get_high(along));
+    out->max = v_select(vm_and_not(at_low, out->parallel), get_low(along), get_high(along));
 }
 
 /* The caller's number of corner i, or of the edge before it. Of a capsule the arc at -x, its corners 1 and 2, is stored
@@ -101,39 +97,25 @@ INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *to
     return pack_halves(vi_truncate(v_select(side->behind, near, far)), vi_truncate(v_select(side->behind, far, near)));
 }
 
-/* Places of a side's edge, seen along n. */
-INLINE void place_box_edge(struct edge *edge, const struct box_side *side, const struct side_arcs *arcs, vec2 n,
-                           bool is_b) {
-    const vec2 low = v2_add(side->low, v2_scale(side->normal, turn_radius(arcs->radius_low, is_b))),
-               high = v2_add(side->high, v2_scale(side->normal, turn_radius(arcs->radius_high, is_b)));
-    edge->low = (struct edge_end){v2_cross(n, low), v2_dot(n, low), arcs->radius_low};
-    edge->high = (struct edge_end){v2_cross(n, high), v2_dot(n, high), arcs->radius_high};
-}
-
-/* The edge of a side as find_manifold_points() takes it. That of a capsule may lie along n, and then not look like an edge
+/* The edge of a side as write_sides() takes it. That of a capsule may lie along n, and then not look like an edge
  * from there: the one on the other side is asked. */
 INLINE struct edge find_box_edge(const struct box_side *side, const struct box_touch *touch, vec2 n, vf flat_sine,
                                  bool capsules, bool is_b) {
-    struct edge edge = {.is_edge = vm_front(V_WIDTH),
-                        .offered = v_le(v_abs(touch->sine), flat_sine),
+    const struct side_arcs *const arcs = touch->arcs;
+    struct edge edge = {.offered = v_le(v_abs(touch->sine), flat_sine),
                         .parallel = touch->parallel,
-                        .before = touch->arcs->before,
-                        .after = touch->arcs->behind,
-                        .arc_radius = touch->arcs->radius};
-    place_box_edge(&edge, side, touch->arcs, n, is_b);
-    if (capsules) {
-        edge.is_edge = v_lt(edge.low.along, edge.high.along);
-        edge.offered = vm_and(edge.offered, edge.is_edge);
-        const vm again = vm_not(edge.is_edge);
-        if (vm_any(again)) {
-            const vec2 back = {v_neg(side->normal.x), v_neg(side->normal.y)};
-            const struct box_side turned = {.normal = back, .low = side->high, .high = side->low};
-            struct edge other;
-            place_box_edge(&other, &turned, touch->arcs, n, is_b);
-            edge.low = select_edge_end(again, &other.low, &edge.low);
-            edge.high = select_edge_end(again, &other.high, &edge.high);
-            edge.is_edge = v_lt(edge.low.along, edge.high.along);
-        }
+                        .before = arcs->before,
+                        .after = arcs->behind,
+                        .arc_radius = arcs->radius};
+    place_edge(&edge, side->low, side->high, arcs->radius_low, arcs->radius_high, side->normal, n, is_b);
+    if (!capsules)
+        edge.is_edge = vm_front(V_WIDTH);
+    edge.offered = vm_and(edge.offered, edge.is_edge);
+    if (capsules && vm_any(vm_not(edge.is_edge))) {
+        const vec2 back = {v_neg(side->normal.x), v_neg(side->normal.y)};
+        struct edge other;
+        place_edge(&other, side->high, side->low, arcs->radius_low, arcs->radius_high, back, n, is_b);
+        take_places(&edge, &other);
     }
     return edge;
 }

@@ -109,10 +109,8 @@ INLINE void find_arc_runs(const narc_record *records, vi first_record, vi count,
 
 /* centre.m + radius of an arc, with its room for rounding. */
 INLINE vf find_arc_support(const narc_record *records, vi record, vec2 m) {
-    int32_t index[V_WIDTH];
     vf arc[4];
-    vi_store(index, record);
-    v_rows(records, sizeof *records, index, arc);
+    load_circle(records, record, arc);
     const vf size = v_add(v_add(v_abs(arc[0]), v_abs(arc[1])), arc[2]);
     const vf height = v_add(v_add(v_mul(arc[0], m.x), v_mul(arc[1], m.y)), arc[2]);
     return v_add(height, v_mul(size, v_set(HEIGHT_ROOM)));

@@ -126,10 +126,8 @@ INLINE vm write_on_edges(const struct call *call, const struct edge_contact *e, 
         const vf extent = v_add(v_add(x, y), e->form[2]),
                  room = v_mul(v_set(0x1p-17f), extent); /* of its inner circle */
         const vf inner = v_mul(v_sub(v_add(v_min(x, y), e->form[2]), room), v_select(is_a, scale_b, scale_a));
-        int32_t index[V_WIDTH];
         vf solid[4];
-        vi_store(index, vi_select(which, e->solid, vi_set(0)));
-        v_rows(call->batch->shapes->records, sizeof(narc_record), index, solid);
+        load_circle(call->batch->shapes->records, vi_select(which, e->solid, vi_set(0)), solid);
         const vm shallow =
             is_shallow(v_add(inner, inner), v_mul(solid[0], v_select(is_a, scale_a, scale_b)), c.separation);
         told = vm_and_not(told, vm_and_not(deep, call->batch->query->front_only ? vm_front(0) : shallow));

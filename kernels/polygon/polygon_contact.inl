@@ -54,10 +54,8 @@ INLINE struct polygon_touch find_polygon_touch(const narc_record *records, struc
     t.normal = v2_select(t.at_end, corner->end, corner->start);
     t.sine = v_select(t.at_end, end, start);
     t.next = step_record(ring, record, vi_select(t.at_end, vi_set(1), vi_set(-1)));
-    int32_t index[V_WIDTH];
     vf field[4];
-    vi_store(index, t.next);
-    v_rows(records, sizeof *records, index, field);
+    load_circle(records, t.next, field);
     t.other = place_corner((vec2){field[0], field[1]}, pose, is_b);
     return t;
 }
@@ -92,10 +90,8 @@ INLINE struct polygon_contact find_polygon_contact(const narc_record *records, c
                end = v2_select(of_a, corners.b.end, corners.a.end);
     /* The corner before the edge. */
     const vi previous = vi_select(of_a, step_record(ring_a, record_a, back), step_record(ring_b, record_b, back));
-    int32_t index[V_WIDTH];
     vf field[4];
-    vi_store(index, previous);
-    v_rows(records, sizeof *records, index, field);
+    load_circle(records, previous, field);
     const vec2 own = {field[0], field[1]},
                other = v2_select(of_a, place_corner(own, &pose, false), place_corner(own, &pose, true));
     /* Slopes of g before F and behind it, towards F where above 0. */

@@ -18,6 +18,7 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/ends.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/shape.inl"
@@ -25,18 +26,14 @@
 #include "kernels.h"
 #include "simd/simd.h"
 
-/* One end of an edge: its place along t and across it, and the radius of the arc next to it. */
-struct edge_end {
-    vf along, across, radius;
-};
-
 struct edge {
-    vm is_edge;                /* is it more than rounding? */
-    vm offered;                /* and its normal within the flat angle of n? */
-    vm parallel;               /* n is the edge's normal */
-    struct edge_end low, high; /* in the order of t */
-    vi before, after;          /* the numbers of the arcs at its start and at its counter-clockwise end */
-    vf arc_radius;             /* of the touching arc */
+    vm is_edge;             /* is it more than rounding? */
+    vm offered;             /* and its normal within the flat angle of n? */
+    vm parallel;            /* n is the edge's normal */
+    end_pair along, across; /* in the order of t */
+    end_pair radius;        /* of the arcs there */
+    vi before, after;       /* the numbers of the arcs at its start and at its counter-clockwise end */
+    vf arc_radius;          /* of the touching arc */
 };
 
 /* Two bodies that touch along n with the arcs of these numbers, next to these edges. */
@@ -48,20 +45,40 @@ struct sides {
     vm named; /* has an edge that touches its say in the id of an only point? */
 };
 
-INLINE struct edge_end find_edge_end(const struct arcs *arc, vec2 junction, vec2 n, bool is_b) {
-    const vec2 point = find_point(arc, junction, is_b);
-    return (struct edge_end){v2_cross(n, point), v2_dot(n, point), arc->radius};
+/* Outwards along n: B is touched on its side -n. */
+INLINE vf turn_radius(vf radius, bool is_b) { return is_b ? v_neg(radius) : radius; }
+
+/* The points of two arcs with a normal, seen along n: their places along t, and across it. */
+INLINE end_pair find_along(vec2 low, vec2 high, vf radius_low, vf radius_high, vec2 normal, vec2 n, bool is_b,
+                           end_pair *out_across) {
+    const end_pair radius = join_ends(turn_radius(radius_low, is_b), turn_radius(radius_high, is_b));
+    const end_pair n_x = both_ends(n.x), n_y = both_ends(n.y);
+    const end_pair x = add_ends(join_ends(low.x, high.x), mul_ends(both_ends(normal.x), radius)),
+                   y = add_ends(join_ends(low.y, high.y), mul_ends(both_ends(normal.y), radius));
+    *out_across = add_ends(mul_ends(n_x, x), mul_ends(n_y, y));
+    return sub_ends(mul_ends(n_x, y), mul_ends(n_y, x));
 }
 
-INLINE struct edge_end select_edge_end(vm m, const struct edge_end *a, const struct edge_end *b) {
-    return (struct edge_end){v_select(m, a->along, b->along), v_select(m, a->across, b->across),
-                             v_select(m, a->radius, b->radius)};
+/* Where an edge with this normal lies, from the centre of one arc to that of another. */
+INLINE void place_edge(struct edge *edge, vec2 low, vec2 high, vf radius_low, vf radius_high, vec2 normal, vec2 n,
+                       bool is_b) {
+    edge->along = find_along(low, high, radius_low, radius_high, normal, n, is_b, &edge->across);
+    edge->radius = join_ends(radius_low, radius_high);
+    edge->is_edge = v_lt(get_low(edge->along), get_high(edge->along));
+}
+
+/* Takes the places of another edge where this is none. */
+INLINE void take_places(struct edge *edge, const struct edge *other) {
+    const mask_pair keeps = join_masks(edge->is_edge, edge->is_edge);
+    edge->along = select_ends(keeps, edge->along, other->along);
+    edge->across = select_ends(keeps, edge->across, other->across);
+    edge->radius = select_ends(keeps, edge->radius, other->radius);
+    edge->is_edge = vm_or(edge->is_edge, other->is_edge);
 }
 
 /* An arc in its shape's own frame, and placed. */
 struct own_arc {
     vec2 center, start, end;
-    vf radius;
     struct arcs placed;
 };
 
@@ -71,20 +88,7 @@ INLINE struct own_arc load_own_arc(const narc_record *records, vi record, const 
     return (struct own_arc){{field[0], field[1]},
                             {field[4], field[5]},
                             {field[6], field[7]},
-                            field[2],
                             is_b ? place_b(field, pose) : place_a(field, pose)};
-}
-
-/* The same without normals. */
-INLINE struct own_arc load_own_circle(const narc_record *records, vi record, const struct pose *pose, bool is_b) {
-    int32_t index[V_WIDTH];
-    vf field[4];
-    vi_store(index, record);
-    v_rows(records, sizeof *records, index, field);
-    struct own_arc arc = {.center = {field[0], field[1]}, .radius = field[2]};
-    arc.placed.center = is_b ? place_center_b(arc.center, pose) : v2_scale(arc.center, pose->scale_a);
-    arc.placed.radius = v_mul(field[2], is_b ? pose->scale_b : pose->scale_a);
-    return arc;
 }
 
 /* Is there an edge at the junction of two arcs, and not only rounding, or arcs that were given a little apart? */
@@ -101,16 +105,15 @@ INLINE vm is_flat(vec2 junction, vec2 n, vf flat_sine) {
 INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi record, const struct own_arc *arc,
                                 const struct pose *pose, vec2 n, vm at_end, vf least_edge, vf flat_sine, bool is_b) {
     const vi next = step_record(ring, record, vi_select(at_end, vi_set(1), vi_set(-1)));
-    const struct own_arc other = load_own_circle(records, next, pose, is_b);
+    const struct own_arc other = load_own_arc(records, next, pose, is_b);
     const vec2 junction = v2_select(at_end, arc->placed.end, arc->placed.start);
-    const struct edge_end here = find_edge_end(&arc->placed, junction, n, is_b),
-                          there = find_edge_end(&other.placed, junction, n, is_b);
     const vm here_is_low = is_b ? vm_not(at_end) : at_end;
+    const struct arcs *const here = &arc->placed, *const there = &other.placed;
     struct edge edge;
-    edge.low = select_edge_end(here_is_low, &here, &there);
-    edge.high = select_edge_end(here_is_low, &there, &here);
-    edge.is_edge = vm_and(is_edge(arc, &other, v2_select(at_end, arc->end, arc->start), least_edge),
-                          v_lt(edge.low.along, edge.high.along));
+    place_edge(&edge, v2_select(here_is_low, here->center, there->center),
+               v2_select(here_is_low, there->center, here->center), v_select(here_is_low, here->radius, there->radius),
+               v_select(here_is_low, there->radius, here->radius), junction, n, is_b);
+    edge.is_edge = vm_and(edge.is_edge, is_edge(arc, &other, v2_select(at_end, arc->end, arc->start), least_edge));
     edge.offered = vm_and(edge.is_edge, is_flat(junction, n, flat_sine));
     edge.parallel = is_parallel(junction, n);
     edge.before = vi_select(at_end, record, next);
@@ -143,11 +146,9 @@ SHARED struct edge find_edge(const struct call *call, const struct queue *queue,
     if (vm_any(again)) {
         const struct edge other =
             find_edge_of(records, ring, record, &arc, &pose, n, vm_not(at_end), least_edge, flat_sine, is_b);
-        edge.is_edge = vm_or(edge.is_edge, other.is_edge);
         edge.offered = vm_or(edge.offered, vm_and(again, other.offered));
         edge.parallel = vm_or(vm_and_not(edge.parallel, again), vm_and(again, other.parallel));
-        edge.low = select_edge_end(again, &other.low, &edge.low);
-        edge.high = select_edge_end(again, &other.high, &edge.high);
+        take_places(&edge, &other);
         edge.before = vi_select(again, other.before, edge.before);
         edge.after = vi_select(again, other.after, edge.after);
     }
@@ -156,54 +157,44 @@ SHARED struct edge find_edge(const struct call *call, const struct queue *queue,
     return edge;
 }
 
-/* The height of an edge above the place `along`. */
-INLINE vf find_height(const struct edge *edge, vf along) {
-    const vf rise = v_sub(edge->high.across, edge->low.across), run = v_sub(edge->high.along, edge->low.along);
-    return v_add(edge->low.across, v_mul(v_sub(along, edge->low.along), v_div(rise, run)));
+/* The heights of an edge above places. */
+INLINE end_pair find_edge_heights(const struct edge *edge, end_pair along) {
+    const vf low = get_low(edge->along), across = get_low(edge->across);
+    const vf slope = v_div(v_sub(get_high(edge->across), across), v_sub(get_high(edge->along), low));
+    return add_ends(both_ends(across), mul_ends(sub_ends(along, both_ends(low)), both_ends(slope)));
 }
 
-/* A point of a manifold. */
-struct end_point {
-    vf along, across, separation, radius_a, radius_b;
+/* The points where the edges' common stretch ends. The body whose edge ends there has the arc next to it. */
+struct end_points {
+    end_pair along, across, separation, radius_a, radius_b;
 };
 
-/* The point where the edges' common stretch ends, at its low end or its high one. The body whose edge ends there has
- * the arc next to it. */
-INLINE struct end_point find_end_point(const struct edge *a, const struct edge *b, bool high) {
-    const struct edge_end *end_a = high ? &a->high : &a->low, *end_b = high ? &b->high : &b->low;
-    const vf flat = v_set(INFINITY);
-    const vm a_ends = high ? v_le(end_a->along, end_b->along) : v_le(end_b->along, end_a->along);
-    const vm b_ends = high ? v_le(end_b->along, end_a->along) : v_le(end_a->along, end_b->along);
-    struct end_point p;
-    p.along = v_select(a_ends, end_a->along, end_b->along);
-    const vf height_a = find_height(a, p.along), height_b = find_height(b, p.along);
-    p.separation = v_sub(height_b, height_a);
-    p.across = v_mul(v_set(0.5f), v_add(height_a, height_b));
-    p.radius_a = v_select(a_ends, end_a->radius, flat);
-    p.radius_b = v_select(b_ends, end_b->radius, flat);
+INLINE struct end_points find_end_points(const struct edge *a, const struct edge *b) {
+    const end_pair a_then_b = pick_ends(a->along, b->along), b_then_a = pick_ends(b->along, a->along);
+    const mask_pair a_ends = ends_are_at_most(b_then_a, a_then_b), b_ends = ends_are_at_most(a_then_b, b_then_a);
+    const end_pair half = both_ends(v_set(0.5f)), flat = both_ends(v_set(INFINITY));
+    struct end_points p = {.along = select_ends(a_ends, a->along, b->along)};
+    const end_pair height_a = find_edge_heights(a, p.along), height_b = find_edge_heights(b, p.along);
+    p.separation = sub_ends(height_b, height_a);
+    p.across = mul_ends(half, add_ends(height_a, height_b));
+    p.radius_a = select_ends(a_ends, a->radius, flat);
+    p.radius_b = select_ends(b_ends, b->radius, flat);
     return p;
 }
 
-INLINE struct end_point select_end_point(vm m, const struct end_point *a, const struct end_point *b) {
-    return (struct end_point){v_select(m, a->along, b->along), v_select(m, a->across, b->across),
-                              v_select(m, a->separation, b->separation), v_select(m, a->radius_a, b->radius_a),
-                              v_select(m, a->radius_b, b->radius_b)};
-}
-
 /* The coordinates that a stretch was computed from, seen from an origin. */
-INLINE vf add_coordinates(const struct end_point *low, const struct end_point *high, vf along, vf across) {
-    const vf ends = v_add(v_abs(v_sub(low->along, along)), v_abs(v_sub(high->along, along)));
-    return v_add(ends, v_abs(v_sub(low->across, across)));
+INLINE vf add_coordinates(const struct end_points *p, vf along, vf across) {
+    const end_pair from_origin = find_distances(p->along, both_ends(along));
+    return v_add(v_add(get_low(from_origin), get_high(from_origin)), find_distance(get_low(p->across), across));
 }
 
 /* Is the common stretch more than rounding? Where two corners face each other both edges end there, and it is not. Both
  * bodies' origins count, so that it is the same with A and B swapped. */
-INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, vf separation, vec2 n,
-                     vec2 position_b) {
-    const vf of_a = add_coordinates(low, high, v_set(0), v_set(0));
-    const vf of_b = add_coordinates(low, high, v2_cross(n, position_b), v2_dot(n, position_b));
+INLINE vm is_stretch(const struct end_points *p, vf separation, vec2 n, vec2 position_b) {
+    const vf of_a = add_coordinates(p, v_set(0), v_set(0));
+    const vf of_b = add_coordinates(p, v2_cross(n, position_b), v2_dot(n, position_b));
     const vf sizes = v_add(v_add(of_a, of_b), v_abs(separation));
-    return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(high->along, low->along));
+    return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(get_high(p->along), get_low(p->along)));
 }
 
 /* Ids. A point is at the low or the high end of both bodies' edges. A byte of its id names what of a body lies there:
@@ -212,97 +203,44 @@ INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, 
  * as rounding has it, and so both are named. */
 #define AT_END 0x1p-5f
 
-/* The byte of a body's edge, of a point at `along`, at the low end in the lanes `low`. */
-INLINE vi find_edge_feature(const struct edge *edge, vf along, vm low, bool is_b) {
-    const vf least = v_mul(v_set(AT_END), v_sub(edge->high.along, edge->low.along));
-    const vf inside = v_select(low, v_sub(along, edge->low.along), v_sub(edge->high.along, along));
-    const vm on_edge = v_lt(least, inside), at_start = is_b ? vm_not(low) : low;
-    const vi of_edge = vi_add(edge->after, vi_set(NARC_FEATURE_EDGE));
-    return vi_select(on_edge, of_edge, vi_select(at_start, edge->before, edge->after));
+/* The bytes of a body's edge, of points at its low end and at its high one. */
+INLINE end_pair find_edge_features(const struct edge *edge, end_pair along, bool is_b) {
+    const vf length = v_sub(get_high(edge->along), get_low(edge->along)), before = v_of_bits(edge->before),
+             after = v_of_bits(edge->after);
+    const end_pair inside = sub_ends(pick_ends(along, edge->along), pick_ends(edge->along, along));
+    const mask_pair on_edge = ends_are_less(both_ends(v_mul(v_set(AT_END), length)), inside);
+    const end_pair of_edge = both_ends(v_of_bits(vi_add(edge->after, vi_set(NARC_FEATURE_EDGE))));
+    return select_ends(on_edge, of_edge, is_b ? join_ends(after, before) : join_ends(before, after));
 }
 
-/* The id of a point. */
-INLINE vi find_point_id(const struct edge *a, const struct edge *b, vf along, vm low) {
-    return vi_add(find_edge_feature(a, along, low, false), vi_shift_left(find_edge_feature(b, along, low, true), 8));
-}
+/* Both bodies' bytes in one id. */
+INLINE vf join_bytes(vf a, vf b) { return v_of_bits(vi_add(vi_bits(a), vi_shift_left(vi_bits(b), 8))); }
+
+OF_ENDS(end_pair, end_pair, find_ids, join_bytes)
 
 /* Does a body touch the other one with its edge? */
 INLINE vm touches(const struct edge *edge) { return vm_and(edge->is_edge, edge->parallel); }
 
-INLINE vm is_nearer_low(const struct edge *edge, vf along) {
-    return v_le(v_abs(v_sub(along, edge->low.along)), v_abs(v_sub(edge->high.along, along)));
+INLINE vm is_nearer_low(end_pair along, vf place) {
+    const end_pair away = find_distances(along, both_ends(place));
+    return v_le(get_low(away), get_high(away));
 }
 
 /* The byte of the body with `edge`, of the only point of two bodies, at `along`, where it has the arc `number`. A body
  * that touches with its edge does so at the end where the other one's corner has its own edge beside it: so the id is
  * that of the same point with the other edge within the flat angle. */
-INLINE vi find_touching_feature(const struct edge *edge, const struct edge *other, vf along, vi number, bool is_b) {
-    const vm corner = vm_and_not(other->is_edge, other->parallel);
-    const vm low = vm_or(vm_and(corner, is_nearer_low(other, along)), vm_and_not(is_nearer_low(edge, along), corner));
-    return vi_select(touches(edge), find_edge_feature(edge, along, low, is_b), number);
+INLINE vf find_touching_feature(const struct edge *edge, const struct edge *other, vf along, vi number, bool is_b) {
+    const vm corner = vm_and_not(other->is_edge, other->parallel), near_low = is_nearer_low(edge->along, along);
+    const vm low = vm_or(vm_and(corner, is_nearer_low(other->along, along)), vm_and_not(near_low, corner));
+    const end_pair features = find_edge_features(edge, both_ends(along), is_b);
+    return v_select(touches(edge), v_select(low, get_low(features), get_high(features)), v_of_bits(number));
 }
 
 /* The id of the only point of two bodies. */
-INLINE vi find_touching_id(const struct edge *a, const struct edge *b, vf along, vi number_a, vi number_b) {
-    return vi_add(find_touching_feature(a, b, along, number_a, false),
-                  vi_shift_left(find_touching_feature(b, a, along, number_b, true), 8));
-}
-
-/* The points of two edges that face each other, in the lanes `two` both, elsewhere the first only, which is the deepest
- * then. */
-struct facing_points {
-    vm two;
-    struct end_point first, second, deepest;
-    vi first_id, second_id;
-};
-
-/* Those of two edges with a stretch from `low` to `high` in common, seen along n. `exact`: the deepest point; `margin`:
- * of the other one. */
-INLINE struct facing_points find_facing_points(const struct edge *a, const struct edge *b, struct end_point low,
-                                               struct end_point high, const struct end_point *exact, vf margin) {
-    /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
-    const vm touch = vm_and(a->parallel, b->parallel);
-    const vm nearer_low = v_le(v_abs(v_sub(exact->along, low.along)), v_abs(v_sub(high.along, exact->along)));
-    const vm lower_low = v_le(low.separation, high.separation);
-    const vm at_low = vm_or(vm_and(touch, lower_low), vm_and_not(nearer_low, touch));
-    const vm exact_low = vm_and_not(at_low, touch), exact_high = vm_and_not(vm_not(at_low), touch);
-    const vf least = exact->separation; /* rounding may not make the other one less */
-    const vf above_low = v_max(low.separation, least), above_high = v_max(high.separation, least);
-    const vm two = is_below(v_select(at_low, above_high, above_low), margin);
-    const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
-    low = select_end_point(exact_low, exact, &low);
-    high = select_end_point(exact_high, exact, &high);
-    low.separation = v_select(at_low, least, above_low);
-    high.separation = v_select(at_low, above_high, least);
-    const vm none = vm_xor(two, two);
-    struct facing_points points = {.two = two, .second = high, .deepest = select_end_point(at_low, &low, &high)};
-    points.first = select_end_point(keeps_low, &low, &high);
-    points.first_id = find_point_id(a, b, points.first.along, keeps_low);
-    points.second_id = find_point_id(a, b, high.along, none);
-    return points;
-}
-
-/* The words of both points in a row. */
-INLINE void write_facing_points(const struct facing_points *p, vec2 to_world, vec2 n, vf out_first[4],
-                                vf out_second[4]) {
-    const vec2 first = v2_rotate(to_world, v2_rotate(n, (vec2){p->first.across, p->first.along}));
-    const vec2 second = v2_rotate(to_world, v2_rotate(n, (vec2){p->second.across, p->second.along}));
-    const vf zero = v_set(0);
-    out_first[0] = first.x;
-    out_first[1] = first.y;
-    out_first[2] = p->first.separation;
-    out_first[3] = v_of_bits(p->first_id);
-    out_second[0] = v_select(p->two, second.x, zero);
-    out_second[1] = v_select(p->two, second.y, zero);
-    out_second[2] = v_select(p->two, p->second.separation, zero);
-    out_second[3] = v_select(p->two, v_of_bits(p->second_id), zero);
-}
-
-/* The point that is known already. */
-INLINE struct end_point get_deepest(const struct edge *a, const struct edge *b, vf along, vf across, vf separation) {
-    const vf flat = v_set(INFINITY);
-    return (struct end_point){along, across, separation, v_select(a->parallel, flat, a->arc_radius),
-                              v_select(b->parallel, flat, b->arc_radius)};
+INLINE vi find_only_id(const struct sides *s, const struct answer *answer) {
+    const vf id = join_bytes(find_touching_feature(&s->a, &s->b, s->place.y, s->number_a, false),
+                             find_touching_feature(&s->b, &s->a, s->place.y, s->number_b, true));
+    return vi_select(s->named, vi_bits(id), answer->feature);
 }
 
 /* The margin of second points. */
@@ -311,44 +249,47 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
 
-INLINE struct manifold_points find_manifold_points(const struct call *call, const struct answer *answer,
-                                                   const struct sides *s) {
-    const struct edge *const a = &s->a, *const b = &s->b;
-    const vm offered = vm_and(a->offered, b->offered);
-    if (!vm_any(offered)) {
-        const vi id = find_touching_id(a, b, s->place.y, s->number_a, s->number_b);
-        const vf zero = v_set(0);
-        return (struct manifold_points){
-            vi_set(1),
-            answer->radius_a,
-            answer->radius_b,
-            {answer->point.x, answer->point.y, answer->separation, v_of_bits(vi_select(s->named, id, answer->feature))},
-            {zero, zero, zero, zero}};
-    }
-    const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
-    const vm stretch = is_stretch(&low, &high, answer->separation, s->n, s->position_b);
-    const vm faces = vm_and(offered, stretch);
-    const struct end_point exact = get_deepest(a, b, s->place.y, s->place.x, answer->separation);
-    struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, s->margin));
-    struct manifold_points m = {.radius_a = p.deepest.radius_a, .radius_b = p.deepest.radius_b};
-    if (vm_any(vm_not(faces))) {
-        const vi id = find_touching_id(a, b, s->place.y, s->number_a, s->number_b);
-        p.two = vm_and(p.two, faces);
-        p.first = select_end_point(faces, &p.first, &exact);
-        p.first_id = vi_select(faces, p.first_id, vi_select(s->named, id, answer->feature));
-        m.radius_a = v_select(faces, m.radius_a, answer->radius_a);
-        m.radius_b = v_select(faces, m.radius_b, answer->radius_b);
-    }
-    m.count = vi_select(p.two, vi_set(2), vi_set(1));
-    write_facing_points(&p, s->to_world, s->n, m.first, m.second);
-    return m;
-}
-
 /* Writes the rows of manifolds that may have second points. */
 SHARED void write_sides(const struct call *call, char *const *place, vi pairs, const struct answer *answer,
-                        const struct sides *sides) {
-    const struct manifold_points points = find_manifold_points(call, answer, sides);
-    write_manifolds(place, find_numbers(call, pairs), answer, &points);
+                        const struct sides *s) {
+    const struct edge *const a = &s->a, *const b = &s->b;
+    const vi numbers = find_numbers(call, pairs);
+    const vm offered = vm_and(a->offered, b->offered);
+    if (!vm_any(offered)) {
+        struct answer only = *answer;
+        only.feature = find_only_id(s, answer);
+        write_only_points(place, numbers, &only);
+        return;
+    }
+    struct end_points p = find_end_points(a, b);
+    const vf along = s->place.y, least = answer->separation, flat = v_set(INFINITY);
+    const vm alone = vm_not(vm_and(offered, is_stretch(&p, least, s->n, s->position_b)));
+    /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
+    const vm touch = vm_and_not(vm_and(a->parallel, b->parallel), alone);
+    const vm lower_low = v_le(get_low(p.separation), get_high(p.separation)), near_low = is_nearer_low(p.along, along);
+    const vm at_low = vm_or(alone, vm_or(vm_and(touch, lower_low), vm_and_not(near_low, touch)));
+    const vm at_high = vm_not(at_low);
+    const end_pair above = max_ends(p.separation, both_ends(least)); /* rounding may not make the other one less */
+    const vm near = is_below(v_select(at_low, get_high(above), get_low(above)), find_second_margin(call, s->margin));
+    const vm two = vm_and_not(near, alone);
+    const mask_pair exact = join_masks(vm_and_not(at_low, touch), vm_and_not(at_high, touch));
+    p.along = select_ends(exact, both_ends(along), p.along);
+    p.across = select_ends(exact, both_ends(s->place.x), p.across);
+    end_pair ids = find_ids(find_edge_features(a, p.along, false), find_edge_features(b, p.along, true));
+    if (vm_any(alone)) {
+        const vf id = v_of_bits(find_only_id(s, answer));
+        ids = join_ends(v_select(alone, id, get_low(ids)), get_high(ids));
+    }
+    end_pair words[4] = {p.across, p.along, select_ends(join_masks(at_low, at_high), both_ends(least), above), ids};
+    rotate_ends(s->n, &words[0], &words[1]);
+    rotate_ends(s->to_world, &words[0], &words[1]);
+    v_put_ends(place, FIRST_POINT, words, vm_or(two, at_low), two);
+    const vf radius_a = v_select(touch, v_select(at_low, get_low(p.radius_a), get_high(p.radius_a)),
+                                 v_select(a->parallel, flat, a->arc_radius)),
+             radius_b = v_select(touch, v_select(at_low, get_low(p.radius_b), get_high(p.radius_b)),
+                                 v_select(b->parallel, flat, b->arc_radius));
+    write_heads(place, numbers, answer, vi_select(two, vi_set(2), vi_set(1)),
+                v_select(alone, answer->radius_a, radius_a), v_select(alone, answer->radius_b, radius_b));
 }
 
 /* The edges of the pairs k ... of a queue that touch along n with the arcs in these records. */

@@ -79,9 +79,7 @@ INLINE bool are_discs(vm open, const vf item[FIELDS]) {
 INLINE struct arcs load_disc(const narc_record *records, vi first_record, vi info, const struct pose *pose, bool is_b) {
     const vf none = v_set(0);
     vf field[8] = {none, none, none, none, none, none, none, none};
-    int32_t index[V_WIDTH];
-    vi_store(index, find_first_arc(first_record, info));
-    v_rows(records, sizeof *records, index, field);
+    load_circle(records, find_first_arc(first_record, info), field);
     return is_b ? place_b(field, pose) : place_a(field, pose);
 }
 

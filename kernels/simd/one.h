@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * one.h - the vector wrapper with one lane of an x86 register: what scalar.h is, but predicates are masks, so that nothing
- * is chosen by a branch. Other lanes of the register hold anything.
+ * is chosen by a branch. Other lanes of the register hold anything, in the second one another number if that is wanted.
  */
 #ifndef NARC_SIMD_ONE_H
 #define NARC_SIMD_ONE_H
@@ -36,17 +36,17 @@ INLINE void v_double_differences(const struct double_rows *rows, const int32_t *
     out[0] = _mm_cvtpd_ps(shifts ? _mm_add_pd(difference, shift) : difference);
     out[1] = _mm_shuffle_ps(out[0], out[0], 0x55);
 }
-INLINE vf v_add(vf a, vf b) { return _mm_add_ss(a, b); }
-INLINE vf v_sub(vf a, vf b) { return _mm_sub_ss(a, b); }
-INLINE vf v_mul(vf a, vf b) { return _mm_mul_ss(a, b); }
-INLINE vf v_div(vf a, vf b) { return _mm_div_ss(a, b); }
-INLINE vf v_sqrt(vf a) { return _mm_sqrt_ss(a); }
+INLINE vf v_add(vf a, vf b) { return _mm_add_ps(a, b); }
+INLINE vf v_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
+INLINE vf v_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
+INLINE vf v_div(vf a, vf b) { return _mm_div_ps(a, b); }
+INLINE vf v_sqrt(vf a) { return _mm_sqrt_ps(a); }
 INLINE vf v_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
 INLINE vf v_neg(vf a) { return _mm_xor_ps(_mm_set1_ps(-0.0f), a); }
-INLINE vf v_min(vf a, vf b) { return _mm_min_ss(a, b); }
-INLINE vf v_max(vf a, vf b) { return _mm_max_ss(a, b); }
-INLINE vm v_lt(vf a, vf b) { return _mm_cmplt_ss(a, b); }
-INLINE vm v_le(vf a, vf b) { return _mm_cmple_ss(a, b); }
+INLINE vf v_min(vf a, vf b) { return _mm_min_ps(a, b); }
+INLINE vf v_max(vf a, vf b) { return _mm_max_ps(a, b); }
+INLINE vm v_lt(vf a, vf b) { return _mm_cmplt_ps(a, b); }
+INLINE vm v_le(vf a, vf b) { return _mm_cmple_ps(a, b); }
 #ifdef __AVX512VL__ /* one instruction of one step, where a blend by a vector takes three */
 INLINE vf v_select(vm m, vf a, vf b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
 #else
@@ -59,6 +59,17 @@ INLINE vf v_select(vm m, vf a, vf b) {
 INLINE vf v_pack(vp p, vf a) {
     (void)p;
     return a;
+}
+#define V_JOINS /* two of them in one register: of each the first lane */
+INLINE vf v_join(vf low, vf high) { return _mm_unpacklo_ps(low, high); }
+INLINE vf v_high(vf a) { return _mm_movehdup_ps(a); }
+INLINE vf v_both(vf a) { return _mm_set1_ps(_mm_cvtss_f32(a)); }
+INLINE vf v_low_high(vf low, vf high) { return _mm_blend_ps(low, high, 2); }
+INLINE void v_put_ends(char *const *place, int offset, const vf in[4], vm low_first, vm two) {
+    const __m128 front = _mm_unpacklo_ps(in[0], in[1]), back = _mm_unpacklo_ps(in[2], in[3]);
+    const __m128 low = _mm_movelh_ps(front, back), high = _mm_movehl_ps(back, front);
+    v_put_row(*place, offset, v_select(v_both(low_first), low, high));
+    v_put_row(*place, offset + 16, _mm_and_ps(v_both(two), high));
 }
 INLINE vi vi_set(int32_t a) { return _mm_cvtsi32_si128(a); }
 INLINE vi vi_load(const int32_t *p) { return _mm_cvtsi32_si128(*p); }

@@ -23,6 +23,8 @@
  *   v_select(vm, vf a, vf b)                                    a where true, b elsewhere
  *   v_pack(vp, vf)                                              the lanes of the predicate, in order, in front; the
  *                                                               other lanes are of no use
+ *   V_JOINS                                                     of one lane: others are to spare, and two vf go in one,
+ *                                                               v_join() (base/ends.inl)
  *   vi_set vi_load vi_store vi_add vi_sub vi_lt vi_select        the same for int32; sums wrap
  *   vi_and vi_shift_left(vi, int) vi_shift_right(vi, int)       shifts fill up with zeros
  *   vi_bits(vf) v_of_bits(vi)                                   the bits of a float, and back
