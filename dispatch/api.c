@@ -3,7 +3,6 @@
  * api.c - the calls of narc.h: argument checks, then one call down.
  */
 #include "dispatch.h"
-#include "elementary.h"
 #include "error.h"
 
 #define TEXT_(a) #a
@@ -11,13 +10,6 @@
 
 const char *narc_version(void) {
     return TEXT(NARC_VERSION_MAJOR) "." TEXT(NARC_VERSION_MINOR) "." TEXT(NARC_VERSION_PATCH);
-}
-
-/* The sine of NARC_FLAT_ANGLE. */
-#define FLAT_SINE 0x1.bd679ap-2f
-
-float narc_find_flat_sine(float angle) {
-    return angle == 0 ? FLAT_SINE : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
 }
 
 /* What all calls begin with; also finds the table. */

@@ -7,6 +7,7 @@
 
 #include <stdatomic.h>
 
+#include "elementary.h"
 #include "kernels.h"
 #include "narc.h"
 
@@ -40,8 +41,10 @@ narc_status narc_check_numbers(const narc_query *query, const char *name, narc_e
 /* And that nothing is asked for that this version does not know: what there is to check of a query without its pairs. */
 narc_status narc_check_asking(const narc_query *query, narc_error *error);
 
-/* The sine of a query's flat angle; below 0: no second points. */
-float narc_find_flat_sine(float angle);
+/* The sine of a query's flat angle, by default of NARC_FLAT_ANGLE; below 0: no second points. */
+static inline float narc_find_flat_sine(float angle) {
+    return angle == 0 ? 0x1.bd679ap-2f : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
+}
 
 /* A range of `*count` items from `first` on; 0 of them: to the end of `total`. */
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error);

@@ -29,12 +29,6 @@ INLINE int ask_few(const narc_kernel_table *kernels, const narc_batch *batch, ui
     return kernels->pair(&asked);
 }
 
-/* What a dense row is where there is none. */
-static void clear_row(uint32_t number, size_t size, void *row) {
-    memset(row, 0, size);
-    memcpy(row, &number, sizeof number);
-}
-
 static size_t find_few(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
                        bool manifold) {
     narc_status status = NARC_OK;
@@ -52,8 +46,6 @@ static size_t find_few(const narc_batch *batch, size_t first, size_t count, size
             narc_rows to = *out;
             to.base = dense ? out->base : row;
             found += kernel(batch, place, 1, skipped, &to);
-        } else if (rows == 0 && dense) {
-            clear_row(number, batch->row_size, row);
         }
         found += rows > 0;
     }
@@ -95,8 +87,6 @@ bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const
         const int answered = ask_few(kernels, &batch, k, own, manifold, row);
         if (answered < 0)
             return false;
-        if (answered == 0 && q->dense)
-            clear_row(k, row_size, row);
         found += answered > 0;
     }
     memcpy(out_rows, rows, (q->dense ? pairs->count : found) * row_size);
@@ -184,27 +174,31 @@ NOINLINE narc_status ask_batch(const narc_one_pair *asked, narc_error *error) {
                            : narc_find_contacts(shapes, &bodies, &pair, &own, asked->out_row, 1, &count, error);
 }
 
+static bool take_query(const narc_query *given, narc_one_pair *asked, narc_batch *batch) {
+    asked->margin = given->margin;
+    if (narc_check_asking(given, NULL) != NARC_OK)
+        return false;
+    batch->flat_sine = narc_find_flat_sine(given->flat_angle);
+    return true;
+}
+
 /* What is needed behind the kernel's call is read from what it was given: nothing is kept in registers across it. */
 INLINE narc_status ask(const narc_shapes *shapes, const narc_body *a, const narc_body *b, const narc_query *given,
                        bool manifold, void *out_row, narc_error *error) {
     narc_batch batch; /* an initialiser would clear all of it, of which the kernel reads this */
     batch.shapes = shapes;
-    batch.query = given ? given : &defaults;
-    const narc_one_pair asked = {&batch, a, b, out_row, batch.query->margin, 0, manifold};
+    batch.query = &defaults;
+    batch.flat_sine = narc_find_flat_sine(0);
+    narc_one_pair asked = {&batch, a, b, out_row, 0, 0, manifold};
     const narc_kernel_table *kernels = NULL;
-    narc_status status = NARC_OK;
-    int found = -1;
+    if (given)
+        batch.query = given;
     if (shapes && a && b && out_row && a->shape < shapes->count && b->shape < shapes->count &&
-        (!given || narc_check_asking(given, NULL) == NARC_OK))
-        kernels = narc_kernels(&status, NULL);
-    if (kernels) {
-        batch.flat_sine = manifold ? narc_find_flat_sine(batch.query->flat_angle) : -1;
-        found = kernels->pair(&asked);
-    }
+        (!given || take_query(given, &asked, &batch)))
+        kernels = atomic_load_explicit(&narc_active_kernels, memory_order_acquire);
+    const int found = kernels ? kernels->pair(&asked) : -1;
     if (found < 0)
         return ask_batch(&asked, error);
-    if (found == 0)
-        memset(asked.out_row, 0, manifold ? sizeof(narc_manifold) : sizeof(narc_contact));
     if (batch.query->out_skipped)
         *batch.query->out_skipped = 0;
     return NARC_OK;

@@ -14,20 +14,24 @@
 #include "kernels.h"
 #include "simd/simd.h"
 
+/* What a row is (write_rows() in rows.inl). */
+enum row_kind { CONTACT_ROWS, MANIFOLD_ROWS, SEPARATION_ROWS };
+
 struct call {
     const narc_batch *batch;
-    size_t first, count;             /* its pairs, of those that are asked of */
-    float margin;                    /* 0 for overlaps */
-    narc_float_column margins;       /* one for each pair of the batch; base NULL: all are `margin` */
-    size_t *skipped;                 /* pairs without an answer are added to it */
-    uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
-    struct rows *rows;               /* the others: the same */
-    const struct question *question; /* theirs */
-    struct box_queue *boxes;         /* pairs of forms that wait (box/box_detour.inl), or NULL */
-    bool pieces, planes;             /* are there pieces of chains; half-planes? */
-    bool *planes_first;              /* rows: set where a pair has one for A; or NULL */
-    struct queue *concave, *runs;    /* rows, with pieces: where pairs with a concave arc, with a run wait; or NULL */
-    struct queue *settled;           /* with these: where pairs wait that touch, for certain */
+    size_t first, count;       /* its pairs, of those that are asked of */
+    float margin;              /* 0 for overlaps */
+    narc_float_column margins; /* one for each pair of the batch; base NULL: all are `margin` */
+    size_t *skipped;           /* pairs without an answer are added to it */
+    uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
+    struct rows *rows;         /* the others: the same */
+    enum row_kind kind;        /* theirs */
+    const struct question *question;
+    struct box_queue *boxes;      /* pairs of forms that wait (box/box_detour.inl), or NULL */
+    bool pieces, planes;          /* are there pieces of chains; half-planes? */
+    bool *planes_first;           /* rows: set where a pair has one for A; or NULL */
+    struct queue *concave, *runs; /* rows, with pieces: where pairs with a concave arc, with a run wait; or NULL */
+    struct queue *settled;        /* with these: where pairs wait that touch, for certain */
 };
 
 /* Are there pieces of chains, and are they asked of as such? */

@@ -28,9 +28,6 @@ enum { OF_BOXES, OF_CAPSULES, WITH_CIRCLE, BOX_QUEUES };
 struct edge_contact;
 typedef vm edge_answer(const struct call *call, const struct edge_contact *contact);
 
-/* What a row is (write_rows() in rows.inl). */
-enum row_kind { CONTACT_ROWS, MANIFOLD_ROWS, SEPARATION_ROWS };
-
 struct question {
     enum row_kind kind;
     size_t normal_at; /* where in a row its normal lies */
@@ -52,7 +49,7 @@ struct row_search {
 extern const struct row_search NARC_NAMED(search);
 
 /* Do rows tell how far normals may turn? */
-INLINE bool has_reaches(const struct call *call) { return call->question->kind == MANIFOLD_ROWS; }
+INLINE bool has_reaches(const struct call *call) { return call->kind == MANIFOLD_ROWS; }
 
 /* Answers all pairs of a call that begin_rows() has made (sat/rows.c). */
 void NARC_NAMED(find_rows)(const struct call *call);

@@ -52,6 +52,7 @@ static inline struct call begin_rows(const struct question *question, const narc
                          .skipped = skipped,
                          .margin = batch->query->margin,
                          .margins = batch->query->margins,
+                         .kind = question->kind,
                          .question = question,
                          .rows = rows,
                          .planes_first = &rows->planes_first,
@@ -175,10 +176,10 @@ INLINE void write_separations(char *const *place, vf separations) {
 /* Writes rows of one point, of the kind that the question has: each is compiled into what finds answers, as a call would
  * pass vectors in memory. */
 INLINE void write_rows(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
-    const enum row_kind kind = call->question->kind;
+    const enum row_kind kind = call->kind;
     if (kind == CONTACT_ROWS)
         write_contacts(place, numbers, answer);
-    else if (kind == MANIFOLD_ROWS)
+    else if (BLOCK == 1 || kind == MANIFOLD_ROWS)
         write_only_points(place, numbers, answer);
     else
         write_separations(place, answer->separation);
@@ -288,9 +289,8 @@ NOINLINE void move_plane_points(const narc_batch *batch, size_t first, size_t co
 /* Ends a call. The size is a constant, so that a row is copied by a few instructions. */
 INLINE size_t end_rows(const struct call *call, size_t size) {
     const size_t count = call->rows->dense ? fill_gaps(call) : close_gaps(call, size);
-    if (NARC_PIECES && !LIKELY(!call->rows->planes_first) && call->question->kind != SEPARATION_ROWS)
-        move_plane_points(call->batch, call->first, call->count, &call->rows->out, count,
-                          call->question->kind == MANIFOLD_ROWS);
+    if (NARC_PIECES && !LIKELY(!call->rows->planes_first) && call->kind != SEPARATION_ROWS)
+        move_plane_points(call->batch, call->first, call->count, &call->rows->out, count, call->kind == MANIFOLD_ROWS);
     return count;
 }
 

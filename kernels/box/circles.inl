@@ -76,6 +76,11 @@ INLINE vm are_with_circle(const struct box_form *a, const struct box_form *b) {
     return vm_or(vm_and(a_is, vi_lt(zero, b->info)), vm_and(b_is, vi_lt(zero, a->info)));
 }
 
+/* Pairs whose contact is that of the forms, for certain; with those that are apart besides; and without. */
+struct circle_verdict {
+    vm known, taken, near;
+};
+
 /* Sets the bits of pairs in the lanes `near` that overlap for certain, if nothing else is asked for; returns the others.
  * `square`: the centre's distance from the sharp shape, squared. */
 INLINE vm settle_deep(const struct call *call, int32_t number, vm near, vf square, vf radii, vf two) {
@@ -86,9 +91,9 @@ INLINE vm settle_deep(const struct call *call, int32_t number, vm near, vf squar
 }
 
 /* Two circles; see judge_circles(): the same values. */
-INLINE vm judge_two_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
-                            const struct placement *placement, vm which, int32_t number, vm *out_near,
-                            struct circle_pair *out) {
+INLINE struct circle_verdict judge_two_circles(const struct call *call, const struct box_form *a,
+                                               const struct box_form *b, const struct placement *placement, vm which,
+                                               int32_t number, struct circle_pair *out) {
     const struct pose *pose = &placement->pose;
     const vec2 t = pose->position;
     const vf zero = v_set(0), x = v_abs(t.x), y = v_abs(t.y);
@@ -97,9 +102,10 @@ INLINE vm judge_two_circles(const struct call *call, const struct box_form *a, c
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(x, y), radii)), two = v_add(slack, slack);
     const vf square = v2_dot(t, t), limit = v_add(v_add(radii, placement->margin), slack);
     const vm apart = v_lt(v_mul(limit, limit), square), certain = v_lt(two, v_max(x, y));
-    const vm sizes = vm_and(is_box_in_range(radius_a), is_box_in_range(radius_b));
-    const vm taken = vm_and(vm_and(which, sizes), vm_or(certain, apart)), none = vm_front(0);
-    *out_near = settle_deep(call, number, vm_and_not(taken, apart), square, radii, two);
+    const vm sizes = vm_and(v_le(v_set(2 * (float)NARC_MIN_SIZE), v_min(radius_a, radius_b)),
+                            v_le(radii, v_set(0.5f * (float)NARC_MAX_SIZE)));
+    const vm valid = vm_and(which, sizes), known = vm_and(valid, certain), none = vm_front(0);
+    const vm near = settle_deep(call, number, vm_and_not(known, apart), square, radii, two);
     *out = (struct circle_pair){t,
                                 pose->rotation,
                                 placement->rotation_a,
@@ -113,15 +119,15 @@ INLINE vm judge_two_circles(const struct call *call, const struct box_form *a, c
                                 none,
                                 vi_set(0),
                                 vi_set(0)};
-    return taken;
+    return (struct circle_verdict){known, vm_and(valid, vm_or(certain, apart)), near};
 }
 
-/* Pairs with a circle, in the lanes `which`: returns those that are known, `*out_near` of which may have a contact. */
-INLINE vm judge_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
-                        const struct placement *placement, vm which, int32_t number, enum circle_pairs of, vm *out_near,
-                        struct circle_pair *out) {
+/* Pairs with a circle, in the lanes `which`; `out`: if any is near, or there is only one. */
+INLINE struct circle_verdict judge_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
+                                           const struct placement *placement, vm which, int32_t number,
+                                           enum circle_pairs of, struct circle_pair *out) {
     if (of == TWO_CIRCLES)
-        return judge_two_circles(call, a, b, placement, which, number, out_near, out);
+        return judge_two_circles(call, a, b, placement, which, number, out);
     const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
     const struct pose *pose = &placement->pose;
     const vec2 t = pose->position, q = pose->rotation, t_b = v2_unrotate(q, t);
@@ -154,9 +160,9 @@ INLINE vm judge_circles(const struct call *call, const struct box_form *a, const
     const vm apart = v_lt(v_mul(limit, limit), square);
     const vm at_edge = vm_or(at_x, at_y), certain = vm_or(at_edge, at_corner);
     const vm sizes = vm_and(is_box_in_range(size_other), is_box_in_range(radius_circle));
-    const vm taken = vm_and(vm_and(which, sizes), vm_or(certain, apart));
-    *out_near = settle_deep(call, number, vm_and_not(taken, apart), square, radii, two);
-    if (vm_any(*out_near)) {
+    const vm valid = vm_and(which, sizes), known = vm_and(valid, certain);
+    const vm near = settle_deep(call, number, vm_and_not(known, apart), square, radii, two);
+    if (vm_any(near)) {
         const vm left = v_lt(p.x, zero), below = v_lt(p.y, zero);
         /* Edges 0 to 3 lie at +x, +y, -x, -y; corners at +x +y, -x +y, -x -y, +x -y. Of a capsule corner 3 is its end at
          * +x, and corner 1 that at -x. */
@@ -168,7 +174,7 @@ INLINE vm judge_circles(const struct call *call, const struct box_form *a, const
             t,       q,       placement->rotation_a,  half, scale, radius, radius_circle, is_a, sides, capsule,
             at_edge, touched, vi_and(info, vi_set(3))};
     }
-    return taken;
+    return (struct circle_verdict){known, vm_and(valid, vm_or(certain, apart)), near};
 }
 
 INLINE void push_circles(const struct circle_pair *pair, vm near, int32_t number, enum circle_pairs of,
@@ -199,17 +205,17 @@ INLINE vm take_circles(const struct call *call, const struct box_form *a, const 
                        const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
     const vi last = vi_set((int32_t)NARC_IS_CIRCLE - 1);
     struct circle_pair pair;
-    vm near, taken;
+    struct circle_verdict verdict;
     if (!vm_any(vm_and_not(which, vm_and(vi_lt(last, a->info), vi_lt(last, b->info))))) {
-        taken = judge_circles(call, a, b, placement, which, number, TWO_CIRCLES, &near, &pair);
-        if (vm_any(near))
-            push_circles(&pair, near, number, TWO_CIRCLES, queue);
+        verdict = judge_circles(call, a, b, placement, which, number, TWO_CIRCLES, &pair);
+        if (vm_any(verdict.near))
+            push_circles(&pair, verdict.near, number, TWO_CIRCLES, queue);
     } else {
-        taken = judge_circles(call, a, b, placement, which, number, ANY_CIRCLES, &near, &pair);
-        if (vm_any(near))
-            push_circles(&pair, near, number, ANY_CIRCLES, queue);
+        verdict = judge_circles(call, a, b, placement, which, number, ANY_CIRCLES, &pair);
+        if (vm_any(verdict.near))
+            push_circles(&pair, verdict.near, number, ANY_CIRCLES, queue);
     }
-    return taken;
+    return verdict.taken;
 }
 
 INLINE struct circle_pair load_circle_pairs(const struct box_queue *queue, int k) {
@@ -343,7 +349,7 @@ INLINE void write_circles(const struct call *call, const struct circle_pair *pai
         answer.radius_a = choose_side(of, is_a, pair->radius_circle, curved);
         answer.radius_b = choose_side(of, is_a, curved, pair->radius_circle);
     }
-    if (of != TWO_CIRCLES && call->question->kind == MANIFOLD_ROWS) {
+    if (of != TWO_CIRCLES && call->kind == MANIFOLD_ROWS) {
         vi reach = vi_set(0); /* of an edge */
         if (vm_any(vm_not(pair->edge)))
             reach = find_form_reach(pair, of, c);

@@ -44,25 +44,38 @@ enum { UNANSWERED = -1, WITHOUT_ROW, WITH_ROW };
 #include "sat/stages.inl"
 #include "simd/simd.h"
 
-static const struct question contacts = {.kind = CONTACT_ROWS}, manifolds = {.kind = MANIFOLD_ROWS};
-
 /* The call of one pair. No initialiser: that would clear much that nobody reads. */
 INLINE void start_one(const narc_one_pair *asked, struct call *call, struct rows *out_rows) {
     call->batch = asked->batch;
     call->first = asked->number;
     call->margin = asked->margin;
-    call->question = asked->manifold ? &manifolds : &contacts;
+    call->kind = asked->manifold ? MANIFOLD_ROWS : CONTACT_ROWS;
     call->rows = out_rows;
     call->bits = NULL;
     out_rows->out.base = asked->out_row;
     out_rows->known[0] = 0;
 }
 
-INLINE int end_one(const struct rows *out_rows) { return out_rows->known[0] ? WITH_ROW : WITHOUT_ROW; }
+/* Where there is no contact the row is as dense ones are. */
+INLINE int write_none(const struct call *call) {
+    const uint32_t number = (uint32_t)call->first;
+    char *const row = call->rows->out.base;
+    memset(row, 0, sizeof(narc_contact));
+    if (call->kind == MANIFOLD_ROWS) /* one size for both would be a string instruction, which starts slowly */
+        memset(row + sizeof(narc_contact), 0, sizeof(narc_manifold) - sizeof(narc_contact));
+    memcpy(row, &number, sizeof number);
+    return WITHOUT_ROW;
+}
+
+INLINE int end_one(const struct call *call) { return call->rows->known[0] ? WITH_ROW : write_none(call); }
 
 INLINE struct placement place_one(const narc_one_pair *asked) {
     const narc_body *const a = asked->a, *const b = asked->b;
-    const struct body_pair bodies = {{v_set((float)(b->x - a->x)), v_set((float)(b->y - a->y))},
+    const struct double_rows bases = {(const char *)a, (const char *)b, 0, 0};
+    const int32_t first = 0;
+    vf difference[2];
+    v_double_differences(&bases, &first, &first, NULL, difference);
+    const struct body_pair bodies = {{difference[0], difference[1]},
                                      {v_set(a->cosine), v_set(a->sine)},
                                      {v_set(b->cosine), v_set(b->sine)},
                                      v_set(a->scale),
@@ -115,7 +128,7 @@ NOINLINE int finish_one(const struct call *call, struct queue *queues) {
     const bool edges = queues[ANSWER_EDGES].count > 0;
     if (edges || queues[ANSWER].count > 0)
         answer_settled(call, queues, 0, edges);
-    return end_one(call->rows);
+    return end_one(call);
 }
 
 /* All that is searched for, in the order of rows.c's stages. `polygons`: two polygons, sharp or each with corners of one
@@ -129,7 +142,7 @@ NOINLINE int search_one(const narc_one_pair *asked, bool polygons) {
     start_one(asked, &call, &found);
     const struct filter circles = set_up_one(&call, asked, item);
     if (vm_any(vm_or(circles.invalid, circles.apart)))
-        return vm_any(circles.invalid) ? UNANSWERED : WITHOUT_ROW;
+        return vm_any(circles.invalid) ? UNANSWERED : write_none(&call);
     for (int s = 0; s < STAGES; s++)
         queues[s].count = 0;
     if (polygons) {
@@ -137,7 +150,7 @@ NOINLINE int search_one(const narc_one_pair *asked, bool polygons) {
         compare_edges(&call, queues, 0);
         if (queues[POLYGONS].count > 0)
             answer_compared(&call, queues, 0, asked->manifold);
-        return queues[DECIDE].count > 0 ? finish_one(&call, queues) : end_one(&found);
+        return queues[DECIDE].count > 0 ? finish_one(&call, queues) : end_one(&call);
     }
     for (int s = PROBE; s <= CLIMB; s++) {
         queues[s].record_a = arcs.record_a;
@@ -170,14 +183,15 @@ INLINE int find_of_forms(const narc_one_pair *asked, bool capsules) {
         return search_one(asked, !capsules);
     if (queue.count > 0 && !answer_boxes(&call, &queue, 0, 1, capsules, asked->manifold))
         return UNANSWERED;
-    return end_one(&found);
+    return end_one(&call);
 }
 
 NOINLINE int find_of_boxes(const narc_one_pair *asked) { return find_of_forms(asked, false); }
 
 NOINLINE int find_of_capsules(const narc_one_pair *asked) { return find_of_forms(asked, true); }
 
-/* A circle, and any shape that has a form. */
+/* A circle, and any shape that has a form. Whether two circles touch can't be foreseen: all is found and written without a
+ * branch, if need be to nowhere. */
 INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
     struct call call;
     struct rows found;
@@ -186,20 +200,24 @@ INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
     const int32_t shape_a = (int32_t)asked->a->shape, shape_b = (int32_t)asked->b->shape;
     const struct box_form a = load_box_forms(forms, &shape_a), b = load_box_forms(forms, &shape_b);
     const struct placement placement = place_one(asked);
-    vm near;
+    char spare[sizeof(narc_manifold)];
     start_one(asked, &call, &found);
-    if (!vm_any(judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &near, &pair)))
-        return search_one(asked, false);
-    if (!vm_any(near))
-        return WITHOUT_ROW;
+    const struct circle_verdict verdict =
+        judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &pair);
+    if (!vm_any(of == TWO_CIRCLES ? verdict.known : verdict.near))
+        return vm_any(verdict.taken) ? write_none(&call) : search_one(asked, false);
     const struct circle_contact c = find_circle_contact(&pair, of);
-    if (!vm_any(is_below(c.separation, v_set(asked->margin))))
-        return WITHOUT_ROW;
-    write_circles(&call, &pair, &c, vi_set(0), of, &found.out.base);
-    return WITH_ROW;
+    const bool touch = vm_any(v_lt(c.separation, v_set(asked->margin)));
+    char *place = asked->out_row;
+    if (of == TWO_CIRCLES) {
+        write_none(&call);
+        place = choose(touch, place, spare);
+    } else if (!touch) {
+        return write_none(&call);
+    }
+    write_circles(&call, &pair, &c, vi_set(0), of, &place);
+    return touch ? WITH_ROW : WITHOUT_ROW;
 }
-
-NOINLINE int find_of_circles(const narc_one_pair *asked) { return find_with_circle(asked, TWO_CIRCLES); }
 
 NOINLINE int find_beside_a(const narc_one_pair *asked) { return find_with_circle(asked, CIRCLE_IS_FIRST); }
 
@@ -210,7 +228,7 @@ int NARC_ISA_SYMBOL(narc_pair_, NARC_ISA_NAME)(const narc_one_pair *asked) {
     const uint32_t a = asked->a->shape, b = asked->b->shape;
     const uint32_t form_a = shapes->boxes[a].info, form_b = shapes->boxes[b].info;
     if (form_a & form_b & NARC_IS_CIRCLE)
-        return find_of_circles(asked);
+        return find_with_circle(asked, TWO_CIRCLES);
     if (form_a & form_b & NARC_IS_BOX)
         return find_of_boxes(asked);
     if (form_a & form_b & NARC_IS_CAPSULE)

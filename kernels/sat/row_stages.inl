@@ -38,7 +38,7 @@ SHARED void settle(const struct call *call, struct queue *queues, const struct q
     item[SEPARATION] = separation;
     item[RECORD_A] = v_of_bits(record_a);
     item[RECORD_B] = v_of_bits(record_b);
-    if (call->question->kind == MANIFOLD_ROWS) { /* where both bodies have edges there may be a second point */
+    if (call->kind == MANIFOLD_ROWS) { /* where both bodies have edges there may be a second point */
         const vm smooth = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_SMOOTH),
                                 has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_SMOOTH));
         const vm edged = vm_and_not(which, smooth);
