@@ -77,19 +77,21 @@ bool narc_answer_few(const narc_shapes *shapes, const narc_bodies *bodies, const
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
     const size_t row_size = manifold ? sizeof(narc_manifold) : sizeof(narc_contact);
     const bool own = narc_have_own_bodies(pairs);
-    narc_manifold rows[NARC_FEW]; /* or contacts: where the last pair is an error the caller's rows stay as they are */
+    narc_manifold apart[NARC_FEW]; /* or contacts: where the last pair is an error the caller's rows stay as they are */
+    char *const rows = pairs->count == 1 ? out_rows : (char *)apart;
     size_t found = 0;
     if (!kernels)
         return false;
     batch.flat_sine = manifold ? narc_find_flat_sine(q->flat_angle) : -1;
     for (uint32_t k = 0; k < pairs->count; k++) {
-        char *const row = (char *)rows + (q->dense ? k : found) * row_size;
+        char *const row = rows + (q->dense ? k : found) * row_size;
         const int answered = ask_few(kernels, &batch, k, own, manifold, row);
         if (answered < 0)
             return false;
         found += answered > 0;
     }
-    memcpy(out_rows, rows, (q->dense ? pairs->count : found) * row_size);
+    if (rows != out_rows)
+        memcpy(out_rows, rows, (q->dense ? pairs->count : found) * row_size);
     if (q->out_skipped)
         *q->out_skipped = 0;
     *out_count = found;

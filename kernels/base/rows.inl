@@ -140,6 +140,11 @@ static inline void write_no_contact(char *place, uint32_t pair, float separation
     memcpy(place, &contact, sizeof contact);
 }
 
+static inline void write_no_manifold(char *place, uint32_t pair, float separation) {
+    const narc_manifold manifold = {.pair = pair, .point = {{.separation = separation}}};
+    memcpy(place, &manifold, sizeof manifold);
+}
+
 /* Bytes of a manifold's members. */
 enum {
     RADII = offsetof(narc_manifold, radius_a),

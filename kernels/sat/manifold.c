@@ -18,11 +18,6 @@
 #include "polygon/polygon_rows.inl"
 #include "sat/answers.inl"
 
-static void write_no_manifold(char *place, uint32_t pair, float separation) {
-    const narc_manifold manifold = {.pair = pair, .point = {{.separation = separation}}};
-    memcpy(place, &manifold, sizeof manifold);
-}
-
 static void answer_edges(const struct call *call, struct queue *queues, int begin) {
     answer_settled(call, queues, begin, true);
 }

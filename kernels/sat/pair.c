@@ -58,12 +58,10 @@ INLINE void start_one(const narc_one_pair *asked, struct call *call, struct rows
 
 /* Where there is no contact the row is as dense ones are. */
 INLINE int write_none(const struct call *call) {
-    const uint32_t number = (uint32_t)call->first;
-    char *const row = call->rows->out.base;
-    memset(row, 0, sizeof(narc_contact));
-    if (call->kind == MANIFOLD_ROWS) /* one size for both would be a string instruction, which starts slowly */
-        memset(row + sizeof(narc_contact), 0, sizeof(narc_manifold) - sizeof(narc_contact));
-    memcpy(row, &number, sizeof number);
+    if (call->kind == MANIFOLD_ROWS)
+        write_no_manifold(call->rows->out.base, (uint32_t)call->first, 0);
+    else
+        write_no_contact(call->rows->out.base, (uint32_t)call->first, 0);
     return WITHOUT_ROW;
 }
 
@@ -202,8 +200,7 @@ INLINE int find_with_circle(const narc_one_pair *asked, enum circle_pairs of) {
     const struct placement placement = place_one(asked);
     char spare[sizeof(narc_manifold)];
     start_one(asked, &call, &found);
-    const struct circle_verdict verdict =
-        judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &pair);
+    const struct circle_verdict verdict = judge_circles(&call, &a, &b, &placement, placement.in_range, 0, of, &pair);
     if (!vm_any(of == TWO_CIRCLES ? verdict.known : verdict.near))
         return vm_any(verdict.taken) ? write_none(&call) : search_one(asked, false);
     const struct circle_contact c = find_circle_contact(&pair, of);
