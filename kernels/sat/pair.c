@@ -69,11 +69,8 @@ INLINE int end_one(const struct call *call) { return call->rows->known[0] ? WITH
 
 INLINE struct placement place_one(const narc_one_pair *asked) {
     const narc_body *const a = asked->a, *const b = asked->b;
-    const struct double_rows bases = {(const char *)a, (const char *)b, 0, 0};
-    const int32_t first = 0;
-    vf difference[2];
-    v_double_differences(&bases, &first, &first, NULL, difference);
-    const struct body_pair bodies = {{difference[0], difference[1]},
+    /* One by one: a load of both would wait for a caller's stores of each. */
+    const struct body_pair bodies = {{v_set((float)(b->x - a->x)), v_set((float)(b->y - a->y))},
                                      {v_set(a->cosine), v_set(a->sine)},
                                      {v_set(b->cosine), v_set(b->sine)},
                                      v_set(a->scale),
