@@ -338,9 +338,10 @@ TEST(test_circles_at_junctions) {
     }
 }
 
-/* Lines, and corners and arcs between them that turn to one side, many of them hardly. */
+/* Lines, some nearly upright or level, and corners and arcs between them that turn to one side, many of them hardly. */
 static struct ground_bodies *begin_lines(struct test_random *random, size_t bodies) {
-    struct ground_bodies *g = begin_chain(0, 0, random_below(random, 4) ? random_between(random, -PI, PI) : 0);
+    const double upright = PI / 2 * (double)random_below(random, 4) - random_log_between(random, 1e-9, 1e-4);
+    struct ground_bodies *g = begin_chain(0, 0, random_below(random, 4) ? random_between(random, -PI, PI) : upright);
     const size_t lines = 1 + random_below(random, 3);
     for (size_t k = 0; k < lines; k++) {
         walk_line(&g->walk, random_log_between(random, random_below(random, 4) ? 0.3 : 1e-7, 4));
