@@ -695,14 +695,16 @@ static double find_front_distance(const struct body_frame *run, const struct out
  * radii: it is off by at most sqrt(2) * 2^-25 of that way, which is no longer than the bodies reach and both radii.
  *   Normals are the same that are no further apart than parts of a cut arc have in common: a body whose edge lies along
  * the tangent there may have its normal beyond the end of either part. What the closure of a run turns by at an end of
- * the front (chain_pieces.c) is 24 times as much. */
+ * the front (chain_pieces.c) is 24 times as much. So are those for which contacts tell of an edge along the front, however
+ * far that goes on. */
 #define LEVEL 0x1p-24
 #define SAME  (2 * NARC_CHAIN_SEAM + 0x1p-22)
 
 static bool is_of_front(const struct gaps *g, int side, double reach) {
-    const double ways = 2 * reach + g->radii + g->radii_of[side];
-    return g->of_front[side] >= g->most - LEVEL * ways && fabs(find_cross(g->normal_of[side], g->normal)) <= SAME &&
-           find_dot(g->normal_of[side], g->normal) > 0;
+    const double ways = 2 * reach + g->radii + g->radii_of[side],
+                 turn = fabs(find_cross(g->normal_of[side], g->normal));
+    return find_dot(g->normal_of[side], g->normal) > 0 &&
+           (turn <= ALONG_EDGE || (turn <= SAME && g->of_front[side] >= g->most - LEVEL * ways));
 }
 
 static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {

@@ -350,6 +350,21 @@ TEST(test_beside_open_ends) {
     }
 }
 
+/* A long box over the end of a short line, tilted by less than what tells its edge from the line: casts begin with it. */
+TEST(test_long_boxes_over_an_end) {
+    struct turtle t = create_turtle(0.5, 0, PI / 2);
+    walk_arc(&t, 0, 0);
+    walk_line(&t, 1);
+    walk_arc(&t, 0, 0);
+    AUTO(destroy_ground_scene_at) struct ground_scene *s = lay_ground(end_walk(&t, false), (narc_chain_options){0});
+    const uint32_t box = add_shape(s, box_of(8, 1, 0));
+    for (int side = -1; side <= 1; side += 2)
+        for (int k = -8; k <= 8; k++) {
+            const struct body body = turn_body(box, 4 * side, 0.49, k * 1e-7);
+            assert_int_equal(ask(s, &body, (narc_query){0})->contact_count, 1);
+        }
+}
+
 /* What a cast of one body against the first entry comes to, all else as its motion says. */
 static int cast_first(const struct ground_scene *s, const struct body *body, float y, float angle,
                       uint32_t front_only) {
