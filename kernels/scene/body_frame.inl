@@ -30,6 +30,11 @@ INLINE double find_least(double a, double b) { return a < b ? a : b; }
 INLINE double find_most(double a, double b) { return a > b ? a : b; }
 INLINE double find_dot(place a, place b) { return a.x * b.x + a.y * b.y; }
 INLINE double find_cross(place a, place b) { return a.x * b.y - a.y * b.x; }
+INLINE double find_length(place a) { return sqrt(find_dot(a, a)); }
+INLINE place find_back(place a) { return (place){-a.x, -a.y}; }
+INLINE place subtract(place a, place b) { return (place){a.x - b.x, a.y - b.y}; }
+INLINE place add_scaled(place a, double factor, place b) { return (place){a.x + factor * b.x, a.y + factor * b.y}; }
+INLINE place divide(place a, double by) { return (place){a.x / by, a.y / by}; }
 
 /* A point p of the shape stands at position + scale * (rotation p). */
 struct body_frame {
@@ -78,6 +83,11 @@ INLINE place turn_to_world(const struct body_frame *frame, place a) {
     return (place){frame->rotation.x * a.x - frame->rotation.y * a.y,
                    frame->rotation.y * a.x + frame->rotation.x * a.y};
 }
+
+/* A stored arc's centre, and the normals at its ends. */
+INLINE place get_center(const narc_stored_arc *arc) { return (place){(double)arc->center_x, (double)arc->center_y}; }
+INLINE place get_start(const narc_stored_arc *arc) { return (place){(double)arc->start_x, (double)arc->start_y}; }
+INLINE place get_end(const narc_stored_arc *arc) { return (place){(double)arc->end_x, (double)arc->end_y}; }
 
 /* ------------------------------------------------------------------------------------------------ arcs */
 

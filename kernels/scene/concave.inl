@@ -19,9 +19,8 @@ struct concave_arc {
 INLINE struct concave_arc place_concave(const struct body_frame *frame) {
     const narc_stored_arc *const arc = &frame->arcs[0].arc;
     const place center = {frame->scale * (double)arc->center_x, frame->scale * (double)arc->center_y};
-    return (struct concave_arc){
-        turn_to_world(frame, center), turn_to_world(frame, (place){(double)arc->start_x, (double)arc->start_y}),
-        turn_to_world(frame, (place){(double)arc->end_x, (double)arc->end_y}), -(frame->scale * (double)arc->radius)};
+    return (struct concave_arc){turn_to_world(frame, center), turn_to_world(frame, get_start(arc)),
+                                turn_to_world(frame, get_end(arc)), -(frame->scale * (double)arc->radius)};
 }
 
 /* Its ends count as its own. */
@@ -31,8 +30,7 @@ INLINE bool holds_normal(const struct concave_arc *arc, place normal) {
 
 INLINE place find_middle_normal(const struct concave_arc *arc) {
     const place sum = {arc->start.x + arc->end.x, arc->start.y + arc->end.y};
-    const double length = sqrt(find_dot(sum, sum));
-    return (place){sum.x / length, sum.y / length};
+    return divide(sum, find_length(sum));
 }
 
 #endif

@@ -58,9 +58,8 @@ struct nearest {
 /* One of two bodies with a contact along a normal of the world, as soa/piece.h wants it. */
 static narc_contact_side make_contact_side(const struct body_frame *frame, const struct body_frame *other,
                                            place normal) {
-    const place n = turn_to_shape(frame, normal);
-    const place way =
-        turn_to_shape(frame, (place){other->position.x - frame->position.x, other->position.y - frame->position.y});
+    const place n = turn_to_shape(frame, normal),
+                way = turn_to_shape(frame, subtract(other->position, frame->position));
     return (narc_contact_side){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
 }
 
@@ -73,14 +72,12 @@ static bool reach_each_other(const struct body_frame *a, const struct body_frame
 static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
                        struct body_frame *out) {
     const struct narc_cast_side *const of = &casts->side[side];
-    const place rotation = find_rotation(of->cosine[slot], of->sine[slot]);
-    place turn = {1, 0};
+    const place start = {casts->x[slot], casts->y[slot]}, motion = {casts->motion_x[slot], casts->motion_y[slot]};
+    out->position = side == 0 ? (place){0, 0} : add_scaled(start, time, motion);
+    out->rotation = (place){1, 0};
     if (of->angle[slot] != 0)
-        narc_find_cosine((double)of->angle[slot] * time, &turn.x, &turn.y);
-    out->position = side == 0 ? (place){0, 0}
-                              : (place){casts->x[slot] + time * casts->motion_x[slot],
-                                        casts->y[slot] + time * casts->motion_y[slot]};
-    out->rotation = (place){turn.x * rotation.x - turn.y * rotation.y, turn.y * rotation.x + turn.x * rotation.y};
+        narc_find_cosine((double)of->angle[slot] * time, &out->rotation.x, &out->rotation.y);
+    out->rotation = turn_to_world(out, find_rotation(of->cosine[slot], of->sine[slot]));
     out->scale = (double)of->scale[slot];
     out->header = &shapes->headers[of->shape[slot]];
     out->arcs = narc_arcs_of(shapes, out->header);
@@ -101,13 +98,19 @@ static struct scene place_scene(const narc_shapes *shapes, const narc_casts *cas
     return scene;
 }
 
+/* The same when the body has moved. */
+static struct scene move_body(const struct scene *scene, double time, place motion) {
+    struct scene then = *scene;
+    then.body.position = add_scaled(then.body.position, time, motion);
+    return then;
+}
+
 /* From the concave arc's centre to that of an arc of the body. */
 static place find_way(const struct scene *scene, int arc) {
-    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
-    const place center = turn_to_world(&scene->body, (place){scene->body.scale * (double)stored->center_x,
-                                                             scene->body.scale * (double)stored->center_y});
-    return (place){scene->body.position.x + center.x - scene->ground.position.x - scene->arc.center.x,
-                   scene->body.position.y + center.y - scene->ground.position.y - scene->arc.center.y};
+    const struct body_frame *const body = &scene->body;
+    const place own = get_center(&body->arcs[arc].arc),
+                center = turn_to_world(body, (place){body->scale * own.x, body->scale * own.y});
+    return subtract(subtract(add_scaled(body->position, 1, center), scene->ground.position), scene->arc.center);
 }
 
 static double get_radius(const struct scene *scene, int arc) {
@@ -123,8 +126,7 @@ static double get_radius(const struct scene *scene, int arc) {
 /* How large the coordinates are from which u is computed. */
 static double measure_way(const struct scene *scene, int arc) {
     const narc_stored_arc *const a = &scene->ground.arcs[0].arc, *const b = &scene->body.arcs[arc].arc;
-    const place between = {scene->body.position.x - scene->ground.position.x,
-                           scene->body.position.y - scene->ground.position.y};
+    const place between = subtract(scene->body.position, scene->ground.position);
     return scene->ground.scale * (fabs((double)a->center_x) + fabs((double)a->center_y)) +
            scene->body.scale * (fabs((double)b->center_x) + fabs((double)b->center_y)) + fabs(between.x) +
            fabs(between.y);
@@ -137,10 +139,8 @@ static bool may_touch(const struct scene *scene, int arc, place u) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
     const double room = DIRECTION_ROOM * measure_way(scene, arc);
-    const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= -room &&
-                      find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= -room;
-    return held && narc_touches(header, find_feature_number(header, arc, false)) &&
-           holds_normal(&scene->arc, (place){-u.x, -u.y});
+    return find_cross(get_start(stored), own) >= -room && find_cross(own, get_end(stored)) >= -room &&
+           narc_touches(header, find_feature_number(header, arc, false)) && holds_normal(&scene->arc, find_back(u));
 }
 
 /* The bodies' bounding circles: from the ground's to the body's, and the sum of their radii. */
@@ -151,77 +151,62 @@ static place find_circles(const struct scene *scene, double *out_size) {
         const struct body_frame *const frame = side ? &scene->body : &scene->ground;
         const narc_shape_header *const header = frame->header;
         const place own = turn_to_world(frame, (place){(double)header->bound_x, (double)header->bound_y});
-        center[side] = (place){frame->position.x + frame->scale * own.x, frame->position.y + frame->scale * own.y};
+        center[side] = add_scaled(frame->position, frame->scale, own);
         *out_size += frame->scale * (double)header->bound_radius;
     }
-    return (place){center[1].x - center[0].x, center[1].y - center[0].y};
+    return subtract(center[1], center[0]);
 }
 
 /* How far the circles are apart. While they are, no contact with a separation below 0 is told (piece/concave.inl). */
 static double find_circle_gap(const struct scene *scene) {
     double size;
-    const place between = find_circles(scene, &size);
-    return sqrt(find_dot(between, between)) - size;
+    const double apart = find_length(find_circles(scene, &size));
+    return apart - size;
 }
 
 static void compare_arc(const struct scene *scene, int arc, struct nearest *best) {
     place u = find_way(scene, arc);
-    const double length = sqrt(find_dot(u, u)), separation = scene->arc.radius - length - get_radius(scene, arc);
+    const double length = find_length(u), separation = scene->arc.radius - length - get_radius(scene, arc);
     if (separation >= best->separation)
         return;
-    if (length == 0) {
-        const place middle = find_middle_normal(&scene->arc);
-        u = (place){-middle.x, -middle.y};
-    }
+    if (length == 0)
+        u = find_back(find_middle_normal(&scene->arc));
     if (!may_touch(scene, arc, u) || (separation < 0 && find_circle_gap(scene) > 0))
         return;
-    const double size = sqrt(find_dot(u, u));
-    const place n = {-u.x / size, -u.y / size};
+    const place n = divide(find_back(u), find_length(u));
     if (!reach_each_other(&scene->ground, &scene->body, n, separation, scene->front_only)) {
         best->unreached = true;
         return;
     }
-    *best =
-        (struct nearest){separation,
-                         n,
-                         {scene->arc.center.x - scene->arc.radius * n.x, scene->arc.center.y - scene->arc.radius * n.y},
-                         arc,
-                         false,
-                         false,
-                         best->unreached};
+    const place at = add_scaled(scene->arc.center, -scene->arc.radius, n);
+    *best = (struct nearest){separation, n, at, arc, false, false, best->unreached};
 }
 
 /* An end of the concave arc, where `normal` is its normal: how far is it from the body? The largest gap of all normals
  * of the body is at one of its arcs or junctions. */
 static void compare_end(const struct scene *scene, place normal, struct nearest *best) {
     const struct body_frame *const body = &scene->body;
-    const place at = {scene->arc.center.x - scene->arc.radius * normal.x,
-                      scene->arc.center.y - scene->arc.radius * normal.y};
-    const place from = {scene->ground.position.x + at.x - body->position.x,
-                        scene->ground.position.y + at.y - body->position.y};
-    const place own = turn_to_shape(body, from);
+    const place at = add_scaled(scene->arc.center, -scene->arc.radius, normal),
+                own = turn_to_shape(body, subtract(add_scaled(scene->ground.position, 1, at), body->position));
     struct nearest found = {-INFINITY, {0, 0}, at, 0, false, true, best->unreached};
     for (int k = 0; k < body->header->count; k++) {
         const narc_stored_arc *const arc = &body->arcs[k].arc;
-        const place u = {own.x - body->scale * (double)arc->center_x, own.y - body->scale * (double)arc->center_y};
-        const place start = {(double)arc->start_x, (double)arc->start_y},
-                    end = {(double)arc->end_x, (double)arc->end_y};
-        const double length = sqrt(find_dot(u, u));
-        const bool held = length > 0 && find_cross(start, u) >= 0 && find_cross(u, end) >= 0;
+        const place u = add_scaled(own, -body->scale, get_center(arc)), start = get_start(arc);
+        const double length = find_length(u);
+        const bool held = length > 0 && find_cross(start, u) >= 0 && find_cross(u, get_end(arc)) >= 0;
         const double gap = (held ? length : find_dot(u, start)) - get_radius(scene, k);
         if (gap <= found.separation)
             continue;
         found.separation = gap;
-        found.normal = held ? (place){u.x / length, u.y / length} : start;
+        found.normal = held ? divide(u, length) : start;
         found.arc = k;
         found.on_edge = !held && is_edge_before(body, k);
     }
     if (found.separation >= best->separation ||
         !narc_touches(body->header, find_feature_number(body->header, found.arc, found.on_edge)))
         return;
-    const place n = turn_to_world(body, found.normal);
     *best = found;
-    best->normal = (place){-n.x, -n.y};
+    best->normal = find_back(turn_to_world(body, found.normal));
 }
 
 /* The least separation; infinite if nothing of them may touch. */
@@ -267,8 +252,7 @@ static double find_leaving(const struct scene *scene, int arc, double goal, plac
     if (!(goal >= 0) || !(square > 0) || height < 0)
         return INFINITY;
     const double time = (sqrt(height) - find_dot(u, motion)) / square;
-    const place then = {u.x + time * motion.x, u.y + time * motion.y};
-    return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
+    return time >= 0 && may_touch(scene, arc, add_scaled(u, time, motion)) ? time : INFINITY;
 }
 
 /* When do the circles come to meet? */
@@ -283,23 +267,19 @@ static double find_meeting(const struct scene *scene, place motion) {
  * past an end: into a sector, as what leaves one may still be told of just behind that time, by rounding. */
 static double find_entering(const struct scene *scene, int arc, double target, place motion, double meeting) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
-    const place u = find_way(scene, arc),
-                start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
-                end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
-    const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
-    const double inward[4] = {-1, 1, 1,
-                              -1}; /* of what is across a side, if its arc comes in; the ground's normals are -u */
-    const double along = ALONG_A_SIDE * sqrt(find_dot(motion, motion));
+    const place u = find_way(scene, arc);
+    const place sides[4] = {scene->arc.start, scene->arc.end, turn_to_world(&scene->body, get_start(stored)),
+                            turn_to_world(&scene->body, get_end(stored))};
+    /* Of what is across a side, if its arc comes in; the ground's normals are -u. */
+    const double inward[4] = {-1, 1, 1, -1}, along = ALONG_A_SIDE * find_length(motion);
     double least = INFINITY;
     for (int k = 0; k < 5; k++) {
         const double across = k < 4 ? inward[k] * find_cross(sides[k], motion) : INFINITY;
         const double time = (k < 4 ? -inward[k] * find_cross(sides[k], u) / across : meeting) + JUST_BEHIND;
-        struct scene then = *scene;
         struct nearest nearest = {.separation = INFINITY};
         if (!(across > along && time >= 0 && time < least))
             continue;
-        then.body.position.x += time * motion.x;
-        then.body.position.y += time * motion.y;
+        const struct scene then = move_body(scene, time, motion);
         compare_arc(&then, arc, &nearest);
         least = nearest.separation <= target ? time : least;
     }
@@ -311,9 +291,7 @@ static bool is_seen_clear(const struct scene *scene, double time, double target,
     enum { LOOKS = 16 };
     bool clear = false;
     for (int k = 1; k < LOOKS && !clear; k++) {
-        struct scene then = *scene;
-        then.body.position.x += time * k / LOOKS * motion.x;
-        then.body.position.y += time * k / LOOKS * motion.y;
+        const struct scene then = move_body(scene, time * k / LOOKS, motion);
         const struct nearest nearest = find_nearest(&then, false);
         clear = nearest.separation > target + room && !nearest.unreached;
     }
@@ -374,13 +352,13 @@ struct speeds {
 
 static struct speeds find_speeds(const struct body_frame bodies[2], const narc_casts *casts, size_t slot) {
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]}, from = {casts->x[slot], casts->y[slot]};
-    struct speeds s = {.motion = sqrt(find_dot(motion, motion))};
-    s.apart = sqrt(find_dot(from, from)) + s.motion;
+    struct speeds s = {.motion = find_length(motion)};
+    s.apart = find_length(from) + s.motion;
     for (int side = 0; side < 2; side++) {
         const narc_shape_header *const h = bodies[side].header;
-        const double x = (double)h->bound_x, y = (double)h->bound_y;
+        const place center = {(double)h->bound_x, (double)h->bound_y};
         s.turn[side] = fabs((double)casts->side[side].angle[slot]);
-        s.reach[side] = bodies[side].scale * (sqrt(x * x + y * y) + (double)h->bound_radius);
+        s.reach[side] = bodies[side].scale * (find_length(center) + (double)h->bound_radius);
     }
     return s;
 }
@@ -454,16 +432,15 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
 static double find_arc_wait(const struct scene *scene, int arc, double target, double between, const struct speeds *s,
                             int side) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
-    const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = {-u.x, -u.y};
-    const place start = {(double)stored->start_x, (double)stored->start_y},
-                end = {(double)stored->end_x, (double)stored->end_y};
+    const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = find_back(u);
     const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
-    const double separation = scene->arc.radius - sqrt(find_dot(u, u)) - get_radius(scene, arc),
+    const double separation = scene->arc.radius - find_length(u) - get_radius(scene, arc),
                  apart = find_most(separation - target, find_least(-separation, between));
     const double beside = find_most(-find_cross(scene->arc.start, back), -find_cross(back, scene->arc.end)),
-                 beyond = round ? -INFINITY : find_most(-find_cross(start, own), -find_cross(own, end));
+                 beyond = round ? -INFINITY
+                                : find_most(-find_cross(get_start(stored), own), -find_cross(own, get_end(stored)));
     const double speed = find_speed_seen(s, 1 - side, s->reach[1 - side]),
-                 its = find_speed_seen(s, side, sqrt(find_dot(scene->arc.center, scene->arc.center)));
+                 its = find_speed_seen(s, side, find_length(scene->arc.center));
     return find_most(find_most(apart, beside) / speed, beyond / its);
 }
 
@@ -498,12 +475,10 @@ static void place_outline(const struct body_frame *frame, struct outline *out) {
     out->count = frame->header->count;
     for (int k = 0; k < out->count; k++) {
         const narc_stored_arc *const a = &frame->arcs[k].arc;
-        const place center = turn_to_world(frame, (place){(double)a->center_x, (double)a->center_y});
-        out->center[k] =
-            (place){frame->position.x + frame->scale * center.x, frame->position.y + frame->scale * center.y};
+        out->center[k] = add_scaled(frame->position, frame->scale, turn_to_world(frame, get_center(a)));
         out->radius[k] = frame->scale * (double)a->radius;
-        out->start[k] = turn_to_world(frame, (place){(double)a->start_x, (double)a->start_y});
-        out->end[k] = turn_to_world(frame, (place){(double)a->end_x, (double)a->end_y});
+        out->start[k] = turn_to_world(frame, get_start(a));
+        out->end[k] = turn_to_world(frame, get_end(a));
     }
 }
 
@@ -574,19 +549,18 @@ static struct gaps find_gaps(const struct body_frame bodies[2], const struct out
     double height;
     for (int i = 0; i < a->count; i++)
         for (int j = 0; j < b->count; j++) {
-            const place u = {b->center[j].x - a->center[i].x, b->center[j].y - a->center[i].y}, back = {-u.x, -u.y};
-            const double length = sqrt(find_dot(u, u));
-            if (length > 0 && is_held(a, i, u) && is_held(b, j, back))
-                compare_gap(bodies, length - a->radius[i] - b->radius[j], (place){u.x / length, u.y / length}, i, j, -1,
-                            &out);
+            const place u = subtract(b->center[j], a->center[i]);
+            const double length = find_length(u);
+            if (length > 0 && is_held(a, i, u) && is_held(b, j, find_back(u)))
+                compare_gap(bodies, length - a->radius[i] - b->radius[j], divide(u, length), i, j, -1, &out);
         }
     for (int i = 0; i < a->count; i++) {
         const place n = a->start[i];
-        const int j = find_furthest(b, (place){-n.x, -n.y}, &height);
+        const int j = find_furthest(b, find_back(n), &height);
         compare_gap(bodies, -find_dot(a->center[i], n) - a->radius[i] - height, n, i, j, 0, &out);
     }
     for (int j = 0; j < b->count; j++) {
-        const place n = {-b->start[j].x, -b->start[j].y};
+        const place n = find_back(b->start[j]);
         const int i = find_furthest(a, n, &height);
         compare_gap(bodies, find_dot(b->center[j], n) - b->radius[j] - height, n, i, j, 1, &out);
     }
@@ -613,7 +587,7 @@ static struct stretch find_stretch(const struct body_frame *frame, const struct 
                         .radius = (float)o->radius[arc]};
     for (int k = 0; k < o->count; k++) {
         const double from = find_cross(o->start[k], out), to = find_cross(out, o->end[k]);
-        const place p = {o->center[k].x + o->radius[k] * out.x, o->center[k].y + o->radius[k] * out.y};
+        const place p = add_scaled(o->center[k], o->radius[k], out);
         const double along = find_cross(n, p);
         if (!(from >= -ALONG_EDGE && to >= -ALONG_EDGE && find_dot(out, o->start[k]) + find_dot(out, o->end[k]) >= 0))
             continue;
@@ -652,12 +626,13 @@ static void write_run_contact(const struct body_frame bodies[2], const struct ou
 #define BESIDE_COSINE 0.96891242171064478 /* of 1/4 */
 #define BESIDE_SINE   0.24740395925452293
 
-/* How far the front reaches along a unit vector. */
-static double find_front_reach(const struct body_frame *frame, place n) {
+/* How far an arc of a body is beyond a run's front along a unit vector. */
+static double find_gap_from(const struct outline *body, int arc, place n, const struct body_frame *run) {
     double size;
-    const place own = turn_to_shape(frame, n);
-    return find_dot(frame->position, n) +
-           frame->scale * narc_find_front_height(frame->header, frame->arcs, own.x, own.y, 0, &size);
+    const place own = turn_to_shape(run, n);
+    const double reach = find_dot(run->position, n) +
+                         run->scale * narc_find_front_height(run->header, run->arcs, own.x, own.y, 0, &size);
+    return find_dot(body->center[arc], n) - body->radius[arc] - reach;
 }
 
 /* How far a body is from a run's front alone, at least. In *out_beside, the greatest gap beside its ends. */
@@ -671,21 +646,16 @@ static double find_front_distance(const struct body_frame *run, const struct out
         const place p = of_run->center[corner], n = end ? of_run->start[corner] : of_run->end[corner];
         const double sine = end ? BESIDE_SINE : -BESIDE_SINE;
         const place beside = {BESIDE_COSINE * n.x - sine * n.y, BESIDE_COSINE * n.y + sine * n.x};
-        (void)find_furthest(body, (place){-beside.x, -beside.y}, &height);
+        (void)find_furthest(body, find_back(beside), &height);
         *out_beside = find_most(*out_beside, -find_dot(p, beside) - height);
         for (int k = 0; k < body->count; k++) {
-            const place u = {body->center[k].x - p.x, body->center[k].y - p.y}, back = {-u.x, -u.y};
-            const double length = sqrt(find_dot(u, u));
-            if (!(length > 0) || !is_held(body, k, back))
-                continue;
-            const place m = {u.x / length, u.y / length};
-            most = find_most(most, find_dot(body->center[k], m) - body->radius[k] - find_front_reach(run, m));
+            const place u = subtract(body->center[k], p);
+            if (find_length(u) > 0 && is_held(body, k, find_back(u)))
+                most = find_most(most, find_gap_from(body, k, divide(u, find_length(u)), run));
         }
     }
-    for (int k = 0; k < body->count; k++) {
-        const place m = {-body->start[k].x, -body->start[k].y};
-        most = find_most(most, find_dot(body->center[k], m) - body->radius[k] - find_front_reach(run, m));
-    }
+    for (int k = 0; k < body->count; k++)
+        most = find_most(most, find_gap_from(body, k, find_back(body->start[k]), run));
     return most;
 }
 
@@ -743,7 +713,7 @@ static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
 int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot, float wanted) {
     const bool of_a = is_concave(shapes, casts, slot, 0), of_b = is_concave(shapes, casts, slot, 1);
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]};
-    const double speed = sqrt(find_dot(motion, motion)) + casts->moved[slot];
+    const double speed = find_length(motion) + casts->moved[slot];
     double size = INFINITY;
     for (int side = 0; side < 2; side++)
         size = find_least(size, (double)casts->side[side].scale[slot] *

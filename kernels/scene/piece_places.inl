@@ -22,8 +22,6 @@ struct piece_place {
     unsigned feature;
 };
 
-INLINE place add_scaled(place a, double factor, place b) { return (place){a.x + factor * b.x, a.y + factor * b.y}; }
-
 /* Of the point's distance from a place this part says nothing of the direction between them. */
 #define PLACE_ROOM 0x1p-24
 
@@ -42,7 +40,7 @@ INLINE place add_scaled(place a, double factor, place b) { return (place){a.x + 
 INLINE void take_place(struct piece_place *best, place point, place at, place normal, double room, double radius,
                        unsigned feature) {
     const place d = add_scaled(point, -1, at);
-    const double distance = sqrt(find_dot(d, d)), separation = find_dot(d, normal) < 0 ? -distance : distance;
+    const double distance = find_length(d), separation = find_dot(d, normal) < 0 ? -distance : distance;
     const bool is_end = room >= 0;
     const double counted = is_end ? distance + room : distance;
     if (!(counted < best->distance))
@@ -56,9 +54,9 @@ INLINE void take_place(struct piece_place *best, place point, place at, place no
 INLINE void look_at_arc(struct piece_place *best, place point, const narc_stored_arc *arc, unsigned feature,
                         double room) {
     const double radius = (double)arc->radius;
-    const place center = {(double)arc->center_x, (double)arc->center_y}, u = add_scaled(point, -1, center);
-    const place start = {(double)arc->start_x, (double)arc->start_y}, end = {(double)arc->end_x, (double)arc->end_y};
-    const double length = sqrt(find_dot(u, u)), along = signbit(radius) ? -length : length;
+    const place center = get_center(arc), u = add_scaled(point, -1, center);
+    const place start = get_start(arc), end = get_end(arc);
+    const double length = find_length(u), along = signbit(radius) ? -length : length;
     const place n = {u.x / along, u.y / along}; /* NaN at the centre, which is held by none */
     if (find_cross(start, n) >= 0 && find_cross(n, end) >= 0 && find_dot(start, n) + find_dot(end, n) > 0)
         take_place(best, point, add_scaled(center, radius, n), n, -1, radius, feature);
@@ -79,7 +77,7 @@ INLINE double find_end_room(const struct body_frame *frame) {
     const narc_stored_arc *const end = &frame->arcs[find_stored(frame, count - 5)].arc,
                                  *const far = &frame->arcs[find_stored(frame, count - 4)].arc;
     const place way = {(double)far->center_x - (double)end->center_x, (double)far->center_y - (double)end->center_y};
-    return RUN_ROOM * sqrt(find_dot(way, way));
+    return RUN_ROOM * find_length(way);
 }
 
 /* What is in front of a run's arc `number` of the caller's, 1 ... count - 5: the edge before it, and the arc itself, but
@@ -89,10 +87,9 @@ INLINE void look_at_front(struct piece_place *best, place point, const struct bo
     const int count = frame->header->count, stored = find_stored(frame, number);
     const narc_stored_arc *const arc = &frame->arcs[stored].arc;
     const narc_stored_arc *const before = &frame->arcs[(stored + count - 1) % count].arc;
-    const place normal = {(double)arc->start_x, (double)arc->start_y};
-    const place from =
-        add_scaled((place){(double)before->center_x, (double)before->center_y}, (double)before->radius, normal);
-    const place to = add_scaled((place){(double)arc->center_x, (double)arc->center_y}, (double)arc->radius, normal);
+    const place normal = get_start(arc);
+    const place from = add_scaled(get_center(before), (double)before->radius, normal);
+    const place to = add_scaled(get_center(arc), (double)arc->radius, normal);
     const place edge = add_scaled(to, -1, from);
     const double part = find_dot(add_scaled(point, -1, from), edge) / find_dot(edge, edge);
     const bool is_edge = is_edge_before(frame, stored), is_last = number + 5 == count;

@@ -70,14 +70,13 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     const int k = number / 2, count = (int)frame->header->count;
     const narc_stored_arc *const arc = &frame->arcs[k].arc;
     const bool is_edge = number % 2, round = frame->header->flags & NARC_SHAPE_CIRCLE;
-    const place center = see_place(thing, frame, (place){(double)arc->center_x, (double)arc->center_y}),
-                start = turn_to_world(frame, (place){(double)arc->start_x, (double)arc->start_y});
+    const place center = see_place(thing, frame, get_center(arc)), start = turn_to_world(frame, get_start(arc));
     const double radius = frame->scale * (double)arc->radius;
     out->feature = find_feature_number(frame->header, k, is_edge);
     out->round = round;
     if (!is_edge) {
-        const place end = turn_to_world(frame, (place){(double)arc->end_x, (double)arc->end_y});
-        const double away = sqrt(find_dot(center, center));
+        const place end = turn_to_world(frame, get_end(arc));
+        const double away = find_length(center);
         *out = (struct curve){center, start, end, radius, 0, fabs(away - radius), out->feature, round};
         if (!is_on_arc(out, (place){-center.x / away, -center.y / away})) {
             const place first = {center.x + radius * start.x, center.y + radius * start.y},
@@ -91,11 +90,11 @@ INLINE bool see_curve(const struct thing *thing, const struct body_frame *frame,
     if (round || !is_edge_before(frame, k))
         return false;
     const narc_stored_arc *const before = &frame->arcs[(k + count - 1) % count].arc;
-    const place last = see_place(thing, frame, (place){(double)before->center_x, (double)before->center_y});
+    const place last = see_place(thing, frame, get_center(before));
     const double last_radius = frame->scale * (double)before->radius;
     const place from = {last.x + last_radius * start.x, last.y + last_radius * start.y},
                 way = {center.x + radius * start.x - from.x, center.y + radius * start.y - from.y};
-    const double length = sqrt(find_dot(way, way));
+    const double length = find_length(way);
     const place along = {way.x / length, way.y / length};
     const double before_start = find_dot(from, along), behind_end = -before_start - length,
                  beside = find_most(before_start, behind_end) - 2 * END_ROOM_OF_CURVES * length,
@@ -121,7 +120,7 @@ NOINLINE bool is_way_out(const struct thing *thing, const struct body_frame *fra
     const double seam = find_seam(frame);
     const place from = {thing->point.x + at.x, thing->point.y + at.y};
     struct part_walk parts = begin_part_walk(thing->index, thing->chosen, thing->owner, from,
-                                             8 * seam * sqrt(find_dot(n, n)) + 0x1p-14 * sqrt(find_dot(at, at)));
+                                             8 * seam * find_length(n) + 0x1p-14 * find_length(at));
     struct body_frame other;
     uint32_t body;
     while (find_next_part(&parts, thing->shapes, thing->bodies, &body, &other)) {
@@ -136,7 +135,7 @@ NOINLINE bool is_way_out(const struct thing *thing, const struct body_frame *fra
 /* Takes a place, if it is nearer and `out` leads out of all parts there. */
 INLINE void take_way_out(const struct thing *thing, const struct body_frame *frame, uint32_t body, place at, place n,
                          place out, const struct curve *curve, bool is_corner, struct way_out *best) {
-    const double distance = sqrt(find_dot(at, at));
+    const double distance = find_length(at);
     const bool before =
         body != best->body ? body < best->body
         : curve->feature != best->feature
@@ -158,7 +157,7 @@ INLINE void look_at_feet(const struct thing *thing, const struct body_frame *fra
         if (!see_curve(thing, frame, k, &curve) || curve.distance > best->distance)
             continue;
         const place u = {-curve.center.x, -curve.center.y};
-        const double length = sqrt(find_dot(u, u));
+        const double length = find_length(u);
         place n = curve.start;
         double to = -find_dot(u, n);
         if (curve.radius < INFINITY) {
@@ -208,7 +207,7 @@ INLINE place lead_out(const struct curve *a, const struct curve *b, place at) {
         sum.x += edge ? of->start.x : (at.x - of->center.x) / of->radius;
         sum.y += edge ? of->start.y : (at.y - of->center.y) / of->radius;
     }
-    const double by = 1 / find_most(sqrt(find_dot(sum, sum)), 0x1p-60);
+    const double by = 1 / find_most(find_length(sum), 0x1p-60);
     return (place){by * sum.x, by * sum.y};
 }
 
@@ -242,7 +241,7 @@ NOINLINE void look_at_crossings(const struct thing *thing, const struct body_fra
                 if (own[k].distance > best->distance)
                     continue;
                 for (int found = cross_curves(&own[k], &curve, at) - 1; found >= 0; found--) {
-                    const double length = sqrt(find_dot(at[found], at[found]));
+                    const double length = find_length(at[found]);
                     const place n = length > 0 ? (place){at[found].x / length, at[found].y / length} : own[k].start;
                     if (length <= best->distance && is_on_curve(&own[k], at[found]) && is_on_curve(&curve, at[found]))
                         take_way_out(thing, frame, body, at[found], n, lead_out(&own[k], &curve, at[found]), &own[k],
