@@ -64,11 +64,11 @@ static vm settle_runs(const struct call *call, vm open, vf margin, vf item[FIELD
                : settle_above_edges(call, second ? second : answer_rows_on_edges, open, margin, item);
 }
 
-/* Pairs of a circle and a piece come before those of two forms. Others come behind, out of order. */
+/* Pairs of a circle and a piece of a chain come before those of two forms. Others come behind, out of order. */
 INLINE vm take_detours(const struct call *call, const struct pair_indices *indices, int k,
                        const struct placement *placement, vm open, int32_t number) {
     vm left = open;
-    if (NARC_PIECES && NARC_CIRCLE_FORMS && !LIKELY(!call->concave)) {
+    if (NARC_PIECES && NARC_CIRCLE_FORMS && !LIKELY(!call->concave) && call->batch->shapes->fronts) {
         const struct placement copy = *placement; /* so that the other one stays in registers */
         left = vm_and_not(open, take_circles_on_pieces(call, indices, k, &copy, open, number));
         if (vm_any(vm_and_not(open, left)))
