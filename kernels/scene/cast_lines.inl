@@ -182,8 +182,7 @@ INLINE void meet(narc_casts *casts, size_t k, int h, const struct meeting_arcs *
     const vd radius = scale_a * d_of_floats(arcs->radius[0] + h) + scale_b * d_of_floats(arcs->radius[1] + h) +
                       d_of_floats(casts->target + slot);
     const vl round = d_lt(zero, radius);
-    const vd part = find_cross(v, u) / d_select(round, radius, one),
-             most = d_select(d_lt(part, -one), -one, d_min(part, one));
+    const vd part = find_cross(v, u) / d_select(round, radius, one), most = d_max(-one, d_min(part, one));
     const vd sine = d_select(round, most, zero), cosine = d_sqrt((one - sine) * (one + sine));
     const dvec2 inner = {-sine * v.y - cosine * v.x, sine * v.x - cosine * v.y};
     const vl within = d_le(zero, find_cross(lo, inner)) & d_le(zero, find_cross(inner, hi)),
@@ -192,8 +191,7 @@ INLINE void meet(narc_casts *casts, size_t k, int h, const struct meeting_arcs *
                 m = {d_select(within, inner.x, end.x), d_select(within, inner.y, end.y)};
     const vd error = find_dot(m, m) - one, factor = NARC_INVERSE_LENGTH(error);
     const dvec2 n = {factor * m.x, factor * m.y};
-    const vd slope = -find_dot(n, v), least = d_set(LEAST_SLOPE),
-             falls = f.way * d_select(d_lt(least, slope), slope, least);
+    const vd slope = -find_dot(n, v), least = d_set(LEAST_SLOPE), falls = f.way * d_max(slope, least);
     const vd gap = find_dot(n, u) - radius, start = gap / falls, sure = (gap - d_load(casts->enough + slot)) / falls;
     const vd latest = d_load(casts->end + slot);
     const vl moves = live & d_lt(zero, f.way),

@@ -103,7 +103,7 @@ INLINE vd find_lever(const struct outline *outline, int h) {
     const dvec2 inner = get_dvec2(outline->inner_x + h, outline->inner_y + h);
     const dvec2 bound = get_dvec2(outline->bound_x + h, outline->bound_y + h);
     const vd off = find_length(inner), zero = d_set(0), radius = d_of_floats(outline->inner + h);
-    const vd r = d_select(d_lt(zero, radius), radius, zero);
+    const vd r = d_max(radius, zero);
     const vd far = d_of_floats(outline->bound + h) + find_length((dvec2){bound.x - inner.x, bound.y - inner.y});
     const vl round = d_lt(zero, d_of_floats(outline->round + h));
     return off + d_select(round, zero, d_sqrt(far * far - r * r));
@@ -145,7 +145,7 @@ INLINE vl meet_circles(dvec2 apart, dvec2 motion, vd reach, vd *out_start, vd *o
     const vd zero = d_set(0), one = d_set(1), square = find_dot(motion, motion);
     const vd excess = find_dot(apart, apart) - reach * reach, along = find_dot(apart, motion),
              across = find_cross(apart, motion), height = reach * reach * square - across * across;
-    const vd half = d_sqrt(d_select(d_lt(height, zero), zero, height));
+    const vd half = d_sqrt(d_max(zero, height));
     const vl rests = d_le(square, zero), touch = d_le(excess, zero);
     const vd divisor = d_select(rests, one, square), first = (-along - half) / divisor, last = (half - along) / divisor;
     const vl ahead = ~touch & ~rests & d_lt(zero, first); /* not where they are all but as near now */
@@ -164,11 +164,11 @@ struct passage {
 /* Along an axis of one, on which the positions are `reach` from each other then. */
 INLINE void pass_axis(vd way, vd motion, vd reach, vd enough, struct passage *passage) {
     const vd zero = d_set(0), speed = d_abs(motion), rest = d_set(1e-300);
-    const vd inverse = d_set(1) / d_select(d_lt(rest, speed), speed, rest), room = enough * inverse;
+    const vd inverse = d_set(1) / d_max(speed, rest), room = enough * inverse;
     const vd behind = d_select(d_lt(motion, zero), -way, way), first = (-reach - behind) * inverse,
              last = (reach - behind) * inverse, least = first - room;
-    passage->first = d_select(d_lt(passage->first, first), first, passage->first);
-    passage->least = d_select(d_lt(passage->least, least), least, passage->least);
+    passage->first = d_max(first, passage->first);
+    passage->least = d_max(least, passage->least);
     passage->last = d_min(passage->last, last + room);
 }
 
@@ -220,7 +220,7 @@ INLINE void begin_half(float tolerance, narc_casts *casts, size_t k, int h, cons
         const vd given = d_set((double)tolerance),
                  sizes = d_min(find_tolerance(&casts->side[0], k, &outline[0], h),
                                find_tolerance(&casts->side[1], k, &outline[1], h)),
-                 part = d_min(d_set(MOVED_PART) * moved, sizes), usual = d_select(d_lt(enough, part), part, enough);
+                 part = d_min(d_set(MOVED_PART) * moved, sizes), usual = d_max(part, enough);
         enough = d_select(turns, d_select(d_lt(zero, given), given, usual), enough);
     }
     const vl boxes = meet & ~turns & d_of_lanes(loaded->boxes, h);

@@ -207,7 +207,7 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     const vd falls = d_load(casts->moved + slot) - along;
     vd slope;
     const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, &slope), least = gap / falls;
-    const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
+    const vd next = time + d_max(duration, least), safe = round_down(next);
     const vl near = d_le(gap, d_load(casts->enough + slot)), last = d_le(d_set(MOST_ROUNDS), rounds);
     const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(CAST_GOES_ON);
     vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), on);

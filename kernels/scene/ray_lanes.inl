@@ -137,8 +137,8 @@ INLINE vd enter_arc_lanes(const struct arc_lanes *arcs, int l, struct half_met *
     const vec2d end = d_of_half2(arcs->normals + 2, l);
     const vec2d at = d_of_half2(arcs->at, l), center = {at.x - foot.x, at.y - foot.y};
     const vd radius = d_of_half(arcs->at + 2, l), beside = d_cross(v, center) / radius;
-    const vd zero = d_set(0), one = d_set(1), least = d_set(-1);
-    const vd capped = d_select(d_lt(beside, least), least, d_select(d_lt(one, beside), one, beside));
+    const vd zero = d_set(0), one = d_set(1);
+    const vd capped = d_max(d_set(-1), d_min(one, beside));
     const vd half = d_sqrt((one - capped) * (one + capped));
     const vec2d n = {capped * v.y - half * v.x, -capped * v.x - half * v.y};
     const vl behind = d_le(zero, d_cross(start, n)), before = d_le(zero, d_cross(n, end)), is_within = behind & before;

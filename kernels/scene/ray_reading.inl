@@ -47,11 +47,10 @@ struct read_rays {
     struct read_axis x, y;
 };
 
-INLINE vd d_most(vd a, vd b) { return d_select(d_lt(b, a), a, b); }
 /* A single ray, which was just written, is not read in a vector: that would wait. */
 INLINE vd get_lanes(const double *p, bool single) { return single ? d_set(*p) : d_load(p); }
 
-INLINE vd clip(vd a, double limit) { return d_most(d_set(-limit), d_min(d_set(limit), a)); }
+INLINE vd clip(vd a, double limit) { return d_max(d_set(-limit), d_min(d_set(limit), a)); }
 
 /* A ray meets a body that it passes by TOUCH, and what rounding adds, perhaps beside its box. For each unit of the
  * extent's ratio to the bounding radius, which is less than 1.42 times the scene's largest coordinate. */
@@ -67,7 +66,7 @@ INLINE vd find_limit(vd fraction, vd length, vd base, vd room) {
 INLINE void cut_stretch(vd low, vd high, vd origin, vd inverse, vd *from, vd *to) {
     const vl backwards = d_lt(inverse, d_set(0));
     const vd a = (low - origin) * inverse, b = (high - origin) * inverse;
-    *from = d_most(d_select(backwards, b, a), *from);
+    *from = d_max(d_select(backwards, b, a), *from);
     *to = d_min(d_select(backwards, a, b), *to);
 }
 

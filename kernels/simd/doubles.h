@@ -23,6 +23,7 @@ INLINE vd d_select(vl m, vd a, vd b) { return m ? a : b; }
 INLINE vd d_sqrt(vd a) { return sqrt(a); }
 INLINE vd d_abs(vd a) { return fabs(a); }
 INLINE vd d_min(vd a, vd b) { return a < b ? a : b; }
+INLINE vd d_max(vd a, vd b) { return a > b ? a : b; }
 INLINE uint32_t d_bits(vl m) { return m & 1; }
 INLINE vl d_of_lanes(vm m, int h) { return -(vl)(m << h); }
 INLINE vd d_pack(vl m, vd a) { return m ? a : 0; }
@@ -56,6 +57,7 @@ INLINE vd d_select(vl m, vd a, vd b) { return _mm512_mask_blend_pd((__mmask8)m, 
 INLINE vd d_sqrt(vd a) { return _mm512_sqrt_pd(a); }
 INLINE vd d_abs(vd a) { return _mm512_abs_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
+INLINE vd d_max(vd a, vd b) { return _mm512_max_pd(a, b); }
 INLINE uint32_t d_bits(vl m) { return (__mmask8)m; }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)m >> h; }
 INLINE vd d_pack(vl m, vd a) { return _mm512_maskz_compress_pd((__mmask8)m, a); }
@@ -75,6 +77,7 @@ INLINE vd d_pack(vl m, vd a) { return (vd)v_pack(vm_packing((vm)m), (vf)a); }
 INLINE vd d_select(vl m, vd a, vd b) { return _mm256_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm256_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm256_min_pd(a, b); }
+INLINE vd d_max(vd a, vd b) { return _mm256_max_pd(a, b); }
 INLINE uint32_t d_bits(vl m) { return (uint32_t)_mm256_movemask_pd((vd)m); }
 INLINE vl d_of_lanes(vm m, int h) {
     const __m256i all = _mm256_castps_si256(m);
@@ -89,6 +92,7 @@ INLINE vf d_join_floats(const vd *a) {
 INLINE vd d_select(vl m, vd a, vd b) { return _mm_blendv_pd(b, a, (vd)m); }
 INLINE vd d_sqrt(vd a) { return _mm_sqrt_pd(a); }
 INLINE vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
+INLINE vd d_max(vd a, vd b) { return _mm_max_pd(a, b); }
 INLINE uint32_t d_bits(vl m) { return (uint32_t)_mm_movemask_pd((vd)m) & ((1 << D_WIDTH) - 1); }
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? _mm_unpackhi_ps(m, m) : _mm_unpacklo_ps(m, m)); }
 #ifdef NARC_SIMD_ONE_H
@@ -105,6 +109,7 @@ INLINE vf d_join_floats(const vd *a) { return _mm_movelh_ps(_mm_cvtpd_ps(a[0]), 
 #else
 INLINE vd d_select(vl m, vd a, vd b) { return (vd)((m & (vl)a) | (~m & (vl)b)); }
 INLINE vd d_min(vd a, vd b) { return d_select(d_lt(a, b), a, b); }
+INLINE vd d_max(vd a, vd b) { return d_select(d_lt(b, a), a, b); }
 INLINE uint32_t d_bits(vl m) { return (uint32_t)((m[0] & 1) | (m[1] & 2)); }
 #if defined(__aarch64__)
 INLINE vl d_of_lanes(vm m, int h) { return (vl)(h ? vzip2q_u32(m, m) : vzip1q_u32(m, m)); }
