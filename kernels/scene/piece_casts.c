@@ -39,6 +39,11 @@ enum { MOST_CONTACTS = 1024, HALVINGS = 8 };
  * chance, and so is when it would enter. */
 #define ALONG_A_SIDE 1e-9
 
+/* Is an arc, or the edge before it, what touches? */
+static bool may_touch_at(const struct body_frame *frame, int arc, bool at_edge) {
+    return narc_touches(frame->header, find_feature_number(frame->header, arc, at_edge));
+}
+
 /* The bodies at a time, from A's position. */
 struct scene {
     struct body_frame ground, body;
@@ -135,12 +140,11 @@ static double measure_way(const struct scene *scene, int arc) {
 /* Is this arc's place that is furthest along u one that may touch? Where two arcs of the body meet rounding decides which
  * of them it belongs to; beyond an arc's end by so little the separation is the same but for the square of that. */
 static bool may_touch(const struct scene *scene, int arc, place u) {
-    const narc_shape_header *const header = scene->body.header;
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
     const double room = DIRECTION_ROOM * measure_way(scene, arc);
     return find_cross(get_start(stored), own) >= -room && find_cross(own, get_end(stored)) >= -room &&
-           narc_touches(header, find_feature_number(header, arc, false)) && holds_normal(&scene->arc, find_back(u));
+           may_touch_at(&scene->body, arc, false) && holds_normal(&scene->arc, find_back(u));
 }
 
 /* The bodies' bounding circles: from the ground's to the body's, and the sum of their radii. */
@@ -202,8 +206,7 @@ static void compare_end(const struct scene *scene, place normal, struct nearest 
         found.arc = k;
         found.on_edge = !held && is_edge_before(body, k);
     }
-    if (found.separation >= best->separation ||
-        !narc_touches(body->header, find_feature_number(body->header, found.arc, found.on_edge)))
+    if (found.separation >= best->separation || !may_touch_at(body, found.arc, found.on_edge))
         return;
     *best = found;
     best->normal = find_back(turn_to_world(body, found.normal));
@@ -455,7 +458,7 @@ static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *cas
     const double separation = !reached && nearest.unreached ? -INFINITY : nearest.separation;
     struct outlook out = {INFINITY, separation, separation, reached};
     for (int arc = 0; arc < scene.body.header->count; arc++)
-        if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
+        if (may_touch_at(&scene.body, arc, false))
             out.wait = find_least(out.wait, find_arc_wait(&scene, arc, target, between, &s, side));
     if (reached)
         write_contact(&scene, &nearest, side, &casts->contact[slot]);
@@ -515,11 +518,6 @@ struct gaps {
     int arc[2];
     bool front[2];
 };
-
-static bool may_touch_at(const struct body_frame *frame, int arc, bool at_start) {
-    const unsigned number = find_feature_number(frame->header, arc, at_start);
-    return narc_touches(frame->header, number);
-}
 
 /* Compares a gap; at the start of an arc its junction is what touches. */
 static void compare_gap(const struct body_frame bodies[2], double gap, place n, int a, int b, int at_start,

@@ -291,6 +291,21 @@ static struct scene make_deep(struct test_random *random, narc_precision precisi
     return scene;
 }
 
+/* Circles and others on arms: beside their positions, by up to four times their size. */
+static struct scene make_arms(struct test_random *random, narc_precision precision) {
+    struct scene scene = create_scene(precision, 2, 96, 48);
+    for (size_t side = 0; side < 2; side++) {
+        struct shape shape = random_below(random, 2) ? circle_of(1) : make_shape(random, random_family(random));
+        const double arm = random_between(random, 0, 4);
+        for (size_t arc = 0; arc < shape.count; arc++)
+            shape.arcs[arc].center_x += arm;
+        scene_add_shape(&scene, &shape);
+    }
+    for (size_t pair = 0; pair < 48; pair++)
+        scene_add_placed(random, &scene, (enum placement)random_below(random, PLACE_COUNT), 0, 1);
+    return scene;
+}
+
 /* `deepest`: targets are down to that; 0: a few. `unfinished`: at most this share of all. */
 static void check_scenes(const char *name, struct scene (*make)(struct test_random *, narc_precision), double turning,
                          double deepest, size_t trials, double unfinished) {
@@ -321,6 +336,9 @@ TEST(test_fast_turns) { check_scenes("fast turns", make_placed, 0x1p23, 0, 5, 0.
 TEST(test_hard_lines) { check_scenes("hard lines", make_hard, 0, 0, 20, 0); }
 
 TEST(test_hard_turning) { check_scenes("hard turning", make_hard, 3, 0, 8, 0.01); }
+
+/* Gaps bend as they may on the ways of arms: a step along their series that is too long misses what grazes. */
+TEST(test_series_of_turning_gaps) { check_scenes("series of turning gaps", make_arms, 8, 0, 30, 0.001); }
 
 /* So deep that the arcs which touch on the way are not those that touch at the target, or that it is never reached. */
 TEST(test_deep_targets) { check_scenes("deep targets", make_deep, 0, 0.6, 60, 0); }
@@ -654,19 +672,15 @@ TEST(test_boxes_on_a_lattice) {
     assert_true(last > 0 && along > 0);
 }
 
-/* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body; one
- * beside its position turns with it. */
+/* A circle about its position that turns is one that does not, to the bit, whatever its radius and the other body. */
 TEST(test_circles_that_turn) {
     enum { PAIRS = 64 };
     struct test_random random = test_random_named("circles that turn");
-    size_t hits = 0, beside = 0;
+    size_t hits = 0;
     for (size_t k = 0; k < test_trials(60); k++) {
         struct scene scene = create_scene((narc_precision)(k % 2), 2, 2 * PAIRS, PAIRS);
-        const double radius = random_log_between(&random, 0.3, 3);
-        struct shape circle = circle_of(radius);
+        const struct shape circle = circle_of(random_log_between(&random, 0.3, 3));
         const struct shape other = k % 3 ? make_shape(&random, random_family(&random)) : circle;
-        if (k % 5 == 4)
-            circle.arcs[0].center_x = 0.25 * radius;
         scene_add_shape(&scene, k % 4 < 2 ? &circle : &other);
         scene_add_shape(&scene, k % 4 < 2 ? &other : &circle);
         for (int pair = 0; pair < PAIRS; pair++)
@@ -683,55 +697,11 @@ TEST(test_circles_that_turn) {
             m.motion[of ? scene.pairs[pair].b : scene.pairs[pair].a].angle = 0;
         AUTO(guard_release_at) narc_impact *const straight = cast_all(&m, NULL);
         for (size_t pair = 0; pair < scene.pair_count; pair++) {
-            const bool same = memcmp(&turning[pair], &straight[pair], sizeof *straight) == 0;
-            hits += same && straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
-            beside += !same;
-            assert_true(same || k % 5 == 4);
+            assert_memory_equal(&turning[pair], &straight[pair], sizeof *straight);
+            hits += straight[pair].count == NARC_CAST_HIT && straight[pair].fraction > 0;
         }
     }
-    print_message("%zu hits of circles about their positions, %zu others of those beside\n", hits, beside);
-    assert_true(test_trials(60) < 10 || (hits > 0 && beside > 0));
-}
-
-/* The series that is followed where bodies turn: circles and boxes on long arms pass by each other across the way between
- * them, and are at one time as near as the target, or by less than their size nearer. A step past that misses it. */
-TEST(test_series_of_turning_gaps) {
-    enum { PAIRS = 64 };
-    struct test_random random = test_random_named("series of turning gaps");
-    struct summary summary = {.at_start = 0};
-    for (size_t k = 0; k < test_trials(40); k++) {
-        struct scene scene = create_scene(NARC_FLOAT64, 2, 2 * PAIRS, PAIRS);
-        for (size_t side = 0; side < 2; side++) {
-            struct shape shape = k & (side + 1) ? box_of(1, 0.5, 0) : circle_of(random_log_between(&random, 0.3, 3));
-            for (size_t arc = 0, arm = random_below(&random, 4); arc < shape.count; arc++)
-                shape.arcs[arc].center_x += (double)arm;
-            scene_add_shape(&scene, &shape);
-        }
-        AUTO(destroy_moving) struct moving m = {.scene = scene, .motion = calloc(2 * PAIRS, sizeof *m.motion)};
-        for (size_t pair = 0; pair < PAIRS; pair++) {
-            struct body a = turned_body(random_between(&random, -4, 4), 1),
-                        b = turned_body(random_between(&random, -4, 4), 1);
-            const double time = random_between(&random, 0.05, 1), way = random_between(&random, -4, 4),
-                         to = random_between(&random, -4, 4);
-            b.shape = 1;
-            scene_add_two(&m.scene, a, b);
-            m.motion[2 * pair].angle = (float)random_between(&random, -8, 8);
-            m.motion[2 * pair + 1] =
-                (narc_motion){(float)(-way * sin(to)), (float)(way * cos(to)), (float)random_between(&random, -8, 8)};
-            struct way w = find_way(&m, pair);
-            go_to(&w, time);
-            w.b.x = w.b.y = 0;
-            const double apart =
-                -reference_gap_along(&w.a, &w.b, cos(to), sin(to)) - random_log_between(&random, 1e-5, 0.1);
-            m.scene.bodies[2 * pair + 1].x = apart * cos(to) - time * w.motion_x;
-            m.scene.bodies[2 * pair + 1].y = apart * sin(to) - time * w.motion_y;
-        }
-        AUTO(guard_release_at) narc_impact *const rows = cast_all(&m, NULL);
-        for (size_t pair = 0; pair < PAIRS; pair++)
-            check_row(&m, pair, &rows[pair], &summary);
-    }
-    print_summary("series of turning gaps", &summary);
-    assert_true(summary.outcomes[NARC_CAST_HIT] > summary.at_start && summary.outcomes[NARC_CAST_UNFINISHED] == 0);
+    assert_true(test_trials(60) < 10 || hits > 0);
 }
 
 /* Rows do not depend on who numbers bodies: in rows of floats and of doubles, as pairs' own bodies, and as two sets, with
