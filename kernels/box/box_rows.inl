@@ -129,7 +129,7 @@ struct touching_sides {
     const vi *reaches; /* of both, as rows have them; NULL: of capsules, or boxes */
 };
 
-/* What rows say of them. */
+/* What rows say of them; the answer's point is only found where it is written. */
 struct told_sides {
     struct box_touch a, b;
     vec2 place;
@@ -145,7 +145,6 @@ INLINE void tell_sides(const struct box_contact *c, const struct touching_sides 
     out->place = (vec2){across, v_mul(half, v_add(v_max(on_a->min, on_b->min), v_min(on_a->max, on_b->max)))};
     out->answer.separation = c->separation;
     out->answer.normal = v2_rotate(t->to_world, n);
-    out->answer.point = v2_rotate(t->to_world, v2_rotate(n, out->place));
     out->answer.feature = vi_add(find_box_feature(&c->a, on_a), vi_shift_left(find_box_feature(&c->b, on_b), 8));
     out->answer.radius_a = v_select(on_a->parallel, flat, t->a.radius);
     out->answer.radius_b = v_select(on_b->parallel, flat, t->b.radius);
@@ -156,8 +155,10 @@ INLINE void tell_sides(const struct box_contact *c, const struct touching_sides 
 INLINE void write_touching(const struct call *call, const struct box_contact *c, const struct touching_sides *t,
                            const struct told_sides *told, vf margin, char *const *place, bool edges) {
     const vec2 n = c->normal;
+    struct answer answer = told->answer; /* what is known so far stays in registers */
     if (!edges) {
-        write_rows(call, place, find_numbers(call, t->pairs), &told->answer);
+        answer.point = v2_rotate(t->to_world, v2_rotate(n, told->place));
+        write_rows(call, place, find_numbers(call, t->pairs), &answer);
         return;
     }
     const vf flat_sine = v_set(call->batch->flat_sine);
@@ -171,7 +172,6 @@ INLINE void write_touching(const struct call *call, const struct box_contact *c,
                                 .place = told->place,
                                 .margin = margin,
                                 .named = vm_front(V_WIDTH)};
-    struct answer answer = told->answer; /* what is known so far stays in registers */
     answer.reach_a = t->reaches ? t->reaches[0] : find_box_reach(&c->a, &told->a, t->capsules);
     answer.reach_b = t->reaches ? t->reaches[1] : find_box_reach(&c->b, &told->b, t->capsules);
     write_sides(call, place, t->pairs, &answer, &sides);

@@ -243,12 +243,6 @@ INLINE vi find_only_id(const struct sides *s, const struct answer *answer) {
     return vi_select(s->named, vi_bits(id), answer->feature);
 }
 
-/* The margin of second points. */
-INLINE vf find_second_margin(const struct call *call, vf margin) {
-    const float asked = call->batch->query->second_margin;
-    return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
-}
-
 /* Writes the rows of manifolds that may have second points. */
 SHARED void write_sides(const struct call *call, char *const *place, vi pairs, const struct answer *answer,
                         const struct sides *s) {
@@ -257,6 +251,7 @@ SHARED void write_sides(const struct call *call, char *const *place, vi pairs, c
     const vm offered = vm_and(a->offered, b->offered);
     if (!vm_any(offered)) {
         struct answer only = *answer;
+        only.point = v2_rotate(s->to_world, v2_rotate(s->n, s->place));
         only.feature = find_only_id(s, answer);
         write_only_points(place, numbers, &only);
         return;
@@ -267,10 +262,12 @@ SHARED void write_sides(const struct call *call, char *const *place, vi pairs, c
     /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
     const vm touch = vm_and_not(vm_and(a->parallel, b->parallel), alone);
     const vm lower_low = v_le(get_low(p.separation), get_high(p.separation)), near_low = is_nearer_low(p.along, along);
-    const vm at_low = vm_or(alone, vm_or(vm_and(touch, lower_low), vm_and_not(near_low, touch)));
-    const vm at_high = vm_not(at_low);
+    const vm at_low = vm_or(alone, vm_or(vm_and(touch, lower_low), vm_and_not(near_low, touch))),
+             at_high = vm_not(at_low);
     const end_pair above = max_ends(p.separation, both_ends(least)); /* rounding may not make the other one less */
-    const vm near = is_below(v_select(at_low, get_high(above), get_low(above)), find_second_margin(call, s->margin));
+    const float asked = call->batch->query->second_margin;
+    const vf margin = v_max(s->margin, v_set(asked == 0 ? -INFINITY : asked));
+    const vm near = is_below(v_select(at_low, get_high(above), get_low(above)), margin);
     const vm two = vm_and_not(near, alone);
     const mask_pair exact = join_masks(vm_and_not(at_low, touch), vm_and_not(at_high, touch));
     p.along = select_ends(exact, both_ends(along), p.along);
