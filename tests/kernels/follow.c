@@ -253,7 +253,7 @@ TEST(test_moves) {
         destroy_scene(&world.scene);
     }
     print_left(&counts);
-    assert_true(counts.left * 4 < counts.all);
+    assert_true(counts.left * 5 < counts.all);
 }
 
 /* Beside boxes, capsules and polygons, which are all left, and broken bodies. */

@@ -591,7 +591,7 @@ static void check_kind(const struct kind *kind) {
         printf(" %zu %s", counts.of[k], what_names[k]);
     printf("; largest error %.3f\n", counts.worst);
     assert_int_equal(counts.of[WRONG], 0);
-    assert_true(kind->make_chain || counts.of[BODY] < 10 * BODIES || counts.of[MINIMUM] > counts.of[BODY] / 8);
+    assert_true(kind->make_chain || counts.of[BODY] < 10 * BODIES || counts.of[MINIMUM] > counts.of[BODY] / 5);
 }
 
 static void check_family(enum chain_family family) {
