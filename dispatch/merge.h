@@ -35,7 +35,7 @@ typedef struct narc_merging {
  *   - Where an edge of a body lies along a line that goes over into a concave arc, and ends on that, both rows are joined.
  *   - Of two rows below 0 of faces that look away from each other, the two sides of a thin solid, the deeper one goes.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
-size_t narc_merge_rows(const narc_merging *rows, size_t count);
+size_t narc_merge_rows(const narc_merging *list, size_t count);
 
 /* The same of rows first .. end - 1, which are of one body; returns the end of those that are left. */
 size_t narc_merge_body(const narc_merging *rows, size_t first, size_t end);
