@@ -381,7 +381,8 @@ enum {
     NARC_SHAPE_HALF_PLANE = 64,    /* narc_add_half_plane(); no other flag */
 };
 
-/* An empty store. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY. */
+/* An empty store. `allocator` NULL: malloc and free; on Linux what has 2 MB or more is asked to lie in large pages, and may take
+ * up to one page of them more. NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **out_shapes);
 
 /* Frees a store; NULL is fine. */

@@ -4,6 +4,7 @@
  */
 #ifdef __linux__
 #define _DEFAULT_SOURCE /* madvise */
+#include <errno.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #endif
@@ -18,9 +19,12 @@ static void *allocate_default(size_t size, void *context) {
     (void)context;
     char *const memory = malloc(size);
 #ifdef MADV_HUGEPAGE
-    const size_t before = (uintptr_t)memory % (uintptr_t)sysconf(_SC_PAGESIZE);
-    if (memory && size >= (size_t)1 << 21)
+    if (memory && size >= (size_t)1 << 21) {
+        const size_t before = (uintptr_t)memory % (uintptr_t)sysconf(_SC_PAGESIZE);
+        const int error = errno; /* where there are none it is another, and nothing has failed */
         (void)madvise(memory - before, size + before, MADV_HUGEPAGE);
+        errno = error;
+    }
 #endif
     return memory;
 }

@@ -122,7 +122,7 @@ INLINE struct circle_verdict judge_two_circles(const struct call *call, const st
     return (struct circle_verdict){known, vm_and(valid, vm_or(certain, apart)), near};
 }
 
-/* Pairs with a circle, in the lanes `which`; `out`: if any is near, or there is only one. */
+/* Pairs with a circle, in the lanes `which`; `out`: if any is near, and of two circles in any case. */
 INLINE struct circle_verdict judge_circles(const struct call *call, const struct box_form *a, const struct box_form *b,
                                            const struct placement *placement, vm which, int32_t number,
                                            enum circle_pairs of, struct circle_pair *out) {

@@ -39,8 +39,9 @@ INLINE void v_double_differences(const struct double_rows *rows, const int32_t *
 INLINE vf v_add(vf a, vf b) { return _mm_add_ps(a, b); }
 INLINE vf v_sub(vf a, vf b) { return _mm_sub_ps(a, b); }
 INLINE vf v_mul(vf a, vf b) { return _mm_mul_ps(a, b); }
-INLINE vf v_div(vf a, vf b) { return _mm_div_ps(a, b); }
-INLINE vf v_sqrt(vf a) { return _mm_sqrt_ps(a); }
+/* Of the first lane alone: in those that nobody needs 0 / 0 would raise what a caller's process may trap. */
+INLINE vf v_div(vf a, vf b) { return _mm_div_ss(a, b); }
+INLINE vf v_sqrt(vf a) { return _mm_sqrt_ss(a); }
 INLINE vf v_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
 INLINE vf v_neg(vf a) { return _mm_xor_ps(_mm_set1_ps(-0.0f), a); }
 INLINE vf v_min(vf a, vf b) { return _mm_min_ps(a, b); }

@@ -238,7 +238,7 @@ static struct question make_question(struct test_random *random, double size) {
     return q;
 }
 
-/* At all scales and places; where bodies move by a hundredth of their size most pairs are decided: all but a sixth. */
+/* At all scales and places; where bodies move by a hundredth of their size most pairs are decided: all but some sixth. */
 TEST(test_moves) {
     struct test_random random = test_random_named("moves");
     struct counts counts = {0};
