@@ -19,7 +19,7 @@ if (system("test -s ".data." && echo yes") eq "yes") {
     set ylabel "nanoseconds per pair"
     set logscale y
     set xrange [3.5:16.5]
-    set yrange [*:*]
+    set yrange [5:*]
     set xtics (4, 6, 8, 12, 16)
     plot for [c = 2:5] data using 1:c with linespoints title columnheader(c) lw 3 pt 7 ps 0.6 lc rgb colors[c], \
         for [c = 6:9] data using 1:c with linespoints title columnheader(c) lw 1.5 pt 6 ps 0.6 dt 2 lc rgb colors[c]
