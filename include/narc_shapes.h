@@ -331,7 +331,8 @@ NARC_API bool narc_compute_distance(const narc_arc *arcs, size_t count, const na
 /* Is the point inside the shape or on its outline? */
 NARC_API bool narc_contains_point(const narc_arc *arcs, size_t count, const narc_point *point);
 
-/* Memory: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. */
+/* Memory: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. Without an allocator it is
+ * malloc() and free(); on Linux what has 2 MB or more is asked to lie in large pages, and may take up to one of them more. */
 typedef struct narc_allocator {
     void *(*allocate)(size_t size, void *context);
     void (*release)(void *memory, void *context);
@@ -381,8 +382,7 @@ enum {
     NARC_SHAPE_HALF_PLANE = 64,    /* narc_add_half_plane(); no other flag */
 };
 
-/* An empty store. `allocator` NULL: malloc and free; on Linux what has 2 MB or more is asked to lie in large pages, and may take
- * up to one page of them more. NARC_ERROR_MEMORY. */
+/* An empty store. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **out_shapes);
 
 /* Frees a store; NULL is fine. */

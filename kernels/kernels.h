@@ -111,8 +111,8 @@ typedef struct narc_kept_row {
     float radius_a, radius_b, apart, lever;
 } narc_kept_row;
 
-/* One pair by itself. Of the batch the shapes are read and, of manifolds, the flat sine and the query's second margin. An answer is
- * a dense row, which is there without a contact, too. */
+/* One pair by itself. Of the batch the shapes are read and, of manifolds, the flat sine and the query's second margin. An
+ * answer is a dense row, which is there without a contact, too. */
 typedef struct narc_one_pair {
     const narc_batch *batch;
     const narc_body *a, *b;

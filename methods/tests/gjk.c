@@ -344,7 +344,7 @@ TEST(test_any_simplexes) {
 TEST(test_simplexes_of_a_batch) {
     struct test_random random = test_random_named("gjk simplexes");
     const struct scene *const scene = &corpora[0].scene;
-    const size_t count = scene->pair_count, first = 64, size = count * sizeof(uint32_t);
+    const size_t count = scene->pair_count, first = count < 64 ? 0 : 64, size = count * sizeof(uint32_t);
     const narc_workers three = openmp_workers(3);
     AUTO(free_at) uint32_t *const right = create_simplexes(count);
     AUTO(free_at) uint32_t *const start = create_simplexes(count);

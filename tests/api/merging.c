@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * merging.c - narc_merge_rows(): what stays of rows that entries of one chain tell of a
- * body. Internal.
+ * merging.c - narc_merge_rows(): what stays of rows that entries of one chain tell of a body. Internal.
  */
 #include <math.h>
 #include <stdlib.h>

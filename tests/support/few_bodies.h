@@ -6,6 +6,7 @@
 #define NARC_TEST_FEW_BODIES_H
 
 #include "families.h"
+#include "narc_chains.h"
 #include "narc_contacts.h"
 
 /* Bodies of one shape by their places, with ids from 1 on. */
@@ -24,5 +25,14 @@ struct few *make_few(struct shape shape, size_t count, const narc_allocator *all
 const narc_step_result *step_few(struct few *few);
 void destroy_few(struct few *few);
 RELEASE_AT(destroy_few)
+
+/* The same bodies in an object that knows nothing of them: as much touches, as deep. */
+void check_with_fresh(struct few *few);
+
+/* Entries of a chain as static bodies behind body 0, instead of those there; how many. `run`: of each body. */
+size_t lay_entries(struct few *few, const narc_arc *arcs, size_t count, double weld, uint32_t *run);
+
+/* A body, which was not turned, after a turn about a place. */
+narc_body turn_about(narc_body body, double x, double y, double angle);
 
 #endif
